@@ -107,10 +107,12 @@ pub use properties::{
     Accuracy, ChangingLoads, EnergyBehaviour, Needs, OtherDamping, Properties, StableStep,
 };
 pub use ramp::{Channel, Ramp, RampError};
-pub use recorder::{Moment, RecordError, Recorder, Recorders, Verdict};
+pub use recorder::{Moment, RecordError, Recorder, Verdict};
 pub use revision::Revision;
 pub use scaling::Scaling;
-pub use simulate::{Outcome, Run, RunReport, SimulateError, simulate, simulate_under};
+pub use simulate::{
+    Outcome, RecordedSteps, Run, RunReport, SimulateError, simulate, simulate_under,
+};
 pub use sinew_sparse::{AssemblyError, BlockMatrix, Layers, Pattern, clamp_vector, vectors};
 pub use state::{Acceleration, DampedAt, Start, State, StepCut, VelocityTime};
 pub use state_bytes::StateBytesError;

@@ -72,7 +72,6 @@ pub struct RunReport {
 
 /// Reasons for which a run cannot go on.
 #[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
 pub enum SimulateError {
     /// A step failed.
     #[error(transparent)]
@@ -111,65 +110,144 @@ pub fn simulate_under(
     run: &Run,
     recorder: &mut dyn Recorder,
 ) -> Result<RunReport, SimulateError> {
-    let mut report = RunReport {
-        outcome: Outcome::Finished,
-        steps: 0,
-        work: StepReport::default(),
-    };
-    let mut watch = Watch::new(recorder.watches(), run.steps.min(LONGEST_BATCH) + 1);
-    let watches = !watch.is_empty();
-    if watches {
-        watch.sample(state);
+    let mut shown = RecordedSteps::new(recorder);
+    let outcome = shown.take((system, inputs), integrator, state, run)?;
+    Ok(RunReport {
+        outcome,
+        steps: shown.steps(),
+        work: shown.work(),
+    })
+}
+
+/// Steps of a motion that a recorder sees as one, however many calls take them.
+pub struct RecordedSteps<'r, R: Recorder + ?Sized> {
+    recorder: &'r mut R,
+    watch: Watch,
+    steps: usize,
+    work: StepReport,
+    /// Whether the recorder has seen the present state.
+    is_shown: bool,
+}
+
+impl<'r, R: Recorder + ?Sized> RecordedSteps<'r, R> {
+    /// Begins with a state that the recorder has not seen.
+    pub fn new(recorder: &'r mut R) -> Self {
+        Self {
+            watch: Watch::new(recorder.watches(), LONGEST_BATCH + 1),
+            recorder,
+            steps: 0,
+            work: StepReport::default(),
+            is_shown: false,
+        }
     }
-    let mut failed = None;
-    loop {
-        let mut verdict = deliver(&mut watch, recorder)?;
-        if let Some(error) = failed {
-            return Err(error);
+
+    /// Begins after steps that the recorder saw earlier, up to the present state.
+    pub fn resumed(recorder: &'r mut R, steps: usize) -> Self {
+        Self {
+            steps,
+            is_shown: true,
+            ..Self::new(recorder)
         }
-        let mut next = recorder.next(report.steps);
-        if next == Some(report.steps) && report.outcome == Outcome::Finished {
-            let moment = Moment {
-                system,
-                inputs,
-                state,
-                step: report.steps,
-                work: report.work,
-            };
-            if recorder.record(&moment)? == Verdict::Stop {
-                verdict = Verdict::Stop;
+    }
+
+    /// Steps taken, those before [`RecordedSteps::resumed`] included.
+    #[must_use]
+    pub fn steps(&self) -> usize {
+        self.steps
+    }
+
+    /// Work of the steps that were taken here.
+    #[must_use]
+    pub fn work(&self) -> StepReport {
+        self.work
+    }
+
+    /// The recorder.
+    pub fn recorder(&mut self) -> &mut R {
+        self.recorder
+    }
+
+    /// Asks the recorder again for the degrees of freedom to watch: the system became another one.
+    pub fn watch_again(&mut self) {
+        self.watch = Watch::new(self.recorder.watches(), LONGEST_BATCH + 1);
+    }
+
+    /// Takes `run.steps` more steps, in batches that end where the recorder wants to see a state. Stops early if it
+    /// says so, or if a displacement is not finite or passes `run.divergence_limit`.
+    ///
+    /// # Errors
+    /// [`SimulateError`] when a step or the recorder fails.
+    pub fn take(
+        &mut self,
+        (system, inputs): (&dyn System, &Inputs),
+        integrator: &mut dyn Integrator,
+        state: &mut State,
+        run: &Run,
+    ) -> Result<Outcome, SimulateError> {
+        let end = self.steps + run.steps;
+        let watches = !self.watch.is_empty();
+        if watches && !self.is_shown {
+            self.watch.sample(state);
+        }
+        let (mut outcome, mut failed) = (Outcome::Finished, None);
+        loop {
+            let mut verdict = deliver(&mut self.watch, self.recorder)?;
+            if let Some(error) = failed {
+                return Err(error);
             }
-            next = recorder.next(report.steps + 1);
-        }
-        if verdict == Verdict::Stop && report.outcome == Outcome::Finished {
-            report.outcome = Outcome::Stopped;
-        }
-        if report.steps >= run.steps || report.outcome != Outcome::Finished {
-            return Ok(report);
-        }
-        let wished = next.map_or(run.steps, |next| next.min(run.steps));
-        let count = (wished - report.steps).clamp(1, LONGEST_BATCH);
-        let mut batch =
-            Batch::new(system, inputs, run.dt, count).with_divergence_limit(run.divergence_limit);
-        if watches {
-            batch = batch.with_watch(&mut watch);
-        }
-        failed = batch.take(integrator, state).err().map(SimulateError::from);
-        report.steps += batch.taken();
-        report.work += batch.work();
-        let ends = failed.is_none() && report.steps >= run.steps;
-        let diverged = batch.diverged();
-        // Displacements are looked at after each step; of the last one the velocity leads to no other.
-        let last = || worst_beyond(&state.v, f64::INFINITY);
-        let diverged = diverged.or_else(|| ends.then(last).flatten());
-        if let Some(dof) = diverged {
-            report.outcome = Outcome::Diverged { t: state.t(), dof };
+            let mut next = match self.is_shown {
+                true => None,
+                false => self.recorder.next(self.steps),
+            };
+            if next == Some(self.steps) && outcome == Outcome::Finished {
+                let moment = Moment {
+                    system,
+                    inputs,
+                    state,
+                    step: self.steps,
+                    work: self.work,
+                };
+                if self.recorder.record(&moment)? == Verdict::Stop {
+                    verdict = Verdict::Stop;
+                }
+                next = None;
+            }
+            self.is_shown = true;
+            if verdict == Verdict::Stop && outcome == Outcome::Finished {
+                outcome = Outcome::Stopped;
+            }
+            if self.steps >= end || outcome != Outcome::Finished {
+                return Ok(outcome);
+            }
+            let next = next.or_else(|| self.recorder.next(self.steps + 1));
+            let wished = next.map_or(end, |next| next.min(end));
+            let count = (wished - self.steps).clamp(1, LONGEST_BATCH);
+            let mut batch = Batch::new(system, inputs, run.dt, count)
+                .with_divergence_limit(run.divergence_limit);
+            if watches {
+                batch = batch.with_watch(&mut self.watch);
+            }
+            failed = batch.take(integrator, state).err().map(SimulateError::from);
+            self.steps += batch.taken();
+            self.work += batch.work();
+            self.is_shown = false;
+            let ends = failed.is_none() && self.steps >= end;
+            let diverged = batch.diverged();
+            // Displacements are checked after each step; of the last one the velocity leads to no other.
+            let last = || worst_beyond(&state.v, f64::INFINITY);
+            let diverged = diverged.or_else(|| ends.then(last).flatten());
+            if let Some(dof) = diverged {
+                outcome = Outcome::Diverged { t: state.t(), dof };
+            }
         }
     }
 }
 
 /// Passes watched samples on to the recorder, those of a run that fails or ends included.
-fn deliver(watch: &mut Watch, recorder: &mut dyn Recorder) -> Result<Verdict, RecordError> {
+fn deliver<R: Recorder + ?Sized>(
+    watch: &mut Watch,
+    recorder: &mut R,
+) -> Result<Verdict, RecordError> {
     let mut verdict = Verdict::Continue;
     for (t, u) in watch.samples() {
         if recorder.watched(t, u)? == Verdict::Stop {

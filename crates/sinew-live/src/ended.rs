@@ -1,7 +1,7 @@
 //! What a session leaves.
 
 use sinew_scene::Scene;
-use sinew_session::{JournalError, Log};
+use sinew_world::{JournalError, Log};
 
 /// A session that has ended.
 #[derive(Debug)]

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use sinew_core::OptionError;
 use sinew_scene::SceneError;
-use sinew_session::{CommandError, SessionError};
+use sinew_world::{CommandError, WorldError};
 
 /// A page that cannot be served, or a scene that cannot be driven.
 #[derive(Debug, thiserror::Error)]
@@ -15,7 +15,7 @@ pub enum LiveError {
     Scene(#[from] SceneError),
     /// The scene cannot be driven.
     #[error(transparent)]
-    Session(#[from] SessionError),
+    World(#[from] WorldError),
     /// An integrator or a step of a pane is refused.
     #[error(transparent)]
     Command(#[from] CommandError),

@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 use futures_util::future::{Either, select};
 use sinew_fem::{Law, LoadKind};
 use sinew_scene::{BodyModel, Scene, Simulation};
-use sinew_session::{Journal, JournalError, Session};
+use sinew_world::{Journal, JournalError, World};
 use tokio::net::TcpListener;
 use tokio::runtime::{Builder, Runtime};
 
@@ -99,7 +99,7 @@ impl Live {
                 _ => LiveError::Listen { port, source },
             })?;
         let address = listener.local_addr().map_err(LiveError::Serve)?;
-        let session = Session::new(scene.clone())?.with_values(&values);
+        let session = World::new(scene.clone())?.with_values(&values);
         let simulation = Arc::clone(session.simulation());
         let body = simulation.model().body().ok_or(LiveError::NoBody)?;
         let surface = Surface::of(&body.mesh);

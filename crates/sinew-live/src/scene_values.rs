@@ -1,7 +1,7 @@
 //! A scene with the values that a command line and a page set in it, and what its sessions begin with.
 
 use sinew_scene::{Scene, SceneError};
-use sinew_session::{InputFile, Log};
+use sinew_world::{InputFile, Log};
 
 use crate::error::LiveError;
 

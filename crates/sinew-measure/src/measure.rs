@@ -238,7 +238,7 @@ struct Comparison<'a> {
     /// Present for bodies that follow a force law.
     deformation: Option<DeformationWatch<'a>>,
     /// Present for bodies in whole runs.
-    overlaps: Option<OverlapWatch<'a>>,
+    overlaps: Option<OverlapWatch>,
     max_u: f64,
     late: LateRange,
 }

@@ -1,5 +1,7 @@
 //! The balance of energy of a run.
 
+use std::sync::Arc;
+
 use serde::{Deserialize, Serialize};
 use sinew_core::vectors::dot;
 use sinew_core::{
@@ -10,6 +12,7 @@ use sinew_fem::Model;
 use sinew_integrators::{NumericalDissipation, StepEnd, Stepper};
 use sinew_scene::{SceneModel, Schedule, Simulation};
 use sinew_tools::Tools;
+use sinew_world::BodyCut;
 
 use crate::error::RecordRunError;
 
@@ -91,8 +94,8 @@ pub(crate) struct LastRow {
 /// acceleration method (Newmark with gamma 1/2 and beta 1/4), with a row for every step, nothing remains but rounding,
 /// jumps and kinks of loads included. What a support gives the inertia and the damping of its own nodes is counted by what these hold and
 /// take, whatever jumps its speed makes. Loads that jump or bend beside moved supports remain in part.
-pub(crate) struct Balance<'a> {
-    simulation: &'a Simulation,
+pub(crate) struct Balance {
+    simulation: Arc<Simulation>,
     pub(crate) sums: Sums,
     pub(crate) last: Option<LastRow>,
     /// All nodes at the last row, where some are moved.
@@ -174,15 +177,15 @@ struct Nodes {
     kinetic: [f64; 2],
 }
 
-impl<'a> Balance<'a> {
+impl Balance {
     /// Begins with rows at these steps of the method; of several methods, or steps of several lengths, with `None`.
     pub(crate) fn new(
-        simulation: &'a Simulation,
+        simulation: &Arc<Simulation>,
         method: Option<&dyn Stepper>,
         rows: Schedule,
     ) -> Self {
         let mut balance = Self {
-            simulation,
+            simulation: Arc::clone(simulation),
             sums: Sums::default(),
             last: None,
             nodes: None,
@@ -222,7 +225,7 @@ impl<'a> Balance<'a> {
         self.simulation.is_cut()
     }
 
-    fn tools(&self) -> Option<&'a Tools> {
+    fn tools(&self) -> Option<&Tools> {
         self.simulation.model().tools().map(|tools| &**tools)
     }
 
@@ -255,14 +258,20 @@ impl<'a> Balance<'a> {
         Ok(self)
     }
 
-    /// Goes on after the body became another one, with the state that was carried over, and what that brought in (J).
-    pub(crate) fn after_change(
-        self,
-        mut sums: Sums,
-        state: &State,
-        energy: f64,
-    ) -> Result<Self, RecordRunError> {
-        sums.cuts += energy;
+    /// Continues with loads that follow inputs, which changes no force yet.
+    pub(crate) fn change_loads(&mut self, simulation: &Arc<Simulation>) {
+        self.simulation = Arc::clone(simulation);
+    }
+
+    /// Continues on a body that was cut.
+    pub(crate) fn change_body(
+        &mut self,
+        simulation: &Arc<Simulation>,
+        cut: &BodyCut,
+    ) -> Result<(), RecordRunError> {
+        self.simulation = Arc::clone(simulation);
+        self.sums.cuts += cut.energy;
+        let state = &cut.after;
         let t = state.t();
         let mut v = vec![0.0; state.u.len()];
         state.velocity_at_t(self.simulation.system(), Inputs::none(), &mut v)?;
@@ -278,15 +287,17 @@ impl<'a> Balance<'a> {
             a: Vec::new(),
             internal,
         };
-        self.resumed(sums, row)
+        self.nodes = self.nodes(&row, Inputs::none())?;
+        self.last = Some(row);
+        Ok(())
     }
 
-    fn operators(&self) -> Option<&'a LinearOperators> {
+    fn operators(&self) -> Option<&LinearOperators> {
         Some(self.simulation.system().as_linear()?.operators())
     }
 
     /// The body, where parts of it are moved.
-    fn moved_body(&self) -> Option<&'a Model> {
+    fn moved_body(&self) -> Option<&Model> {
         let body = self.simulation.model().body()?;
         (!body.problem.moves.is_empty()).then_some(&body.model)
     }

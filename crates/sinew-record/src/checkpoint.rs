@@ -1,11 +1,8 @@
 //! The file from which a run goes on.
 
-use std::cell::RefCell;
-
 use sha2::{Digest, Sha256};
-use sinew_core::State;
 use sinew_scene::output::OwnedFolder;
-use sinew_scene::{Cutter, Simulation};
+use sinew_world::{RestoreError, Saved, World};
 
 use crate::balance::LastRow;
 use crate::error::RecordRunError;
@@ -26,9 +23,6 @@ const CHECKSUM: usize = 32;
 #[derive(Debug)]
 pub(crate) struct Checkpoint {
     pub(crate) progress: Progress,
-    /// The scene on the body as cuts left it; `None` where it is whole.
-    pub(crate) cut: Option<Simulation>,
-    pub(crate) state: State,
     /// The motion at the last row of energies.
     pub(crate) row: LastRow,
     /// Displacements (m) of the surface where it was largest so far.
@@ -39,12 +33,11 @@ impl Checkpoint {
     pub(crate) fn write(
         folder: &OwnedFolder,
         progress: &Progress,
-        (simulation, cutter, state): (&Simulation, Option<&RefCell<Cutter>>, &State),
+        world: &World,
         row: &LastRow,
         largest: &[f64],
     ) -> Result<(), RecordRunError> {
-        let state = state.to_bytes(simulation.system());
-        let cuts = cutter.map_or_else(Vec::new, |cutter| cutter.borrow().to_bytes());
+        let Saved { cuts, state } = world.save();
         let times = [row.t, row.before];
         let lists: [&[f64]; 6] = [&times, &row.u, &row.v, &row.a, &row.internal, largest];
         let json = serde_json::to_string(progress).map_err(|error| unusable(folder, &error))?;
@@ -63,11 +56,10 @@ impl Checkpoint {
         Ok(folder.write(NAME, &bytes)?)
     }
 
-    /// The last checkpoint in a folder, whose frames are as they were; `None` where there is none yet.
-    pub(crate) fn read(
+    /// Restores the world of the last checkpoint in a folder, whose frames are as they were; `None` if there is none yet.
+    pub(crate) fn restore(
         folder: &OwnedFolder,
-        simulation: &Simulation,
-        cutter: Option<&RefCell<Cutter>>,
+        world: &mut World,
     ) -> Result<Option<Self>, RecordRunError> {
         let Some(bytes) = folder.read(NAME)? else {
             return Ok(None);
@@ -96,15 +88,17 @@ impl Checkpoint {
         };
         let rest = lines.next().unwrap_or_default();
         let (cuts, rest) = rest.split_at_checked(*cuts).ok_or_else(damaged)?;
-        let cut = match cutter {
-            Some(cutter) => cutter.borrow_mut().restore(cuts, simulation)?,
-            None => None,
-        };
         let (state, rest) = rest.split_at_checked(*size).ok_or_else(damaged)?;
-        let system = cut.as_ref().unwrap_or(simulation).system();
-        let state = State::from_bytes(state, system).map_err(|source| {
-            let folder = folder.path().to_owned();
-            RecordRunError::Checkpoint { folder, source }
+        let saved = Saved {
+            cuts: cuts.to_vec(),
+            state: state.to_vec(),
+        };
+        world.restore(&saved).map_err(|error| match error {
+            RestoreError::Cutting(error) => error.into(),
+            RestoreError::State(source) => RecordRunError::Checkpoint {
+                folder: folder.path().to_owned(),
+                source,
+            },
         })?;
         let (numbers, []) = rest.as_chunks::<8>() else {
             return Err(damaged());
@@ -126,8 +120,6 @@ impl Checkpoint {
         }
         Ok(Some(Self {
             progress,
-            cut,
-            state,
             row: LastRow {
                 t: t[0],
                 before: t[1],

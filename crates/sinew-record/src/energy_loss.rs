@@ -1,9 +1,12 @@
 //! Energy that a method takes away, where no table of energies is written.
 
-use sinew_core::{Moment, RecordError, Recorder, Verdict};
+use std::sync::Arc;
+
+use sinew_core::{Moment, RecordError, Verdict};
 use sinew_integrators::Stepper;
 use sinew_integrators::explicit::GuardOption;
 use sinew_scene::{Schedule, Simulation};
+use sinew_world::Recorder;
 
 use crate::balance::Balance;
 use crate::error::RecordRunError;
@@ -17,19 +20,19 @@ const STEPS_FOR_A_LOOK: usize = 20;
 const LOOKS: usize = 100;
 
 /// A recorder that looks at each step of a method that takes energy by itself, or now and then at one with a clamp, and tells how much that was.
-pub struct EnergyLoss<'a> {
-    simulation: &'a Simulation,
+pub struct EnergyLoss {
+    simulation: Arc<Simulation>,
     /// None where nothing is looked at.
-    looks: Option<(Balance<'a>, Schedule)>,
+    looks: Option<(Balance, Schedule)>,
     saturates: bool,
     v: Vec<f64>,
     taken: Taken,
 }
 
-impl<'a> EnergyLoss<'a> {
+impl EnergyLoss {
     /// Looks at a run of this simulation by a method that is set up for it.
     #[must_use]
-    pub fn new(simulation: &'a Simulation, method: &dyn Stepper) -> Self {
+    pub fn new(simulation: &Arc<Simulation>, method: &dyn Stepper) -> Self {
         let rows = Schedules::of(simulation).energy;
         let balance = Balance::new(simulation, Some(method), rows);
         let steps = simulation.run().steps;
@@ -43,7 +46,7 @@ impl<'a> EnergyLoss<'a> {
             None
         };
         Self {
-            simulation,
+            simulation: Arc::clone(simulation),
             looks,
             saturates: false,
             v: Vec::new(),
@@ -56,7 +59,7 @@ impl<'a> EnergyLoss<'a> {
     pub fn in_words(&self) -> Option<String> {
         let method = format!("`{}`", self.simulation.settings().integrator);
         self.taken
-            .in_words(self.simulation, &method, self.saturates)
+            .in_words(&self.simulation, &method, self.saturates)
     }
 
     fn look(&mut self, moment: &Moment<'_>) -> Result<(), RecordRunError> {
@@ -71,7 +74,9 @@ impl<'a> EnergyLoss<'a> {
     }
 }
 
-impl Recorder for EnergyLoss<'_> {
+impl Recorder for EnergyLoss {}
+
+impl sinew_core::Recorder for EnergyLoss {
     fn next(&mut self, step: usize) -> Option<usize> {
         let (_, schedule) = self.looks.as_ref()?;
         schedule.next(step)

@@ -7,7 +7,7 @@ use sinew_fem::FieldError;
 use sinew_mesh::vtu::WriteVtuError;
 use sinew_scene::output::OutputError;
 use sinew_scene::{CuttingError, DrivenLoadError, ProbeRowError, ReactionError, SceneError};
-use sinew_session::{InputFileError, ReplayError};
+use sinew_world::{InputFileError, ReplayError, WorldStepError};
 
 /// A reason for which a run leaves no result, or cannot go on.
 #[derive(Debug, thiserror::Error)]
@@ -106,7 +106,10 @@ pub enum RecordRunError {
     },
     /// A session that cannot be repeated.
     #[error(transparent)]
-    Session(#[from] ReplayError),
+    Repeat(#[from] ReplayError),
+    /// A step that cannot be taken.
+    #[error(transparent)]
+    Step(#[from] WorldStepError),
     /// Loads that cannot be driven.
     #[error(transparent)]
     Driven(#[from] DrivenLoadError),

@@ -1,11 +1,13 @@
 //! Fields over the body at an instant.
 
+use std::sync::Arc;
+
 use sinew_core::{LoadTime, Moment, System};
 use sinew_fem::{Model, stress};
+use sinew_mesh::CellType;
 use sinew_mesh::vtu::{Array, Grid, VtuEncoding};
-use sinew_mesh::{BoundarySurface, CellType};
-use sinew_scene::OutputSettings;
 use sinew_scene::output::OwnedFolder;
+use sinew_scene::{BodyModel, OutputSettings};
 
 use crate::contact_fields::ContactFields;
 use crate::error::RecordRunError;
@@ -80,8 +82,8 @@ impl Tets {
 
 /// Writes frames, and keeps the room for them.
 #[derive(Debug)]
-pub(crate) struct Fields<'a> {
-    model: &'a Model,
+pub(crate) struct Fields {
+    body: Arc<BodyModel>,
     /// Step of the run (s).
     dt: f64,
     settings: OutputSettings,
@@ -100,9 +102,10 @@ pub(crate) struct Fields<'a> {
     step_limits: Vec<f32>,
 }
 
-impl<'a> Fields<'a> {
+impl Fields {
     /// Those of a run in steps of `dt` (s).
-    pub(crate) fn new(model: &'a Model, dt: f64, settings: OutputSettings) -> Self {
+    pub(crate) fn new(body: &Arc<BodyModel>, dt: f64, settings: OutputSettings) -> Self {
+        let model = &body.model;
         let nodes = model.mesh().points.len();
         let springs = model
             .report()
@@ -112,7 +115,7 @@ impl<'a> Fields<'a> {
         let number = |region: &u32| u8::try_from(region + 1).unwrap_or(u8::MAX);
         let of_nodes = |is_asked: bool| vec![[0.0; 3]; if is_asked { nodes } else { 0 }];
         Self {
-            model,
+            body: Arc::clone(body),
             dt,
             settings,
             u: of_nodes(true),
@@ -139,10 +142,11 @@ impl<'a> Fields<'a> {
     pub(crate) fn write(
         &mut self,
         folder: &OwnedFolder,
-        surface: &BoundarySurface,
         snapshot: &Snapshot,
         seen: &mut Seen,
     ) -> Result<Seal, RecordRunError> {
+        let body = Arc::clone(&self.body);
+        let surface = body.surface();
         let Snapshot {
             frame,
             t,
@@ -152,14 +156,14 @@ impl<'a> Fields<'a> {
             internal,
             contact,
         } = snapshot;
-        self.model.displacements_at(*t, u, &mut self.u)?;
-        self.model.velocities_at(*t, v, &mut self.v)?;
+        self.body.model.displacements_at(*t, u, &mut self.u)?;
+        self.body.model.velocities_at(*t, v, &mut self.v)?;
         if self.settings.acceleration {
             let when = LoadTime::around(*t, self.dt.min(*t), self.dt);
-            self.model.accelerations_at(when, a, &mut self.a)?;
+            self.body.model.accelerations_at(when, a, &mut self.a)?;
         }
         if let Some(fields) = &mut self.contact {
-            fields.take(self.model, surface, contact, &self.u);
+            fields.take(&self.body.model, surface, contact, &self.u);
         }
         self.deform(*t, internal, seen)?;
         let grid = if self.settings.surface_only {
@@ -179,7 +183,7 @@ impl<'a> Fields<'a> {
             Grid {
                 point_data: self.point_data(&of),
                 cell_data: self.cell_data(),
-                ..Grid::of(self.model.mesh())
+                ..Grid::of(self.body.model.mesh())
             }
         };
         let encoding = match self.settings.compress {
@@ -224,10 +228,10 @@ impl<'a> Fields<'a> {
 
     /// Makes the fields on tetrahedra of the displacement, and sees what is largest.
     fn deform(&mut self, t: f64, internal: &[f64], seen: &mut Seen) -> Result<(), RecordRunError> {
-        let (mesh, tets) = (self.model.mesh(), &mut self.tets);
+        let (mesh, tets) = (self.body.model.mesh(), &mut self.tets);
         tets.clear();
         let mut inverted = 0;
-        let body = self.model.with_memory(internal);
+        let body = self.body.model.with_memory(internal);
         for (number, tet) in body.deformed_tets(&self.u)?.enumerate() {
             seen.see_tet(t, &tet, || mesh.tet_tags[number]);
             inverted += usize::from(tet.is_inverted);

@@ -1,8 +1,10 @@
 //! What frames would show of a motion, where none are written.
 
-use sinew_core::{Moment, RecordError, Recorder, State, Verdict};
-use sinew_fem::Model;
-use sinew_scene::{OverlapWatch, Schedule, Simulation};
+use std::sync::Arc;
+
+use sinew_core::{Moment, RecordError, State, Verdict};
+use sinew_scene::{BodyModel, OverlapWatch, Schedule, Simulation};
+use sinew_world::{BodyChange, Recorder};
 
 use crate::error::RecordRunError;
 use crate::progress::Seen;
@@ -23,48 +25,54 @@ impl Looked {
     }
 }
 
-/// A recorder that looks at the deformation of a body, and for parts and surfaces of it in each other, at the instants at which a folder has frames.
+/// A recorder that checks the deformation of a body, and its parts and surfaces for overlap, at the instants at which a folder has
+/// frames.
 #[derive(Debug)]
-pub struct FrameLooks<'a> {
-    /// None for an oscillator.
-    watch: Option<Watch<'a>>,
+pub struct FrameLooks {
+    /// `None` for an oscillator.
+    watch: Option<Watch>,
     looked: Looked,
 }
 
 #[derive(Debug)]
-struct Watch<'a> {
+struct Watch {
     schedule: Schedule,
-    model: &'a Model,
-    overlaps: OverlapWatch<'a>,
+    body: Arc<BodyModel>,
+    overlaps: OverlapWatch,
     u: Vec<[f64; 3]>,
 }
 
-impl<'a> FrameLooks<'a> {
-    /// Looks at a run of this simulation, or at a stretch of it on the body as cuts left it after what was looked at before.
-    #[must_use]
-    pub fn new(simulation: &'a Simulation, looked: Looked) -> Self {
-        Self::with(simulation, Schedules::of(simulation), looked)
-    }
-
-    /// Looks at a session that is repeated, or at a stretch of it, of so many steps of this length (s) on average.
-    #[must_use]
-    pub fn of_steps(simulation: &'a Simulation, (steps, dt): (usize, f64), looked: Looked) -> Self {
-        Self::with(
-            simulation,
-            Schedules::of_steps(simulation, steps, dt),
-            looked,
-        )
-    }
-
-    fn with(simulation: &'a Simulation, schedules: Schedules, looked: Looked) -> Self {
-        let body = simulation.model().body();
-        let watch = schedules.fields.zip(body).map(|(schedule, body)| Watch {
+impl Watch {
+    fn new(schedule: Schedule, body: &Arc<BodyModel>) -> Self {
+        Self {
             schedule,
-            model: &body.model,
+            body: Arc::clone(body),
             overlaps: OverlapWatch::new(body),
             u: vec![[0.0; 3]; body.mesh.points.len()],
-        });
-        Self { watch, looked }
+        }
+    }
+}
+
+impl FrameLooks {
+    /// Checks of a run of this scene.
+    #[must_use]
+    pub fn new(simulation: &Simulation) -> Self {
+        Self::with(simulation, Schedules::of(simulation))
+    }
+
+    /// Checks of a replay of so many steps of this length (s) on average.
+    #[must_use]
+    pub fn of_steps(simulation: &Simulation, (steps, dt): (usize, f64)) -> Self {
+        Self::with(simulation, Schedules::of_steps(simulation, steps, dt))
+    }
+
+    fn with(simulation: &Simulation, schedules: Schedules) -> Self {
+        let body = simulation.model().body();
+        let watch = schedules.fields.zip(body);
+        Self {
+            watch: watch.map(|(schedule, body)| Watch::new(schedule, body)),
+            looked: Looked::default(),
+        }
     }
 
     /// What was looked at.
@@ -78,9 +86,12 @@ impl<'a> FrameLooks<'a> {
             return Ok(());
         };
         let (t, seen) = (state.t(), &mut self.looked.seen);
-        watch.model.displacements_at(t, &state.u, &mut watch.u)?;
-        let body = watch.model.with_memory(&state.internal);
-        let tags = &watch.model.mesh().tet_tags;
+        watch
+            .body
+            .model
+            .displacements_at(t, &state.u, &mut watch.u)?;
+        let body = watch.body.model.with_memory(&state.internal);
+        let tags = &watch.body.mesh.tet_tags;
         let mut inverted = 0;
         for (number, tet) in body.deformed_tets(&watch.u)?.enumerate() {
             seen.see_tet(t, &tet, || tags[number]);
@@ -93,7 +104,7 @@ impl<'a> FrameLooks<'a> {
     }
 }
 
-impl Recorder for FrameLooks<'_> {
+impl sinew_core::Recorder for FrameLooks {
     fn next(&mut self, step: usize) -> Option<usize> {
         self.watch.as_ref()?.schedule.next(step)
     }
@@ -105,5 +116,14 @@ impl Recorder for FrameLooks<'_> {
             source: Box::new(error),
         })?;
         Ok(Verdict::Continue)
+    }
+}
+
+impl Recorder for FrameLooks {
+    fn body_changed(&mut self, change: &BodyChange<'_>) -> Result<(), RecordError> {
+        if let (Some(watch), Some(body)) = (&mut self.watch, change.simulation.model().body()) {
+            *watch = Watch::new(watch.schedule, body);
+        }
+        Ok(())
     }
 }

@@ -1,13 +1,12 @@
 //! Frames written beside the run.
 
 use std::sync::mpsc::{Receiver, Sender, SyncSender, channel, sync_channel};
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::Scope;
 
 use sinew_core::{Moment, vectors};
-use sinew_mesh::{BoundarySurface, TetMesh};
-use sinew_scene::OverlapWatch;
 use sinew_scene::output::OwnedFolder;
+use sinew_scene::{BodyModel, OutputSettings, OverlapWatch};
 
 use crate::error::RecordRunError;
 use crate::fields::{Fields, Snapshot};
@@ -30,22 +29,49 @@ pub(crate) struct SeenInFrames {
 /// Makes fields of snapshots and writes them, on a thread of its own, so that the run need not wait for them. Frames are
 /// written in order, so what is seen in them does not depend on when.
 pub(crate) struct FrameWriter<'a> {
-    to_write: SyncSender<Snapshot>,
+    to_write: SyncSender<Work>,
     written: Receiver<Result<Snapshot, RecordRunError>>,
     /// Snapshots that are not in use.
     free: Vec<Snapshot>,
     seen: &'a Mutex<SeenInFrames>,
 }
 
-/// What the writing thread needs.
+/// Work of the writing thread.
+enum Work {
+    Frame(Snapshot),
+    /// Frames are of this body from now on.
+    Body(Arc<BodyModel>),
+}
+
+/// All that the writing thread needs.
 pub(crate) struct FrameJob<'a> {
-    pub(crate) folder: &'a OwnedFolder,
-    pub(crate) mesh: &'a TetMesh,
-    pub(crate) surface: &'a BoundarySurface,
-    pub(crate) fields: Fields<'a>,
-    pub(crate) is_cut: bool,
-    pub(crate) overlaps: OverlapWatch<'a>,
-    pub(crate) seen: &'a Mutex<SeenInFrames>,
+    folder: &'a OwnedFolder,
+    body: Arc<BodyModel>,
+    dt: f64,
+    settings: OutputSettings,
+    fields: Fields,
+    overlaps: OverlapWatch,
+    seen: &'a Mutex<SeenInFrames>,
+}
+
+impl<'a> FrameJob<'a> {
+    /// Frames of a body in steps of `dt` (s).
+    pub(crate) fn new(
+        folder: &'a OwnedFolder,
+        body: &Arc<BodyModel>,
+        (dt, settings): (f64, OutputSettings),
+        seen: &'a Mutex<SeenInFrames>,
+    ) -> Self {
+        Self {
+            folder,
+            body: Arc::clone(body),
+            dt,
+            settings,
+            fields: Fields::new(body, dt, settings),
+            overlaps: OverlapWatch::new(body),
+            seen,
+        }
+    }
 }
 
 impl FrameJob<'_> {
@@ -56,9 +82,7 @@ impl FrameJob<'_> {
             largest,
             seals,
         } = &mut *guard;
-        let seal = self
-            .fields
-            .write(self.folder, self.surface, snapshot, seen)?;
+        let seal = self.fields.write(self.folder, snapshot, seen)?;
         seals.push(seal);
         let displacements = self.fields.displacements();
         self.overlaps.look(snapshot.t, displacements);
@@ -70,22 +94,25 @@ impl FrameJob<'_> {
                 (node, most) = (index, size);
             }
         }
-        let tag = || self.mesh.node_tags[node];
+        let tag = || self.body.mesh.node_tags[node];
         // Of a body that was cut the last frame is kept: its surface was another one in earlier ones.
-        if seen.displacement.see(most, snapshot.t, tag) || self.is_cut {
-            let nodes = self.surface.nodes.iter();
+        if seen.displacement.see(most, snapshot.t, tag) || self.body.cut.is_some() {
+            let nodes = self.body.surface().nodes.iter();
             largest.clear();
             largest.extend(nodes.flat_map(|node| displacements[*node as usize]));
         }
         Ok(())
     }
 
-    fn serve(
-        mut self,
-        snapshots: &Receiver<Snapshot>,
-        done: &Sender<Result<Snapshot, RecordRunError>>,
-    ) {
-        for snapshot in snapshots {
+    fn serve(mut self, works: &Receiver<Work>, done: &Sender<Result<Snapshot, RecordRunError>>) {
+        for work in works {
+            let snapshot = match work {
+                Work::Frame(snapshot) => snapshot,
+                Work::Body(body) => {
+                    self = Self::new(self.folder, &body, (self.dt, self.settings), self.seen);
+                    continue;
+                }
+            };
             let written = self.write(&snapshot).map(|()| snapshot);
             let failed = written.is_err();
             // A run that has ended wants no answer.
@@ -103,9 +130,9 @@ impl<'a> FrameWriter<'a> {
         'a: 'scope,
     {
         let seen = job.seen;
-        let (to_write, snapshots) = sync_channel(SNAPSHOTS);
+        let (to_write, works) = sync_channel(SNAPSHOTS);
         let (done, written) = channel();
-        scope.spawn(move || job.serve(&snapshots, &done));
+        scope.spawn(move || job.serve(&works, &done));
         Self {
             to_write,
             written,
@@ -136,8 +163,14 @@ impl<'a> FrameWriter<'a> {
             return Err(refused);
         }
         // Where nobody listens any more, the reason has come already and is found when it is waited for.
-        let _ = self.to_write.send(snapshot);
+        let _ = self.to_write.send(Work::Frame(snapshot));
         Ok(())
+    }
+
+    /// Writes frames of another body from now on.
+    pub(crate) fn change_body(&mut self, body: &Arc<BodyModel>) {
+        // As in `write`.
+        let _ = self.to_write.send(Work::Body(Arc::clone(body)));
     }
 
     /// Waits until all frames are written; then what was seen in them.

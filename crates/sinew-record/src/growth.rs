@@ -2,11 +2,10 @@
 
 use std::sync::Arc;
 
-use sinew_core::{
-    Contact, Energy, LoadTime, Moment, Ramp, RecordError, Recorder, State, System, Verdict,
-};
+use sinew_core::{Contact, Energy, LoadTime, Moment, Ramp, RecordError, State, System, Verdict};
 use sinew_scene::Simulation;
 use sinew_tools::Tools;
+use sinew_world::Recorder;
 
 use crate::made_energy::{THERMAL, has_stored_energy, remedy};
 
@@ -120,7 +119,9 @@ impl EnergyGrowth {
     }
 }
 
-impl Recorder for EnergyGrowth {
+impl Recorder for EnergyGrowth {}
+
+impl sinew_core::Recorder for EnergyGrowth {
     fn next(&mut self, step: usize) -> Option<usize> {
         let spacing = self.spacing?;
         Some(step.next_multiple_of(spacing).min(self.end.max(step)))

@@ -63,7 +63,6 @@ mod run_end;
 mod run_folder;
 mod seal;
 mod stepping;
-mod stretch;
 mod summary;
 mod surface;
 mod tables;

@@ -1,11 +1,12 @@
 //! The recorder of a run: writes what is due after each step.
 
-use std::cell::RefCell;
+use std::sync::Arc;
 use std::time::Instant;
 
-use sinew_core::{Moment, RecordError, Recorder, StepReport, Verdict};
+use sinew_core::{Moment, RecordError, StepReport, Verdict};
 use sinew_scene::output::OwnedFolder;
-use sinew_scene::{Cutter, Instants, ProbeRows, Schedule, Simulation};
+use sinew_scene::{Instants, ProbeRows, Schedule, Simulation};
+use sinew_world::{BodyChange, Recorder, World};
 
 use crate::balance::Balance;
 use crate::checkpoint::Checkpoint;
@@ -80,9 +81,9 @@ impl Tables {
     pub(crate) fn open(
         folder: &OwnedFolder,
         seals: &Seals,
-        balance: &Balance<'_>,
-        reactions: Option<&Reactions<'_>>,
-        tools: Option<&ToolRows<'_>>,
+        balance: &Balance,
+        reactions: Option<&Reactions>,
+        tools: Option<&ToolRows>,
         simulation: &Simulation,
     ) -> Result<Self, RecordRunError> {
         Ok(Self {
@@ -125,26 +126,24 @@ impl Tables {
 
 /// Writes what is due after each step of a run.
 pub(crate) struct RunRecorder<'a> {
-    pub(crate) simulation: &'a Simulation,
+    pub(crate) simulation: Arc<Simulation>,
     pub(crate) folder: &'a OwnedFolder,
     pub(crate) companion: &'a mut dyn Companion,
-    /// What cuts the body, where something does.
-    pub(crate) cutter: Option<&'a RefCell<Cutter>>,
     pub(crate) schedules: Schedules,
     pub(crate) tables: Tables,
-    pub(crate) probes: ProbeRows<'a>,
-    pub(crate) balance: Balance<'a>,
-    pub(crate) reactions: Option<Reactions<'a>>,
-    pub(crate) tools: Option<ToolRows<'a>>,
-    /// None for an oscillator.
+    pub(crate) probes: ProbeRows,
+    pub(crate) balance: Balance,
+    pub(crate) reactions: Option<Reactions>,
+    pub(crate) tools: Option<ToolRows>,
+    /// `None` for an oscillator.
     pub(crate) frames: Option<FrameWriter<'a>>,
     pub(crate) progress: Progress,
     /// Times (s) of the frames written since it began.
     pub(crate) frame_times: Vec<f64>,
-    /// Whether it leaves checkpoints.
+    /// True if it leaves checkpoints.
     pub(crate) saves: bool,
-    /// Steps that an earlier run had taken.
-    pub(crate) before: usize,
+    /// The reason for which it stopped the run.
+    pub(crate) stop: Option<Stop>,
     /// Steps whose rows of probes have come.
     pub(crate) watched: usize,
     pub(crate) pace: Pace,
@@ -153,8 +152,15 @@ pub(crate) struct RunRecorder<'a> {
     pub(crate) line: String,
     /// Velocity (m/s) of the moment that is being written.
     pub(crate) v: Vec<f64>,
-    /// Work up to the last moment that was recorded.
-    pub(crate) work: StepReport,
+}
+
+/// The reason for which a recorder stops a run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Stop {
+    /// A checkpoint is due, after which the run continues.
+    Checkpoint,
+    /// The user interrupted it.
+    Interrupted,
 }
 
 impl RunRecorder<'_> {
@@ -216,15 +222,16 @@ impl RunRecorder<'_> {
         self.pace.look(step);
         let last = step == self.schedules.steps;
         self.companion.progress(step, moment.state.t());
-        let stop = self.companion.is_interrupted() && !last;
         let due = self.saved.elapsed().as_secs_f64() >= self.simulation.scene().output().checkpoint;
-        if self.saves && (stop || (due && !last)) {
-            self.save(moment)?;
-        }
-        Ok(if stop {
-            Verdict::Stop
-        } else {
-            Verdict::Continue
+        self.stop = match (self.companion.is_interrupted(), self.saves && due) {
+            _ if last => None,
+            (true, _) => Some(Stop::Interrupted),
+            (false, true) => Some(Stop::Checkpoint),
+            (false, false) => None,
+        };
+        Ok(match self.stop {
+            Some(_) => Verdict::Stop,
+            None => Verdict::Continue,
         })
     }
 
@@ -269,16 +276,40 @@ impl RunRecorder<'_> {
         Ok((self.progress.clone(), largest))
     }
 
-    /// Leaves a checkpoint.
-    fn save(&mut self, moment: &Moment<'_>) -> Result<(), RecordRunError> {
+    /// Leaves a checkpoint of a world that it stopped, after this work.
+    pub(crate) fn save(&mut self, world: &World, work: StepReport) -> Result<(), RecordRunError> {
         let (mut progress, largest) = self.settle()?;
         let row = self.balance.last.clone().unwrap_or_default();
-        progress.work.add(moment.work);
+        progress.work.add(work);
         // What the checkpoint counts on is there before it is.
         self.folder.secure()?;
-        let moving = (self.simulation, self.cutter, moment.state);
-        Checkpoint::write(self.folder, &progress, moving, &row, &largest)?;
+        Checkpoint::write(self.folder, &progress, world, &row, &largest)?;
         self.saved = Instant::now();
+        Ok(())
+    }
+
+    fn change_body(&mut self, change: &BodyChange<'_>) -> Result<(), RecordRunError> {
+        let simulation = change.simulation;
+        match change.cut {
+            None => self.balance.change_loads(simulation),
+            Some(cut) => {
+                self.close_balance(&Moment {
+                    system: Arc::clone(&self.simulation).system(),
+                    inputs: change.inputs,
+                    state: &cut.before,
+                    step: change.steps,
+                    work: change.work,
+                })?;
+                self.balance.change_body(simulation, cut)?;
+                self.probes = ProbeRows::new(simulation);
+                self.reactions = Reactions::of(simulation)?;
+                self.tools = ToolRows::of(simulation);
+                if let (Some(frames), Some(body)) = (&mut self.frames, simulation.model().body()) {
+                    frames.change_body(body);
+                }
+            }
+        }
+        self.simulation = Arc::clone(simulation);
         Ok(())
     }
 }
@@ -290,9 +321,8 @@ fn failed(t: f64, error: RecordRunError) -> RecordError {
     }
 }
 
-impl Recorder for RunRecorder<'_> {
+impl sinew_core::Recorder for RunRecorder<'_> {
     fn next(&mut self, step: usize) -> Option<usize> {
-        let step = self.before + step;
         let fields = self.schedules.fields.and_then(|fields| fields.next(step));
         let energy = match self.balance.looks_at_every_step() {
             true => Some(step),
@@ -304,16 +334,14 @@ impl Recorder for RunRecorder<'_> {
             false => None,
         };
         let look = self.pace.next().clamp(step, end.max(step));
-        let next = [fields, energy, probes, Some(look)]
+        [fields, energy, probes, Some(look)]
             .into_iter()
             .flatten()
-            .min()?;
-        next.checked_sub(self.before)
+            .min()
     }
 
     fn record(&mut self, moment: &Moment<'_>) -> Result<Verdict, RecordError> {
-        self.work = moment.work;
-        self.write(self.before + moment.step, moment)
+        self.write(moment.step, moment)
             .map_err(|error| failed(moment.state.t(), error))
     }
 
@@ -330,5 +358,12 @@ impl Recorder for RunRecorder<'_> {
             written.map_err(|error| failed(t, error))?;
         }
         Ok(Verdict::Continue)
+    }
+}
+
+impl Recorder for RunRecorder<'_> {
+    fn body_changed(&mut self, change: &BodyChange<'_>) -> Result<(), RecordError> {
+        let t = change.cut.map_or(0.0, |cut| cut.before.t());
+        self.change_body(change).map_err(|error| failed(t, error))
     }
 }

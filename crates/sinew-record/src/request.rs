@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 use sinew_scene::output::OwnedFolder;
 use sinew_scene::{Scene, SceneSource};
-use sinew_session::InputFile;
+use sinew_world::InputFile;
 
 use crate::error::RecordRunError;
 

@@ -36,7 +36,7 @@ pub struct RunEnd {
     pub replaced: Replaced,
 }
 
-/// How a run ended.
+/// End of a run.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Ended {
     /// All steps taken.
@@ -60,4 +60,15 @@ pub enum Ended {
         /// Time (s).
         t: f64,
     },
+}
+
+impl Ended {
+    /// The end of a world's motion at a time (s).
+    pub(crate) fn of(ended: sinew_world::Ended, t: f64) -> Self {
+        match ended {
+            sinew_world::Ended::Finished => Self::Finished,
+            sinew_world::Ended::Stopped => Self::Interrupted { t },
+            sinew_world::Ended::Diverged { t, place } => Self::Diverged { t, place },
+        }
+    }
 }

@@ -1,35 +1,31 @@
 //! The folder of a run.
 
-use std::cell::RefCell;
 use std::path::Path;
-use std::sync::Mutex;
+use std::sync::{Arc, Mutex};
 use std::thread;
 use std::time::Instant;
 
-use sinew_core::{State, StepReport};
-use sinew_integrators::Stepper;
-use sinew_mesh::BoundarySurface;
+use sinew_core::{RecordError, SimulateError, StepError, StepReport};
 use sinew_scene::output::{OwnedFolder, Replaced, Tenant};
 use sinew_scene::{Cutter, OverlapWatch, ProbeRows, Scene, Simulation};
+use sinew_world::{AdvanceError, Shown, World, WorldStepError};
 
-use crate::balance::{Balance, LastRow};
+use crate::balance::Balance;
 use crate::checkpoint::{self, Checkpoint};
 use crate::companion::Companion;
 use crate::error::RecordRunError;
-use crate::fields::Fields;
 use crate::frame_writer::{FrameJob, FrameWriter, SeenInFrames};
 use crate::frames;
 use crate::pace::Pace;
 use crate::progress::Progress;
-use crate::recorder::{RunRecorder, Schedules, Tables};
+use crate::recorder::{RunRecorder, Schedules, Stop, Tables};
 use crate::report;
 use crate::request::{self, Record, Request};
 use crate::run_end::{Ended, RunEnd};
 use crate::stepping::Stepping;
-use crate::stretch;
 use crate::summary::{self, CutRecord, Summary};
 use crate::surface;
-use crate::tables::{self, HeldPart, Reactions};
+use crate::tables::{self, Reactions};
 use crate::tool_rows::{self, ToolRows};
 
 /// The kind of result, in manifests and messages.
@@ -48,47 +44,36 @@ pub struct RunFolder {
     record: Record,
 }
 
-/// What a recorder begins with.
-pub(crate) struct Beginning<'a> {
+/// The present place of a motion that is to be recorded.
+pub(crate) struct Beginning {
     pub(crate) schedules: Schedules,
-    pub(crate) balance: Balance<'a>,
+    pub(crate) balance: Balance,
     pub(crate) progress: Progress,
     /// Displacements (m) of the surface where it was largest so far.
     pub(crate) largest: Vec<f64>,
+    /// True if the present state was recorded by an earlier process.
     pub(crate) resumed: bool,
     pub(crate) saves: bool,
-    /// What cuts the body, where something does.
-    pub(crate) cutter: Option<&'a RefCell<Cutter>>,
 }
 
-/// What a balance of energy goes on from.
-enum From {
-    Beginning,
-    /// The last row before a checkpoint.
-    Row(LastRow),
-    /// A change of the body that brought in this energy (J).
-    Change(f64),
-}
-
-/// What a recorder leaves.
+/// Results of a recorder.
 pub(crate) struct Recorded {
     pub(crate) progress: Progress,
     largest: Vec<f64>,
-    parts: Vec<HeldPart>,
-    surface: Option<BoundarySurface>,
+    /// Steps and work since the recorder began.
+    pub(crate) steps: usize,
+    pub(crate) work: StepReport,
+    pub(crate) ended: Ended,
     /// Times (s) of the frames that it wrote.
     pub(crate) times: Vec<f64>,
 }
 
 /// The end of a run that is recorded.
 pub(crate) struct End<'a> {
-    /// Steps of an earlier process, and of this one.
-    pub(crate) steps: (usize, usize),
+    pub(crate) world: &'a World,
+    /// Steps of an earlier process.
+    pub(crate) before: usize,
     pub(crate) stepping: Stepping,
-    pub(crate) work: StepReport,
-    pub(crate) ended: Ended,
-    pub(crate) state: &'a State,
-    pub(crate) integrator: &'a dyn Stepper,
     pub(crate) remarks: Vec<String>,
     /// A warning where the step is too long for the body as it is in the end.
     pub(crate) outrun: Option<String>,
@@ -253,117 +238,91 @@ impl RunFolder {
         self.record.threads.as_deref()
     }
 
-    /// Runs the scene, or goes on from the last checkpoint, and completes the folder.
+    /// Runs a world that follows its scene, or continues from the last checkpoint, and completes the folder.
     ///
     /// # Errors
     /// [`RecordRunError`]. What was written until then stays, with the last checkpoint.
     pub fn run(
         &self,
-        simulation: &Simulation,
-        integrator: &mut dyn Stepper,
+        world: &mut World,
         companion: &mut dyn Companion,
     ) -> Result<RunEnd, RecordRunError> {
         let begun = Instant::now();
-        let cutter = simulation.cutter()?.map(RefCell::new);
-        let cutter = cutter.as_ref();
-        let mass = cutter.map(|cutter| cutter.borrow().mass());
-        let checkpoint = Checkpoint::read(&self.folder, simulation, cutter)?;
+        let mass = world.cutter().map(Cutter::mass);
+        let checkpoint = Checkpoint::restore(&self.folder, world)?;
         self.folder.remove(summary::NAME)?;
         let resumed = checkpoint.is_some();
-        let schedules = Schedules::of(simulation);
-        let mut state = simulation.initial_state().clone();
-        let mut progress = Progress::default();
-        // The scene on the body as cuts left it.
-        let mut cut: Option<Simulation> = None;
-        let (mut largest, mut from, mut steps) = (Vec::new(), From::Beginning, 0);
+        let scene = Arc::clone(world.simulation());
+        let schedules = Schedules::of(&scene);
+        world.set_up()?;
+        let mut balance = Balance::new(&scene, Some(world.integrator()), schedules.energy);
+        let (mut progress, mut largest) = (Progress::default(), Vec::new());
         if let Some(checkpoint) = checkpoint {
-            state = checkpoint.state;
+            balance = balance.resumed(checkpoint.progress.energy, checkpoint.row)?;
             progress = checkpoint.progress;
-            cut = checkpoint.cut;
             largest = checkpoint.largest;
-            from = From::Row(checkpoint.row);
         }
-        let begins_on = cut.as_ref().unwrap_or(simulation);
-        begins_on.set_up(integrator)?;
-        let (before, begins_at) = (progress.steps, state.t());
-        let mut run = simulation.run();
-        run.steps -= before.min(run.steps);
-        let (last, recorded) = loop {
-            let now = cut.as_ref().unwrap_or(simulation);
-            let balance = Balance::new(now, Some(integrator), schedules.energy);
-            let is_seen = !matches!(from, From::Beginning);
-            let balance = match std::mem::replace(&mut from, From::Beginning) {
-                From::Beginning => balance,
-                From::Row(row) => balance.resumed(progress.energy, row)?,
-                From::Change(energy) => balance.after_change(progress.energy, &state, energy)?,
-            };
-            let beginning = Beginning {
-                schedules,
-                balance,
-                progress: progress.clone(),
-                largest: std::mem::take(&mut largest),
-                resumed: is_seen,
-                saves: true,
-                cutter,
-            };
-            let (mut stretch, recorded) = self.record(now, beginning, companion, |recorder| {
-                stretch::take(
-                    now,
-                    cutter,
-                    integrator,
-                    &mut state,
-                    &run,
-                    (recorder, is_seen),
-                )
-            })?;
-            run.steps -= stretch.steps.min(run.steps);
-            steps += stretch.steps;
-            let Some(change) = stretch.change.take() else {
-                break (stretch, recorded);
-            };
-            progress = recorded.progress;
-            progress.steps = before + steps;
-            progress.work.add(stretch.work);
-            from = From::Change(change.energy);
-            cut = Some(change.simulation);
+        let (before, begins_at) = (progress.steps, world.t());
+        let beginning = Beginning {
+            schedules,
+            balance,
+            progress,
+            largest,
+            resumed,
+            saves: true,
         };
-        let simulation = cut.as_ref().unwrap_or(simulation);
-        let times = frame_times(&schedules, recorded.progress.frames, simulation.dt());
-        let mut remarks = integrator.remarks();
+        let end = scene.run().steps;
+        let recorded = self.record(world, beginning, companion, |world, shown| {
+            loop {
+                let left = end.saturating_sub(shown.steps());
+                let ended = match world.advance_shown(left, shown) {
+                    Ok(ended) => ended,
+                    Err(error) => return refusal(error, world),
+                };
+                let stop = match ended {
+                    sinew_world::Ended::Stopped => shown.recorder().stop,
+                    _ => None,
+                };
+                if stop.is_some() {
+                    let work = shown.work();
+                    shown.recorder().save(world, work)?;
+                }
+                if stop != Some(Stop::Checkpoint) {
+                    return Ok(Ended::of(ended, world.t()));
+                }
+            }
+        })?;
+        let times = frame_times(&schedules, recorded.progress.frames, scene.dt());
+        let mut remarks = world.integrator().remarks();
         if resumed {
             // The method has seen no more, and may have counted.
             for remark in &mut remarks {
                 *remark = format!("since the checkpoint at t = {begins_at} s: {remark}");
             }
         }
-        let outrun = simulation.outrun(integrator, &state);
+        let simulation = world.simulation();
         let end = End {
-            steps: (before, steps),
+            world,
+            before,
             stepping: Stepping::of_scene(simulation),
-            work: last.work,
-            ended: last.ended,
-            state: &state,
-            integrator,
             remarks,
-            outrun,
+            outrun: simulation.outrun(world.integrator(), world.state()),
             times: &times,
             resumed,
             begun,
-            cuts: cutter
-                .zip(mass)
-                .map(|(cutter, mass)| CutRecord::of(&cutter.borrow(), mass)),
+            cuts: cut_record(world, mass),
         };
-        self.complete(simulation, &schedules, recorded, end)
+        self.complete(&schedules, recorded, end)
     }
 
-    /// Has a run recorded, which `drive` takes.
-    pub(crate) fn record<R>(
+    /// Records the motion of a world while `drive` advances it.
+    pub(crate) fn record<W: AsRef<World>>(
         &self,
-        simulation: &Simulation,
-        beginning: Beginning<'_>,
+        world: &mut W,
+        beginning: Beginning,
         companion: &mut dyn Companion,
-        drive: impl FnOnce(&mut RunRecorder<'_>) -> Result<R, RecordRunError>,
-    ) -> Result<(R, Recorded), RecordRunError> {
+        drive: impl FnOnce(&mut W, &mut Shown<'_, RunRecorder<'_>>) -> Result<Ended, RecordRunError>,
+    ) -> Result<Recorded, RecordRunError> {
         let Beginning {
             schedules,
             balance,
@@ -371,50 +330,37 @@ impl RunFolder {
             largest,
             resumed,
             saves,
-            cutter,
         } = beginning;
-        let reactions = Reactions::of(simulation)?;
-        let parts = reactions
-            .as_ref()
-            .map_or_else(Vec::new, |reactions| reactions.parts.clone());
-        let tools = ToolRows::of(simulation);
+        let simulation = Arc::clone(world.as_ref().simulation());
+        let reactions = Reactions::of(&simulation)?;
+        let tools = ToolRows::of(&simulation);
         let tables = Tables::open(
             &self.folder,
             &progress.seals,
             &balance,
             reactions.as_ref(),
             tools.as_ref(),
-            simulation,
+            &simulation,
         )?;
-        let body = simulation.model().body();
-        let surface = body.map(|body| body.mesh.boundary_surface());
         let seen = Mutex::new(SeenInFrames {
             seen: progress.seen.clone(),
             largest,
             seals: progress.seals.frames.clone(),
         });
         let before = progress.steps;
-        let (driven, progress, largest, times) = thread::scope(|scope| {
-            let frames = body.zip(surface.as_ref()).map(|(body, surface)| {
-                let job = FrameJob {
-                    folder: &self.folder,
-                    mesh: &body.mesh,
-                    surface,
-                    fields: Fields::new(&body.model, simulation.dt(), *simulation.scene().output()),
-                    is_cut: body.cut.is_some(),
-                    overlaps: OverlapWatch::new(body).with_surface(surface),
-                    seen: &seen,
-                };
+        thread::scope(|scope| {
+            let frames = simulation.model().body().map(|body| {
+                let settings = (simulation.dt(), *simulation.scene().output());
+                let job = FrameJob::new(&self.folder, body, settings, &seen);
                 FrameWriter::start(scope, job)
             });
             let mut recorder = RunRecorder {
-                simulation,
                 folder: &self.folder,
                 companion,
-                cutter,
                 schedules,
                 tables,
-                probes: ProbeRows::new(simulation),
+                probes: ProbeRows::new(&simulation),
+                simulation,
                 balance,
                 reactions,
                 tools,
@@ -422,32 +368,34 @@ impl RunFolder {
                 progress,
                 frame_times: Vec::new(),
                 saves,
-                before,
+                stop: None,
                 watched: before + usize::from(resumed),
                 pace: Pace::new(before),
                 saved: Instant::now(),
                 line: String::new(),
                 v: Vec::new(),
-                work: StepReport::default(),
             };
-            let driven = drive(&mut recorder)?;
+            let mut shown = match resumed {
+                true => world.as_ref().show_again(&mut recorder, before),
+                false => world.as_ref().show(&mut recorder),
+            };
+            let ended = drive(world, &mut shown)?;
+            let (steps, work) = (shown.steps() - before, shown.work());
             let (progress, largest) = recorder.settle()?;
-            Ok::<_, RecordRunError>((driven, progress, largest, recorder.frame_times))
-        })?;
-        let recorded = Recorded {
-            progress,
-            largest,
-            parts,
-            surface,
-            times,
-        };
-        Ok((driven, recorded))
+            Ok(Recorded {
+                progress,
+                largest,
+                steps,
+                work,
+                ended,
+                times: recorder.frame_times,
+            })
+        })
     }
 
     /// Writes what stands in the folder of a run that has come to an end.
     pub(crate) fn complete(
         &self,
-        simulation: &Simulation,
         schedules: &Schedules,
         recorded: Recorded,
         end: End<'_>,
@@ -455,17 +403,15 @@ impl RunFolder {
         let Recorded {
             mut progress,
             largest,
-            parts,
-            surface,
-            ..
-        } = recorded;
-        let End {
-            steps: (before, steps),
-            stepping,
+            steps,
             work,
             ended,
-            state,
-            integrator,
+            times: _,
+        } = recorded;
+        let End {
+            world,
+            before,
+            stepping,
             remarks,
             outrun,
             times,
@@ -473,12 +419,16 @@ impl RunFolder {
             begun,
             cuts,
         } = end;
+        let (simulation, state) = (&**world.simulation(), world.state());
         let system = simulation.system();
         progress.work.add(work);
-        if let (Some(surface), Some(body)) = (&surface, simulation.model().body()) {
+        let surface = simulation.model().body().map(|body| body.surface());
+        if let (Some(surface), Some(body)) = (surface, simulation.model().body()) {
             surface::write(surface, &self.folder, &body.mesh)?;
             frames::write_series(&self.folder, times)?;
         }
+        let reactions = Reactions::of(simulation)?;
+        let parts = reactions.map_or_else(Vec::new, |reactions| reactions.parts);
         if let Some(body) = simulation.model().body()
             && matches!(ended, Ended::Refused { .. } | Ended::Interrupted { .. })
         {
@@ -508,7 +458,7 @@ impl RunFolder {
             progress: &progress,
             schedules,
             parts: &parts,
-            integrator,
+            integrator: world.integrator(),
             remarks: &remarks,
             wall,
             resumed,
@@ -518,7 +468,12 @@ impl RunFolder {
         for (frame, seal) in progress.seals.frames.iter().enumerate() {
             seal.check_length(&self.folder, &frames::frame_name(frame))?;
         }
-        let page = report::page(&summary, surface.as_ref(), &largest, &self.folder)?;
+        let page = report::page(
+            &summary,
+            surface.map(|surface| &**surface),
+            &largest,
+            &self.folder,
+        )?;
         self.folder.write(report::NAME, page.as_bytes())?;
         self.folder.secure()?;
         self.folder
@@ -555,6 +510,48 @@ impl RunFolder {
     /// The open folder.
     pub(crate) fn folder(&self) -> &OwnedFolder {
         &self.folder
+    }
+}
+
+/// Record of what was cut since the body had this mass (kg), if it may be cut.
+pub(crate) fn cut_record(world: &World, mass: Option<f64>) -> Option<CutRecord> {
+    let cuts = world.cutter().zip(mass);
+    cuts.map(|(cutter, mass)| CutRecord::of(cutter, mass))
+}
+
+/// End of a motion by a refusal, of a law or of a method that found no equilibrium.
+///
+/// # Errors
+/// Any other error, as it is.
+fn refusal(error: AdvanceError, world: &World) -> Result<Ended, RecordRunError> {
+    let refused = |t: f64, reason: String| Ok(Ended::Refused { t, reason });
+    let is_linear = world.simulation().system().as_linear().is_some();
+    match error {
+        AdvanceError::Step(WorldStepError::Cutting(source)) => {
+            refused(world.t(), source.to_string())
+        }
+        AdvanceError::Step(WorldStepError::Step(error)) => match &error {
+            StepError::Inaccurate { t, .. } if !is_linear => refused(*t, error.to_string()),
+            StepError::NotConverged { t, .. } => refused(*t, error.to_string()),
+            StepError::Refused { t, source } => refused(*t, source.to_string()),
+            _ => Err(SimulateError::Step(error).into()),
+        },
+        AdvanceError::Step(error) => Err(error.into()),
+        AdvanceError::Record(error) => {
+            let t = error.t;
+            match cause(error) {
+                RecordRunError::State(refusal) => refused(t, refusal.to_string()),
+                other => Err(other),
+            }
+        }
+    }
+}
+
+/// The cause of a recorder's failure.
+pub(crate) fn cause(RecordError { t, source }: RecordError) -> RecordRunError {
+    match source.downcast::<RecordRunError>() {
+        Ok(cause) => *cause,
+        Err(source) => SimulateError::Record(RecordError { t, source }).into(),
     }
 }
 

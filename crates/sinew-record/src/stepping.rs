@@ -3,7 +3,7 @@
 use serde_json::Value;
 use sinew_core::Options;
 use sinew_scene::{Simulation, options_json};
-use sinew_session::Course;
+use sinew_world::Course;
 
 /// What is written for the name of a method where there were several.
 const SEVERAL: &str = "several";

@@ -1,10 +1,11 @@
 //! Rows of probes, energies and reactions.
 
 use std::fmt::Write;
+use std::sync::Arc;
 
 use sinew_core::{LoadTime, Moment};
 use sinew_fem::On;
-use sinew_scene::{ProbeRows, ReactionOf, Simulation};
+use sinew_scene::{BodyModel, ProbeRows, ReactionOf, Simulation};
 
 use crate::balance::{Balance, Energies};
 use crate::error::RecordRunError;
@@ -16,7 +17,7 @@ pub(crate) const REACTIONS: &str = "reactions.csv";
 /// A line that says where each probe is, and the line of column names.
 pub(crate) fn probes_head(simulation: &Simulation) -> String {
     let mut text = String::new();
-    for probe in simulation.probes() {
+    for probe in simulation.probes().iter() {
         let place = match (&probe.node, simulation.model().body()) {
             (Some(node), Some(body)) => {
                 let [x, y, z] = body.mesh.points[node.index as usize];
@@ -37,7 +38,7 @@ pub(crate) fn probes_head(simulation: &Simulation) -> String {
 
 /// The line of column names; the work of tools has one where there are tools, the energy of cuts where there may be cuts, what the method takes where it is known,
 /// and what memory takes is part of the remainder.
-pub(crate) fn energy_head(balance: &Balance<'_>) -> String {
+pub(crate) fn energy_head(balance: &Balance) -> String {
     let column = |is_there: bool, name: &'static str| if is_there { name } else { "" };
     let tools = column(balance.has_tools(), "work_of_tools_J,");
     let cuts = column(balance.has_cuts(), "of_cuts_J,");
@@ -81,16 +82,16 @@ pub(crate) struct HeldPart {
 }
 
 /// Forces and moments of supports.
-pub(crate) struct Reactions<'a> {
-    simulation: &'a Simulation,
+pub(crate) struct Reactions {
+    body: Arc<BodyModel>,
     pub(crate) parts: Vec<HeldPart>,
     forces: Vec<[f64; 3]>,
     u: Vec<[f64; 3]>,
 }
 
-impl<'a> Reactions<'a> {
+impl Reactions {
     /// `None` where nothing is held or moved.
-    pub(crate) fn of(simulation: &'a Simulation) -> Result<Option<Self>, RecordRunError> {
+    pub(crate) fn of(simulation: &Simulation) -> Result<Option<Self>, RecordRunError> {
         let Some(body) = simulation.model().body() else {
             return Ok(None);
         };
@@ -106,7 +107,7 @@ impl<'a> Reactions<'a> {
             .collect();
         let nodes = body.mesh.points.len();
         Ok((!parts.is_empty()).then(|| Self {
-            simulation,
+            body: Arc::clone(body),
             parts,
             forces: vec![[0.0; 3]; nodes],
             u: vec![[0.0; 3]; nodes],
@@ -140,9 +141,7 @@ impl<'a> Reactions<'a> {
         moment: &Moment<'_>,
         [before, after]: [f64; 2],
     ) -> Result<(), RecordRunError> {
-        let Some(body) = self.simulation.model().body() else {
-            return Ok(());
-        };
+        let body = &self.body;
         let (t, u) = (moment.state.t(), &moment.state.u);
         let when = LoadTime::around(t, before, after).under(moment.inputs);
         body.model

@@ -1,6 +1,7 @@
 //! Rows of tools: where they are, and what holds them back.
 
 use std::fmt::Write;
+use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 use sinew_core::Moment;
@@ -44,14 +45,14 @@ fn impulses(report: &ToolReport) -> [[f64; 3]; 2] {
 }
 
 /// Positions, forces and contacts of all tools.
-pub(crate) struct ToolRows<'a> {
-    tools: &'a Tools,
+pub(crate) struct ToolRows {
+    tools: Arc<Tools>,
 }
 
-impl<'a> ToolRows<'a> {
+impl ToolRows {
     /// `None` where there is no tool.
-    pub(crate) fn of(simulation: &'a Simulation) -> Option<Self> {
-        let tools = simulation.model().tools()?;
+    pub(crate) fn of(simulation: &Simulation) -> Option<Self> {
+        let tools = Arc::clone(simulation.model().tools()?);
         Some(Self { tools })
     }
 

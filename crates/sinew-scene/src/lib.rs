@@ -68,10 +68,9 @@ pub use scene::{
 };
 pub use schedule::Schedule;
 pub use simulation::{
-    BodyChange, BodyModel, CutFrom, CutTotals, Cutter, CuttingError, DrivenLoadError, Footprint,
-    HeldPlace, LoadRemedy, MeshedScene, MotionTableError, MotionTableFault, NearestNode, Probe,
-    ProbeNode, Reaction, ReactionError, ReactionOf, RefinementError, RefusedLoad, RoughStrokes,
-    SceneModel, Seen, SelectedPart, Simulation, Stretch, StretchError, ToolFault, UnresolvedLoad,
-    Warning, WarningKind,
+    BodyModel, CutFrom, CutTotals, Cutter, CuttingError, DrivenLoadError, Footprint, HeldPlace,
+    LoadRemedy, MeshedScene, MotionTableError, MotionTableFault, NearestNode, Probe, ProbeNode,
+    Reaction, ReactionError, ReactionOf, RefinementError, RefusedLoad, RoughStrokes, SceneModel,
+    SelectedPart, Simulation, ToolFault, UnresolvedLoad, Warning, WarningKind,
 };
 pub use source::SceneSource;

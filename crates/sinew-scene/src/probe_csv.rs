@@ -9,6 +9,7 @@ use sinew_core::{Moment, RecordError, Recorder, Verdict};
 use crate::output::{Delivery, Output, OutputError};
 use crate::probe_rows::{BEGIN, ProbeRows, is_column};
 use crate::schedule::Schedule;
+use crate::simulation::Simulation;
 
 /// Writes what probes write down after the steps of a [`Schedule`], in the columns of [`ProbeRows`]. Numbers are written so that reading
 /// them gives the same bits.
@@ -17,22 +18,22 @@ use crate::schedule::Schedule;
 /// always complete; dropped before that, it leaves nothing behind. Where the output is a pipe and its
 /// reader closes it, the run is stopped.
 #[derive(Debug)]
-pub struct ProbeCsv<'a> {
-    rows: ProbeRows<'a>,
+pub struct ProbeCsv {
+    rows: ProbeRows,
     schedule: Schedule,
     /// Steps whose watched displacements have come, the initial state among them.
     watched: usize,
     output: Output,
 }
 
-impl<'a> ProbeCsv<'a> {
+impl ProbeCsv {
     /// Starts the output with the row of column names.
     ///
     /// # Errors
     /// [`OutputError::Failed`].
     pub fn new(
         mut output: Output,
-        rows: ProbeRows<'a>,
+        rows: ProbeRows,
         schedule: Schedule,
     ) -> Result<Self, OutputError> {
         match writeln!(output, "{}", rows.columns().join(",")) {
@@ -80,27 +81,9 @@ impl<'a> ProbeCsv<'a> {
         Ok(rows > 0)
     }
 
-    /// Goes on with the rows of another body, whose probes are the same.
-    #[must_use]
-    pub fn with_rows<'b>(self, rows: ProbeRows<'b>) -> ProbeCsv<'b> {
-        let Self {
-            schedule,
-            watched,
-            output,
-            ..
-        } = self;
-        ProbeCsv {
-            rows,
-            schedule,
-            watched,
-            output,
-        }
-    }
-
-    /// Its output without its rows, from which [`ProbeCsv::with_rows`] goes on.
-    #[must_use]
-    pub fn without_rows(self) -> ProbeCsv<'static> {
-        self.with_rows(ProbeRows::of(&[], None))
+    /// Continues with the rows of another body, whose probes are the same.
+    pub fn change_body(&mut self, simulation: &Simulation) {
+        self.rows = ProbeRows::new(simulation);
     }
 
     /// Completes the output; see [`Output::finish`].
@@ -124,7 +107,7 @@ fn write(output: &mut Output, t: f64, row: &str) -> Result<Verdict, RecordError>
     }
 }
 
-impl Recorder for ProbeCsv<'_> {
+impl Recorder for ProbeCsv {
     fn next(&mut self, step: usize) -> Option<usize> {
         let next = self.schedule.next(step);
         next.filter(|_| self.rows.need_moments())
@@ -166,9 +149,14 @@ mod tests {
     use crate::scene::Quantity;
     use crate::simulation::{Probe, ProbeNode};
 
-    fn csv<'a>(path: &Path, probes: &'a [Probe]) -> ProbeCsv<'a> {
+    fn csv(path: &Path, probes: &[Probe]) -> ProbeCsv {
         let output = Destination::new(path, &[]).unwrap().open().unwrap();
-        ProbeCsv::new(output, ProbeRows::of(probes, None), Schedule::at_most(3, 3)).unwrap()
+        ProbeCsv::new(
+            output,
+            ProbeRows::of(probes.into(), None),
+            Schedule::at_most(3, 3),
+        )
+        .unwrap()
     }
 
     fn probes() -> Vec<Probe> {

@@ -1,12 +1,13 @@
 //! Rows of a table of probes: the time, then what each probe writes down.
 
 use std::fmt::Write;
+use std::sync::Arc;
 
 use sinew_core::{EvaluationError, Moment};
-use sinew_fem::{FieldError, Model, stress};
+use sinew_fem::{FieldError, stress};
 
 use crate::scene::Quantity;
-use crate::simulation::{Probe, ProbeNode, Simulation};
+use crate::simulation::{BodyModel, Probe, ProbeNode, Simulation};
 
 /// The first column's name: the time.
 pub(crate) const BEGIN: &str = "t_s";
@@ -47,27 +48,27 @@ pub enum ProbeRowError {
 /// Rows of the probes of a simulation. Where all of them write displacements down, a row takes no more than the
 /// degrees of freedom that are [watched](ProbeRows::watched), so that a method can take many steps at once.
 #[derive(Debug, Clone)]
-pub struct ProbeRows<'a> {
-    probes: &'a [Probe],
+pub struct ProbeRows {
+    probes: Arc<[Probe]>,
     /// The body; `None` for an oscillator.
-    model: Option<&'a Model>,
+    body: Option<Arc<BodyModel>>,
     row: String,
     /// Velocity (m/s) of the moment that is written.
     v: Vec<f64>,
 }
 
-impl<'a> ProbeRows<'a> {
+impl ProbeRows {
     /// The rows of a simulation's probes.
     #[must_use]
-    pub fn new(simulation: &'a Simulation) -> Self {
-        let model = simulation.model().body().map(|body| &body.model);
-        Self::of(simulation.probes(), model)
+    pub fn new(simulation: &Simulation) -> Self {
+        let body = simulation.model().body().map(Arc::clone);
+        Self::of(Arc::clone(simulation.probes()), body)
     }
 
-    pub(crate) fn of(probes: &'a [Probe], model: Option<&'a Model>) -> Self {
+    pub(crate) fn of(probes: Arc<[Probe]>, body: Option<Arc<BodyModel>>) -> Self {
         Self {
             probes,
-            model,
+            body,
             row: String::new(),
             v: Vec::new(),
         }
@@ -79,7 +80,7 @@ impl<'a> ProbeRows<'a> {
     #[must_use]
     pub fn columns(&self) -> Vec<String> {
         let mut columns = vec![BEGIN.to_owned()];
-        for probe in self.probes {
+        for probe in self.probes.iter() {
             let name = &probe.name;
             let (letter, unit) = match probe.quantity {
                 Quantity::Displacement => ("u", "m"),
@@ -127,7 +128,7 @@ impl<'a> ProbeRows<'a> {
     pub fn of_watched(&mut self, t: f64, moving: &[f64]) -> &str {
         self.begin(t);
         let mut rest = moving;
-        for probe in self.probes {
+        for probe in self.probes.iter() {
             let of_node = |node: &ProbeNode| node.dofs.iter().flatten().count();
             let own: usize = probe.nodes.iter().map(of_node).sum();
             let (own, others) = rest.split_at_checked(own).unwrap_or((rest, &[]));
@@ -161,7 +162,7 @@ impl<'a> ProbeRows<'a> {
         self.begin(t);
         let Self {
             probes,
-            model,
+            body,
             row,
             v,
         } = self;
@@ -170,8 +171,9 @@ impl<'a> ProbeRows<'a> {
             v.resize(u.len(), 0.0);
             moment.velocity(v)?;
         }
-        for probe in *probes {
-            match (probe.quantity, *model) {
+        let model = body.as_ref().map(|body| &body.model);
+        for probe in probes.iter() {
+            match (probe.quantity, model) {
                 (Quantity::Displacement, _) | (_, None) => {
                     probe.displacement(t, u).for_each(|value| push(row, value));
                 }

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use sinew_record::{Request, RunFolder};
 use sinew_scene::{Scene, SceneSource};
+use sinew_world::World;
 
 use crate::failure::Failure;
 
@@ -19,9 +20,10 @@ const SCENE: &str = "[mesh]\ncube = { cells = 4, edge = 0.1 }\n[[region]]\ndensi
 pub(super) fn write(path: &Path) -> Result<(), Failure> {
     let scene = Scene::parse(SceneSource::new("compare.toml", SCENE)).map_err(Failure::chore)?;
     let simulation = scene.build().map_err(Failure::chore)?;
-    let mut integrator = simulation.integrator().map_err(Failure::chore)?;
+    let integrator = simulation.integrator().map_err(Failure::chore)?;
     let folder = RunFolder::create(path, &simulation, &Request::default());
     let folder = folder.map_err(Failure::chore)?;
-    let end = folder.run(&simulation, &mut *integrator, &mut ());
+    let mut world = World::following(simulation, integrator).map_err(Failure::chore)?;
+    let end = folder.run(&mut world, &mut ());
     end.map(|_| ()).map_err(Failure::chore)
 }

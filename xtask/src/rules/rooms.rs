@@ -44,7 +44,7 @@ pub(super) const ROOMS: &[(&str, &[&str])] = &[
         &["sinew-core", "sinew-integrators", "sinew-scene"],
     ),
     (
-        "sinew-session",
+        "sinew-world",
         &[
             "sinew-core",
             "sinew-integrators",
@@ -61,7 +61,7 @@ pub(super) const ROOMS: &[(&str, &[&str])] = &[
             "sinew-fem",
             "sinew-integrators",
             "sinew-scene",
-            "sinew-session",
+            "sinew-world",
             "sinew-tools",
         ],
     ),
@@ -74,7 +74,7 @@ pub(super) const ROOMS: &[(&str, &[&str])] = &[
             "sinew-tools",
             "sinew-integrators",
             "sinew-scene",
-            "sinew-session",
+            "sinew-world",
         ],
     ),
     (
@@ -110,7 +110,7 @@ pub(super) const ROOMS: &[(&str, &[&str])] = &[
             "sinew-integrators",
             "sinew-scene",
             "sinew-measure",
-            "sinew-session",
+            "sinew-world",
             "sinew-record",
             "sinew-live",
             "sinew-draw",

@@ -5,8 +5,8 @@ use std::cell::RefCell;
 use sinew_core::{
     Batch, EnergyBehaviour, Equations, EvaluationError, ForceLaw, ForceModel, Inputs, Integrator,
     Layers, LoadTime, Moment, Needs, Outcome, Prepared, Properties, RecordError, Recorder,
-    Recorders, Revision, Run, RunReport, SetupError, SimulateError, StableStep, State, StepError,
-    StepReport, Stepped, System, Trial, Verdict, Watch, simulate,
+    Revision, Run, RunReport, SetupError, SimulateError, StableStep, State, StepError, StepReport,
+    Stepped, System, Trial, Verdict, Watch, simulate,
 };
 
 /// Two masses of 1 kg, each on a spring of its own (N/m), that refuse to be moved beyond a limit (m).
@@ -314,58 +314,6 @@ fn a_recorder_that_fails_ends_the_run_with_its_reason() {
         );
         assert_eq!(state.t(), 8.0);
     }
-}
-
-#[test]
-fn each_of_several_recorders_sees_what_it_wants() {
-    let system = springs(SOUND, f64::INFINITY);
-    let [thirds, fifths, watcher, all] = [(); 4].map(|()| RefCell::default());
-    let every_state = RefCell::new(Vec::new());
-    let mut recorders = Recorders::new()
-        .with(Wishes::new(3, &[1], &thirds))
-        .with(Wishes::new(5, &[], &fifths))
-        .with(())
-        .with(Wishes::new(0, &[0, 1], &watcher))
-        .with(Wishes {
-            stop_at: 17.0,
-            ..Wishes::new(17, &[0], &all)
-        })
-        .with(|moment: &Moment<'_>| {
-            every_state.borrow_mut().push(moment.state.clone());
-            Ok(Verdict::Continue)
-        });
-    let (mut method, mut state) = (Method::default(), start());
-    let whole = run(40, f64::INFINITY);
-    let report = simulate(&system, &mut method, &mut state, &whole, &mut recorders).unwrap();
-    assert_eq!((report.outcome, report.steps), (Outcome::Stopped, 17));
-    let states = singly(&system, 17);
-    assert_eq!(state, states[17]);
-    assert_eq!(times(&thirds), [0.0, 3.0, 6.0, 9.0, 12.0, 15.0]);
-    assert_eq!(times(&fifths), [0.0, 5.0, 10.0, 15.0]);
-    assert_eq!(times(&all), [0.0, 17.0]);
-    assert_eq!(times(&watcher), [0.0; 0]);
-    assert_eq!(*every_state.borrow(), states);
-    let of = |dofs: &[usize]| -> Vec<_> {
-        let row = |s: &State| (s.t(), dofs.iter().map(|dof| s.u[*dof]).collect());
-        states.iter().map(row).collect()
-    };
-    assert_eq!(rows(&thirds), of(&[1]));
-    assert_eq!(rows(&fifths), []);
-    assert_eq!(rows(&watcher), of(&[0, 1]));
-    assert_eq!(rows(&all), of(&[0]));
-}
-
-#[test]
-fn several_recorders_that_want_little_do_not_cut_batches() {
-    let told = RefCell::default();
-    let mut recorders = Recorders::new()
-        .with(Wishes::new(100, &[], &told))
-        .with(Wishes::new(70, &[], &told));
-    assert_eq!(recorders.next(1), Some(70));
-    assert_eq!(recorders.next(71), Some(100));
-    assert_eq!(recorders.next(101), Some(140));
-    let mut idle = Recorders::new().with(());
-    assert_eq!(idle.next(0), None);
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use sinew_session::Command;
+use sinew_world::Command;
 
 /// Commands for simulated times (s), in their order.
 #[derive(Debug, Default)]

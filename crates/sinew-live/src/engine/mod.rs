@@ -18,7 +18,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use sinew_core::Clock;
-use sinew_session::{Command, CommandError, Journal, JournalError, Log, Session};
+use sinew_world::{Command, CommandError, Journal, JournalError, Log, World};
 
 use self::course::Course;
 use self::pace::Pace;
@@ -144,7 +144,7 @@ impl Engine {
     /// Builds the sessions.
     pub(crate) fn new(
         beginning: Beginning,
-        session: Session,
+        session: World,
         uncut: Surface,
     ) -> Result<Self, LiveError> {
         let Beginning {

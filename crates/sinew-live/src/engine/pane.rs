@@ -6,8 +6,8 @@ use std::time::Instant;
 use sinew_core::vectors::weighted_dot;
 use sinew_core::{Contact, Energy, LoadTime, Options, StableStep, System};
 use sinew_scene::{BodyModel, CutTotals, Simulation};
-use sinew_session::{Command, CommandError, Log, Session};
 use sinew_tools::Tools;
+use sinew_world::{Command, CommandError, Log, World};
 
 use super::course::Course;
 use super::due::Due;
@@ -30,7 +30,7 @@ const GUARD: &str = "saturation";
 
 /// A session and what is measured of its motion.
 pub(crate) struct Pane {
-    session: Session,
+    session: World,
     due: Due,
     /// Loads whose factors are other than 1 at the beginning.
     first_factors: Vec<(String, f64)>,
@@ -98,13 +98,13 @@ impl Energies {
 impl Pane {
     /// A scene of its own.
     pub(crate) fn of(scene: &SceneValues) -> Result<Self, LiveError> {
-        let session = Session::new(scene.scene.clone())?.with_values(&scene.values);
+        let session = World::new(scene.scene.clone())?.with_values(&scene.values);
         scene.check_files(session.log())?;
         Self::new(session, scene)
     }
 
     /// That of a session of this scene which took no command yet.
-    pub(crate) fn new(session: Session, scene: &SceneValues) -> Result<Self, LiveError> {
+    pub(crate) fn new(session: World, scene: &SceneValues) -> Result<Self, LiveError> {
         let body = body(&session).ok_or(LiveError::NoBody)?;
         let tools = body.tools.as_ref().map_or(0, |tools| tools.tools().len());
         let dofs = body.model.dofs();
@@ -729,6 +729,6 @@ impl Pane {
 }
 
 /// The body of a session.
-fn body(session: &Session) -> Option<&BodyModel> {
-    session.simulation().model().body()
+fn body(session: &World) -> Option<&BodyModel> {
+    session.simulation().model().body().map(|body| &**body)
 }

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use sinew_core::LoadTime;
 use sinew_mesh::TetMesh;
 use sinew_scene::{BodyModel, Cutter};
-use sinew_session::Session;
+use sinew_world::World;
 
 use crate::picture::{Colours, Seen, Surface, twins};
 use crate::protocol::{Field, NONE};
@@ -64,7 +64,7 @@ pub(super) struct Shown {
 
 impl Shown {
     /// A body, of which this was the surface before all cuts.
-    pub(super) fn of(session: &Session, body: &BodyModel, uncut: &Surface) -> Self {
+    pub(super) fn of(session: &World, body: &BodyModel, uncut: &Surface) -> Self {
         let surface = uncut.after_cuts(body);
         Self {
             mesh: Arc::clone(&body.mesh),
@@ -84,7 +84,7 @@ impl Shown {
     /// Takes displacements of all nodes and, as often as there is time for it or where they shall be other ones, colours.
     pub(super) fn paint(
         &mut self,
-        session: &Session,
+        session: &World,
         (field, limit): (Field, Option<f64>),
         anew: bool,
     ) {

@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 
 use sinew_scene::Simulation;
-use sinew_session::Command;
+use sinew_world::Command;
 
 use super::common::Common;
 use super::course::Course;

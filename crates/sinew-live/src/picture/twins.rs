@@ -41,18 +41,18 @@ pub(crate) fn twins(own: &BodyModel, other: &BodyModel) -> Vec<u32> {
 #[cfg(test)]
 mod tests {
     use sinew_scene::{Scene, SceneSource};
-    use sinew_session::{Command, Session};
+    use sinew_world::{Command, World};
 
     use super::*;
 
     const BLOCK: &str = "[mesh]\ncube = { cells = 2, edge = 0.1 }\n[[region]]\ndensity = 1000.0\nmodel = \"linear\"\nyoungs_modulus = 3000.0\n\
         poissons_ratio = 0.3\n[[fixed]]\ngroup = \"bottom\"\n[cutting]\n[run]\nduration = 1.0\nintegrator = \"newmark\"\ndt = 0.001\n";
 
-    fn session() -> Session {
-        Session::new(Scene::parse(SceneSource::new("block.toml", BLOCK)).unwrap()).unwrap()
+    fn session() -> World {
+        World::new(Scene::parse(SceneSource::new("block.toml", BLOCK)).unwrap()).unwrap()
     }
 
-    fn cut_at(x: f64, depth: f64) -> Session {
+    fn cut_at(x: f64, depth: f64) -> World {
         let mut session = session();
         let blade = |z: f64| [[x, -0.01, z], [x, 0.11, z]];
         let command = Command::Cut {
@@ -65,7 +65,7 @@ mod tests {
     }
 
     /// Pairs of nodes with the places of both at rest.
-    fn pairs(own: &Session, other: &Session) -> Vec<(usize, usize)> {
+    fn pairs(own: &World, other: &World) -> Vec<(usize, usize)> {
         let [own, other] = [own, other].map(|session| session.simulation().model().body().unwrap());
         let twins = twins(own, other);
         let pairs = twins.iter().enumerate().filter(|(_, twin)| **twin != NONE);

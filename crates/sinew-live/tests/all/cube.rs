@@ -274,9 +274,9 @@ fn another_shape_of_the_tool_is_another_scene_that_begins_anew() {
     );
     let log = ended.logs[0].clone();
     assert!(log.to_text().contains("cnn-stabilised"));
-    let mut replay = sinew_session::Replay::new(ended.scene, log).unwrap();
+    let mut replay = sinew_world::Replay::new(ended.scene, log).unwrap();
     while replay.step().unwrap().is_some() {}
-    assert!(replay.session().t() > 0.0);
+    assert!(replay.world().t() > 0.0);
 }
 
 #[test]

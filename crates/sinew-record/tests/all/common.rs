@@ -6,6 +6,7 @@ use std::path::Path;
 
 use sinew_record::{Companion, RunEnd, RunFolder};
 use sinew_scene::{Scene, SceneSource, Simulation};
+use sinew_world::World;
 
 /// A beam of soft tissue that is held at `sides`, in few cells, with more tables of a scene.
 pub(crate) fn cube(more: &str) -> Simulation {
@@ -38,13 +39,12 @@ pub(crate) fn run(path: &Path, simulation: &Simulation, companion: &mut dyn Comp
         true => RunFolder::reopen(path).unwrap().0,
         false => RunFolder::create(path, simulation, &Default::default()).unwrap(),
     };
-    folder
-        .run(
-            simulation,
-            &mut *simulation.integrator().unwrap(),
-            companion,
-        )
-        .unwrap()
+    folder.run(&mut world(simulation), companion).unwrap()
+}
+
+/// A world that follows a scene.
+pub(crate) fn world(simulation: &Simulation) -> World {
+    World::following(simulation.clone(), simulation.integrator().unwrap()).unwrap()
 }
 
 /// Columns of a table by their names.

@@ -6,7 +6,7 @@ use std::path::Path;
 use serde_json::Value;
 use sinew_record::{Ended, Request, RunFolder};
 use sinew_scene::{Scene, SceneSource};
-use sinew_session::{Command, Replay, Session};
+use sinew_world::{Command, Replay, World};
 
 use crate::common::{build, run, table};
 
@@ -197,7 +197,7 @@ fn a_session_that_only_waits_leaves_what_a_run_leaves() {
     let (ran, again) = (place.path().join("ran"), place.path().join("again"));
     let text = scene(&format!("{BLADE}{NEWMARK}"));
     run(&ran, &build(&text), &mut ());
-    let mut session = Session::new(read(&text)).unwrap();
+    let mut session = World::new(read(&text)).unwrap();
     for _ in 0..50 {
         session.step().unwrap();
     }
@@ -207,7 +207,7 @@ fn a_session_that_only_waits_leaves_what_a_run_leaves() {
         (end.ended, end.steps, end.frames),
         (Ended::Finished, 50, 11)
     );
-    assert_eq!(replay.session().state(), session.state());
+    assert_eq!(replay.world().state(), session.state());
     let files = ["probes.csv", "energy.csv", "reactions.csv", "fields.pvd"];
     for file in files.into_iter().chain(["fields/frame-00010.vtu"]) {
         let [ran, again] = [&ran, &again].map(|folder| fs::read(folder.join(file)).unwrap());
@@ -222,8 +222,8 @@ fn sheets_from_outside_are_repeated_bit_for_bit_and_recorded() {
     let text = scene(&format!(
         "[[load]]\nname = \"press\"\ngroup = \"top\"\ntraction = [0.0, 0.0, -20.0]\n[cutting]\n{NEWMARK}"
     ));
-    let mut session = Session::new(read(&text)).unwrap();
-    let steps = |session: &mut Session, count: usize| {
+    let mut session = World::new(read(&text)).unwrap();
+    let steps = |session: &mut World, count: usize| {
         for _ in 0..count {
             session.step().unwrap();
         }
@@ -259,8 +259,8 @@ fn sheets_from_outside_are_repeated_bit_for_bit_and_recorded() {
     let mut replay = Replay::new(read(&text), log).unwrap();
     let end = RunFolder::replay(&path, &mut replay, &Request::default(), &mut ()).unwrap();
     assert_eq!((end.ended, end.steps), (Ended::Finished, 30));
-    assert_eq!(replay.session().state(), session.state());
-    assert_eq!(replay.session().cuts(), Some(&totals));
+    assert_eq!(replay.world().state(), session.state());
+    assert_eq!(replay.world().cuts(), Some(&totals));
     let energy = table(&path.join("energy.csv"));
     assert_eq!(energy["t_s"].len(), 31);
     assert!(energy["t_s"].windows(2).all(|pair| pair[1] > pair[0]));

@@ -7,7 +7,7 @@ use std::path::Path;
 use serde_json::Value;
 use sinew_record::{Companion, Ended, Request, RunEnd, RunFolder};
 use sinew_scene::{Scene, SceneSource};
-use sinew_session::{Replay, Session};
+use sinew_world::{Replay, World};
 
 use crate::common::build;
 
@@ -64,9 +64,8 @@ fn run(path: &Path, text: &str, companion: &mut dyn Companion) -> RunEnd {
         again: true,
     };
     let folder = RunFolder::create(path, &simulation, &request).unwrap();
-    let mut integrator = simulation.integrator().unwrap();
     folder
-        .run(&simulation, &mut *integrator, companion)
+        .run(&mut crate::common::world(&simulation), companion)
         .unwrap()
 }
 
@@ -92,7 +91,7 @@ fn the_page_names_every_file_column_array_and_key_and_no_others() {
     let stopped = run(&path("stopped"), &body(LOADED), &mut Interrupted).ended;
     assert!(matches!(stopped, Ended::Interrupted { .. }), "{stopped:?}");
     let scene = || Scene::parse(SceneSource::new("scene.toml", body(LOADED))).unwrap();
-    let mut session = Session::new(scene()).unwrap();
+    let mut session = World::new(scene()).unwrap();
     session.step().unwrap();
     let mut replay = Replay::new(scene(), session.log().clone()).unwrap();
     RunFolder::replay(&path("replay"), &mut replay, &Request::default(), &mut ()).unwrap();

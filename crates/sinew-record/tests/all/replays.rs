@@ -7,7 +7,7 @@ use serde_json::Value;
 use sinew_core::Options;
 use sinew_record::{Companion, Ended, Request, RunFolder};
 use sinew_scene::{Scene, SceneSource};
-use sinew_session::{Command, Replay, Session};
+use sinew_world::{Command, Replay, World};
 
 use crate::common::{run, table};
 
@@ -20,7 +20,7 @@ fn scene() -> Scene {
     Scene::parse(SceneSource::new("scene.toml", TEXT)).unwrap()
 }
 
-fn steps(session: &mut Session, count: usize) {
+fn steps(session: &mut World, count: usize) {
     for _ in 0..count {
         session.step().unwrap();
     }
@@ -33,7 +33,7 @@ fn a_session_without_commands_leaves_the_tables_and_frames_of_the_run() {
     let mut simulation = scene().build().unwrap();
     simulation.end_at_duration();
     run(&ran, &simulation, &mut ());
-    let mut session = Session::new(scene()).unwrap();
+    let mut session = World::new(scene()).unwrap();
     steps(&mut session, 50);
     let mut replay = Replay::new(scene(), session.log().clone()).unwrap();
     let end = RunFolder::replay(&again, &mut replay, &Request::default(), &mut ()).unwrap();
@@ -54,7 +54,7 @@ fn a_session_without_commands_leaves_the_tables_and_frames_of_the_run() {
 #[test]
 fn a_driven_session_is_recorded_since_its_last_reset_and_its_energy_adds_up() {
     let place = tempfile::tempdir().unwrap();
-    let mut session = Session::new(scene()).unwrap();
+    let mut session = World::new(scene()).unwrap();
     steps(&mut session, 7);
     session.command(Command::Reset).unwrap();
     let factor = |factor| Command::LoadFactor {
@@ -74,7 +74,7 @@ fn a_driven_session_is_recorded_since_its_last_reset_and_its_energy_adds_up() {
     let out = place.path().join("out");
     let end = RunFolder::replay(&out, &mut replay, &Request::default(), &mut ()).unwrap();
     assert_eq!((end.ended, end.steps), (Ended::Finished, 70));
-    assert!(replay.session().state() == session.state());
+    assert!(replay.world().state() == session.state());
     let rows = table(&out.join("energy.csv"));
     let t = &rows["t_s"];
     assert_eq!((t.len(), t[0]), (71, 0.0));
@@ -120,14 +120,14 @@ impl Companion for Impatient {
 #[test]
 fn a_session_names_the_methods_and_the_mean_step_of_what_was_repeated() {
     let place = tempfile::tempdir().unwrap();
-    let mut session = Session::new(scene()).unwrap();
+    let mut session = World::new(scene()).unwrap();
     let to = |id: &str| Command::Integrator {
         id: id.to_owned(),
         options: Options::new(),
     };
     session.command(to("cnn-stabilised")).unwrap();
     steps(&mut session, 10);
-    let recorded = |session: &Session, name: &str, companion: &mut dyn Companion| {
+    let recorded = |session: &World, name: &str, companion: &mut dyn Companion| {
         let mut replay = Replay::new(scene(), session.log().clone()).unwrap();
         let path = place.path().join(name);
         let end = RunFolder::replay(&path, &mut replay, &Request::default(), companion).unwrap();

@@ -139,7 +139,7 @@ fn another_mesh_and_a_damaged_checkpoint_are_refused() {
     ] {
         fs::write(&checkpoint, damaged).unwrap();
         let (folder, _) = RunFolder::reopen(&out).unwrap();
-        let refused = folder.run(&simulation, &mut *simulation.integrator().unwrap(), &mut ());
+        let refused = folder.run(&mut crate::common::world(&simulation), &mut ());
         assert!(matches!(
             refused.unwrap_err(),
             RecordRunError::Unusable { .. } | RecordRunError::Checkpoint { .. }
@@ -151,7 +151,7 @@ fn another_mesh_and_a_damaged_checkpoint_are_refused() {
         flipped[at] ^= 1;
         fs::write(&checkpoint, flipped).unwrap();
         let (folder, _) = RunFolder::reopen(&out).unwrap();
-        let refused = folder.run(&simulation, &mut *simulation.integrator().unwrap(), &mut ());
+        let refused = folder.run(&mut crate::common::world(&simulation), &mut ());
         assert!(
             matches!(refused.unwrap_err(), RecordRunError::Unusable { .. }),
             "{at}"
@@ -161,7 +161,7 @@ fn another_mesh_and_a_damaged_checkpoint_are_refused() {
     let scene = fs::read_to_string(out.join("scene.toml")).unwrap();
     fs::write(out.join("scene.toml"), scene.replace("1.0]", "2.0]")).unwrap();
     let (folder, _) = RunFolder::reopen(&out).unwrap();
-    let refused = folder.run(&simulation, &mut *simulation.integrator().unwrap(), &mut ());
+    let refused = folder.run(&mut crate::common::world(&simulation), &mut ());
     assert!(matches!(
         refused.unwrap_err(),
         RecordRunError::Unusable { .. }

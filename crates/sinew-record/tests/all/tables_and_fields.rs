@@ -155,8 +155,7 @@ fn a_frame_that_cannot_be_written_ends_the_run_with_its_reason() {
     );
     let folder = RunFolder::create(&out, &simulation, &Request::default()).unwrap();
     fs::write(out.join("fields"), "in the way").unwrap();
-    let mut integrator = simulation.integrator().unwrap();
-    let refused = folder.run(&simulation, &mut *integrator, &mut ());
+    let refused = folder.run(&mut crate::common::world(&simulation), &mut ());
     let refused = refused.unwrap_err().to_string();
     assert!(refused.contains("fields"), "{refused}");
     assert!(!out.join("summary.json").exists());

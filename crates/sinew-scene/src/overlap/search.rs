@@ -1,6 +1,6 @@
 //! The search for the point of a body that is deepest in it.
 
-use std::borrow::Cow;
+use std::sync::Arc;
 
 use sinew_mesh::TetMesh;
 use sinew_tools::vector::{Vector, between, length, sub};
@@ -31,9 +31,9 @@ pub(super) struct Inside {
 }
 
 /// What is looked at in each state of a body.
-pub(super) struct OverlapSearch<'a> {
-    mesh: &'a TetMesh,
-    triangles: Cow<'a, [[u32; 3]]>,
+pub(super) struct OverlapSearch {
+    mesh: Arc<TetMesh>,
+    triangles: Vec<[u32; 3]>,
     /// The same with their nodes in ascending order, sorted.
     faces: Vec<[u32; 3]>,
     edges: Vec<[u32; 2]>,
@@ -59,13 +59,9 @@ pub(super) struct Lips {
     pub(super) share: f64,
 }
 
-impl<'a> OverlapSearch<'a> {
+impl OverlapSearch {
     /// A search in a mesh with this surface.
-    pub(super) fn new(
-        mesh: &'a TetMesh,
-        triangles: Cow<'a, [[u32; 3]]>,
-        lips: Option<Lips>,
-    ) -> Self {
+    pub(super) fn new(mesh: Arc<TetMesh>, triangles: Vec<[u32; 3]>, lips: Option<Lips>) -> Self {
         let sides = |[a, b, c]: &[u32; 3]| [[*a, *b], [*b, *c], [*c, *a]];
         let mut edges: Vec<[u32; 2]> = triangles.iter().flat_map(sides).collect();
         for edge in &mut edges {
@@ -128,7 +124,7 @@ impl<'a> OverlapSearch<'a> {
         let concerned = |node: u32| is_concerned[self.part_of[node as usize] as usize];
         let tets = (0..).zip(&self.mesh.tets);
         let tets = tets.filter(|(_, nodes)| concerned(nodes[0]));
-        let placed = Placed::new(self.mesh, places, tets.map(|(tet, _)| tet).collect());
+        let placed = Placed::new(&self.mesh, places, tets.map(|(tet, _)| tet).collect());
         let at_nodes = self.nodes.iter().filter(|node| concerned(**node));
         let at_nodes: Vec<SurfacePoint> = at_nodes
             .map(|node| SurfacePoint::node(*node, places[*node as usize]))
@@ -287,7 +283,7 @@ impl<'a> OverlapSearch<'a> {
         if found.is_empty() {
             return None;
         }
-        let mesh = self.mesh;
+        let mesh = &*self.mesh;
         let depths = self.depths.get_or_insert_with(|| Depths::new(mesh));
         let mut looks = LOOKS * mesh.tets.len().max(1000);
         // Once the deepest is known, others are soon told from it.

@@ -1,11 +1,10 @@
 //! A watch for bodies that pass through each other.
 
-use std::borrow::Cow;
 use std::fmt;
+use std::sync::Arc;
 
 use sinew_core::State;
 use sinew_fem::FieldError;
-use sinew_mesh::BoundarySurface;
 use sinew_tools::vector::{Vector, add};
 
 use super::names::names;
@@ -52,18 +51,17 @@ impl fmt::Display for Overlap {
 /// A watch for parts and surfaces of a body that pass through each other: the deepest that it has seen.
 ///
 /// A look costs some tenths of a microsecond for each triangle of the surface, unless surfaces touch.
-pub struct OverlapWatch<'a> {
-    body: &'a BodyModel,
-    surface: Option<&'a BoundarySurface>,
+pub struct OverlapWatch {
+    body: Arc<BodyModel>,
     /// Made at the first look.
-    search: Option<OverlapSearch<'a>>,
+    search: Option<OverlapSearch>,
     /// Room for the state at hand.
     displacements: Vec<Vector>,
     places: Vec<Vector>,
     deepest: Option<Overlap>,
 }
 
-impl fmt::Debug for OverlapWatch<'_> {
+impl fmt::Debug for OverlapWatch {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("OverlapWatch")
             .field("deepest", &self.deepest)
@@ -71,26 +69,16 @@ impl fmt::Debug for OverlapWatch<'_> {
     }
 }
 
-impl<'a> OverlapWatch<'a> {
+impl OverlapWatch {
     /// A watch that has seen nothing yet.
     #[must_use]
-    pub fn new(body: &'a BodyModel) -> Self {
+    pub fn new(body: &Arc<BodyModel>) -> Self {
         Self {
-            body,
-            surface: None,
+            body: Arc::clone(body),
             search: None,
             displacements: Vec::new(),
             places: Vec::new(),
             deepest: None,
-        }
-    }
-
-    /// The same, with the surface of the body, which it need not find then.
-    #[must_use]
-    pub fn with_surface(self, surface: &'a BoundarySurface) -> Self {
-        Self {
-            surface: Some(surface),
-            ..self
         }
     }
 
@@ -124,20 +112,11 @@ impl<'a> OverlapWatch<'a> {
 
     /// Looks at displacements (m) of all nodes at a time (s).
     pub fn look(&mut self, t: f64, displacements: &[[f64; 3]]) {
-        let body = self.body;
-        let mesh = &*body.mesh;
+        let body = &*self.body;
+        let mesh = &body.mesh;
         let search = self.search.get_or_insert_with(|| {
-            let triangles = match self.surface {
-                Some(surface) => {
-                    let node = |point: &u32| surface.nodes[*point as usize];
-                    let triangles = surface.triangles.iter();
-                    triangles
-                        .map(|points| points.each_ref().map(node))
-                        .collect()
-                }
-                None => Cow::Borrowed(body.surface()),
-            };
-            OverlapSearch::new(mesh, triangles, lips(body))
+            let triangles = body.surface_triangles().collect();
+            OverlapSearch::new(Arc::clone(mesh), triangles, lips(body))
         });
         self.places.clear();
         let moved = mesh.points.iter().zip(displacements);

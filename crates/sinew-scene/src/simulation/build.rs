@@ -1,6 +1,6 @@
 //! From a scene to a simulation.
 
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use sinew_core::{LinearModel, LinearOperators, LinearSystem, Load, OperatorError, Ramp, State};
 
@@ -33,7 +33,7 @@ impl MeshedScene {
                     scene.settings().duration,
                 )?;
                 let probes = probe::of_body(&body.probes, scene.places(), &model)?;
-                (SceneModel::Body(Box::new(model)), initial, probes)
+                (SceneModel::Body(Arc::new(model)), initial, probes)
             }
             Subject::Oscillator(oscillator) => {
                 let model = oscillator_model(oscillator).map_err(|error| {
@@ -76,10 +76,10 @@ impl MeshedScene {
         }
         Ok(Simulation {
             dt,
-            scene,
+            scene: Arc::new(scene),
             model,
             initial,
-            probes,
+            probes: probes.into(),
             stable_step,
             cutting,
         })

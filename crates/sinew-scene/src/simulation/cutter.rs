@@ -92,7 +92,7 @@ pub struct Cutter {
     uncut: Arc<TetMesh>,
     /// The problem and the probes on the body before all cuts.
     problem: Problem,
-    probes: Vec<Probe>,
+    probes: Arc<[Probe]>,
     /// Time (s) up to which the blade was followed; `None` before the first step.
     pub(super) followed: Option<f64>,
     /// Time (s) of the last sheet that touched the body.
@@ -122,7 +122,7 @@ impl Simulation {
             plan: Arc::clone(plan),
             uncut,
             problem,
-            probes: self.probes.clone(),
+            probes: Arc::clone(&self.probes),
             followed: None,
             swept: 0.0,
             is_in: false,
@@ -492,9 +492,9 @@ impl Cutter {
         let probes = self.probes.iter();
         let probes = probes.map(|probe| probe.after_cut(cut, node_of, model));
         Ok(Simulation {
-            scene: before.scene.clone(),
+            scene: Arc::clone(&before.scene),
             probes: probes.collect(),
-            model: SceneModel::Body(Box::new(body)),
+            model: SceneModel::Body(Arc::new(body)),
             initial: state.clone(),
             dt: before.dt,
             stable_step: OnceLock::new(),

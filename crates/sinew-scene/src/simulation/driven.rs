@@ -1,6 +1,6 @@
 //! Scenes that are driven from outside while they run.
 
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use sinew_core::{
     Channel, Inputs, LinearModel, LinearSystem, Load, OperatorError, Ramp, RampError,
@@ -53,7 +53,12 @@ impl Simulation {
             .map(|_| Steering::new(inputs))
             .collect();
         let steered = tools.steered(&steering);
-        **body = tool::led_anew((**body).clone(), of_scene, &steered, duration)?;
+        *body = Arc::new(tool::led_anew(
+            (**body).clone(),
+            of_scene,
+            &steered,
+            duration,
+        )?);
         Ok(steering)
     }
 
@@ -125,7 +130,7 @@ impl Simulation {
                     model,
                     ..(**body).clone()
                 };
-                SceneModel::Body(Box::new(body))
+                SceneModel::Body(Arc::new(body))
             }
             SceneModel::Oscillator(model) => {
                 let mut loads = self.loads().to_vec();
@@ -136,10 +141,10 @@ impl Simulation {
             }
         };
         Ok(Self {
-            scene: self.scene.clone(),
+            scene: Arc::clone(&self.scene),
             model,
             initial: self.initial.clone(),
-            probes: self.probes.clone(),
+            probes: Arc::clone(&self.probes),
             dt: self.dt,
             stable_step: OnceLock::new(),
             cutting: self.cutting.clone(),

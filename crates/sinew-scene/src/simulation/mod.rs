@@ -22,7 +22,6 @@ mod selected;
 mod set_up;
 mod start;
 mod step;
-mod stretch;
 mod tool;
 mod tool_end;
 mod tool_fault;
@@ -49,7 +48,6 @@ pub use reaction::{HeldPlace, Reaction, ReactionError, ReactionOf};
 pub use refined::RefinementError;
 pub use rough_strokes::RoughStrokes;
 pub use selected::SelectedPart;
-pub use stretch::{BodyChange, Seen, Stretch, StretchError};
 pub use tool_fault::ToolFault;
 
 pub use warnings::{Warning, WarningKind};
@@ -58,12 +56,12 @@ use crate::error::{Fault, SceneError, StableStepError};
 use crate::scene::{RunSettings, Scene};
 
 /// A scene that is ready to run: files read, matrices assembled, step chosen.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Simulation {
-    scene: Scene,
+    scene: Arc<Scene>,
     model: SceneModel,
     initial: State,
-    probes: Vec<Probe>,
+    probes: Arc<[Probe]>,
     dt: f64,
     stable_step: OnceLock<Result<StableStep, StableStepError>>,
     /// What cuts the body; `None` where nothing does.
@@ -140,7 +138,7 @@ impl Simulation {
 
     /// Points whose motion is recorded; for an oscillator, its mass.
     #[must_use]
-    pub fn probes(&self) -> &[Probe] {
+    pub fn probes(&self) -> &Arc<[Probe]> {
         &self.probes
     }
 

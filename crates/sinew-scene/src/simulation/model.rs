@@ -3,17 +3,17 @@
 use std::sync::{Arc, OnceLock};
 
 use sinew_core::{Contact, LinearModel, State, System};
-use sinew_mesh::{FindGroupError, TetMesh};
+use sinew_mesh::{BoundarySurface, FindGroupError, TetMesh};
 use sinew_tools::Tools;
 
 use super::cut_from::CutFrom;
 use super::selected::SelectedPart;
 
 /// The thing that moves, with its matrices.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub enum SceneModel {
     /// A body of tetrahedra.
-    Body(Box<BodyModel>),
+    Body(Arc<BodyModel>),
     /// One mass on a spring.
     Oscillator(LinearModel),
 }
@@ -36,13 +36,21 @@ pub struct BodyModel {
     /// Where its parts come from, once it was cut.
     pub cut: Option<Arc<CutFrom>>,
     /// See [`BodyModel::surface`].
-    pub(super) surface: OnceLock<Vec<[u32; 3]>>,
+    pub(super) surface: OnceLock<Arc<BoundarySurface>>,
 }
 
 impl BodyModel {
-    /// The triangles of the surface, found at the first request.
-    pub(crate) fn surface(&self) -> &[[u32; 3]] {
-        self.surface.get_or_init(|| self.mesh.boundary(None))
+    /// The surface of the body at rest, computed at the first request.
+    pub fn surface(&self) -> &Arc<BoundarySurface> {
+        let found = || Arc::new(self.mesh.boundary_surface());
+        self.surface.get_or_init(found)
+    }
+
+    /// The triangles of the surface, between nodes of the mesh.
+    pub(crate) fn surface_triangles(&self) -> impl Iterator<Item = [u32; 3]> + '_ {
+        let surface = &**self.surface();
+        let node = |point: u32| surface.nodes[point as usize];
+        surface.triangles.iter().map(move |points| points.map(node))
     }
 }
 
@@ -58,7 +66,7 @@ impl SceneModel {
 
     /// Mesh and matrices, where a body moves.
     #[must_use]
-    pub fn body(&self) -> Option<&BodyModel> {
+    pub fn body(&self) -> Option<&Arc<BodyModel>> {
         match self {
             Self::Body(body) => Some(body),
             Self::Oscillator(_) => None,

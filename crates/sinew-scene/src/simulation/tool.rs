@@ -227,7 +227,7 @@ pub(super) fn nodes_of(
 ) -> Result<(Vec<u32>, Vec<u32>), FindGroupError> {
     let mesh = &built.mesh;
     let mut nodes = match &tool.touches {
-        None => built.surface().as_flattened().to_vec(),
+        None => built.surface().nodes.clone(),
         Some(name) => mesh.group_nodes(mesh.group(name)?),
     };
     nodes.sort_unstable();

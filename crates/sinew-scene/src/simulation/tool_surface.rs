@@ -81,10 +81,9 @@ pub(super) fn under_tips(
 fn without_moved(built: &BodyModel) -> Vec<[u32; 3]> {
     let moved = moved_nodes(built);
     let is_moved = |node: &u32| moved.binary_search(node).is_ok();
-    let surface = built.surface().iter();
+    let surface = built.surface_triangles();
     surface
         .filter(|corners| !corners.iter().any(is_moved))
-        .copied()
         .collect()
 }
 

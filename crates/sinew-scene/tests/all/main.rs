@@ -11,15 +11,12 @@
 mod all_scenes;
 mod bad_scenes;
 mod common;
-mod cuts;
 mod data_of_meshes;
 mod good_scenes;
 mod labelled_meshes;
-mod lips;
 mod load_warnings;
 mod meshes_of_files;
 mod motions;
-mod moving_cuts;
 mod overlaps;
 mod places;
 mod plans;

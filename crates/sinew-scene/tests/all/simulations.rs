@@ -146,7 +146,7 @@ fn probes_follow_the_nearest_node() {
             probe("held", "[0.1, 0.1, 0.0]")
         ),
     );
-    let [corner, held] = simulation.probes() else {
+    let [corner, held] = &simulation.probes()[..] else {
         panic!("two probes");
     };
     let node = corner.node.unwrap();

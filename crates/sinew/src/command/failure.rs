@@ -13,12 +13,10 @@ use sinew_mesh::vtu::WriteVtuError;
 use sinew_mesh::{CellType, LabelError, MeshFileError, RefineError, TetMeshError, WriteMshError};
 use sinew_record::{CompareError, Ended, RecordRunError};
 use sinew_scene::output::{OutputError, complain};
-use sinew_scene::{
-    CuttingError, ReactionError, RefusedLoad, SceneError, Simulation, StretchError, Warning,
-};
+use sinew_scene::{CuttingError, ReactionError, RefusedLoad, SceneError, Simulation, Warning};
 #[cfg(feature = "live")]
-use sinew_session::JournalError;
-use sinew_session::{LogError, ReplayError};
+use sinew_world::JournalError;
+use sinew_world::{AdvanceError, LogError, ReplayError, WorldStepError};
 
 /// Exit code for input that cannot be used.
 const REFUSED: u8 = 2;
@@ -282,19 +280,19 @@ impl From<sinew_live::LiveError> for Failure {
     }
 }
 
-impl From<StretchError> for Failure {
-    fn from(error: StretchError) -> Self {
+impl Failure {
+    /// The failure of a world that stands at `t` (s).
+    pub(crate) fn of_advance(error: AdvanceError, t: f64) -> Self {
         match error {
-            StretchError::Simulate(error) => Self::Run(error),
-            StretchError::Cutting { t, source } => Self::Refused {
+            AdvanceError::Step(WorldStepError::Step(error)) => Self::Run(error.into()),
+            AdvanceError::Record(error) => Self::Run(error.into()),
+            AdvanceError::Step(error) => Self::Refused {
                 t,
-                reason: source.to_string(),
+                reason: error.to_string(),
             },
         }
     }
-}
 
-impl Failure {
     /// An error where a run did not come to its end; `remedy` is said after an interruption.
     pub(crate) fn of_end(
         ended: Ended,

@@ -3,8 +3,10 @@
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
-use sinew_core::{Moment, RecordError, Recorder, Verdict};
+use sinew_core::{Moment, RecordError, Verdict};
 use sinew_record::{Companion, Pace};
+
+use sinew_world::Recorder;
 
 use super::interruption::Interruption;
 
@@ -74,7 +76,7 @@ impl Companion for Onlooker {
 }
 
 /// Beside a recorder that needs no look at states.
-impl Recorder for Onlooker {
+impl sinew_core::Recorder for Onlooker {
     fn next(&mut self, step: usize) -> Option<usize> {
         Some(self.pace.next().max(step))
     }
@@ -88,3 +90,5 @@ impl Recorder for Onlooker {
         })
     }
 }
+
+impl Recorder for Onlooker {}

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use sinew_core::OptionValue;
 use sinew_record::RunFolder;
 use sinew_scene::output::complain;
+use sinew_world::World;
 
 use super::Failure;
 use super::interruption::Interruption;
@@ -30,12 +31,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut simulation = scene.build()?;
     simulation.end_at_duration();
     let asked: Option<OptionValue> = folder.threads().and_then(|text| threads(text).ok());
-    let mut integrator = integrator(&simulation, asked.as_ref())?;
-    in_folder(
-        &arguments.folder,
-        &folder,
-        &simulation,
-        &mut *integrator,
-        interruption,
-    )
+    let integrator = integrator(&simulation, asked.as_ref())?;
+    let mut world = World::following(simulation, integrator)?;
+    in_folder(&arguments.folder, &folder, &mut world, interruption)
 }

@@ -1,20 +1,19 @@
 //! `sinew run`.
 
-use std::cell::RefCell;
 use std::path::Path;
+use std::sync::Arc;
 
-use sinew_core::{
-    Integrator, OptionError, OptionValue, Outcome, Recorders, Run, RunReport, StepReport,
-};
+use sinew_core::{OptionError, OptionValue};
 use sinew_integrators::Stepper;
 use sinew_measure::Forecast;
 use sinew_record::{
-    Companion, EnergyGrowth, EnergyLoss, FrameLooks, Looked, Request, RunFolder, words_of_cuts,
+    Companion, EnergyGrowth, EnergyLoss, FrameLooks, Request, RunFolder, words_of_cuts,
 };
 use sinew_scene::output::{Delivery, Destination, Tenant, Voice, complain};
 use sinew_scene::{
-    Probe, ProbeCsv, ProbeRows, Quantity, Reaction, Scene, Seen, Simulation, Warning, WarningKind,
+    Cutter, Probe, ProbeCsv, ProbeRows, Quantity, Reaction, Scene, Simulation, Warning, WarningKind,
 };
+use sinew_world::{Ended, Recorders, World};
 
 mod arguments;
 pub(crate) mod replay;
@@ -78,28 +77,22 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
             Failure::of_warnings(&[long])?;
         }
     }
+    let mut world = World::following(simulation, integrator)?;
+    // Before a folder is made, so that what cannot run leaves none.
+    world.set_up()?;
     match (destination, &arguments.out) {
         (None, Some(path)) => {
-            // Before the folder is made, so that what cannot run leaves none.
-            simulation.set_up(&mut *integrator)?;
             let request = Request {
                 threads: arguments.threads.as_ref().map(in_words),
                 warnings: warnings.iter().map(ToString::to_string).collect(),
                 values: arguments.values.assignments(),
                 again: arguments.again,
             };
-            let folder = RunFolder::create(path, &simulation, &request)?;
-            in_folder(path, &folder, &simulation, &mut *integrator, interruption)
+            let folder = RunFolder::create(path, world.simulation(), &request)?;
+            in_folder(path, &folder, &mut world, interruption)
         }
         (Some(destination), _) => {
-            let path = &arguments.probes;
-            probes_alone(
-                path,
-                destination,
-                &simulation,
-                &mut *integrator,
-                interruption,
-            )
+            probes_alone(&arguments.probes, destination, &mut world, interruption)
         }
         (None, None) => Ok(()),
     }
@@ -125,25 +118,29 @@ pub(crate) fn check_folder(
     Ok(())
 }
 
-/// Runs a simulation into its folder and says what came out.
+/// Runs a world into its folder and says what came out.
 pub(crate) fn in_folder(
     path: &Path,
     folder: &RunFolder,
-    simulation: &Simulation,
-    integrator: &mut dyn Stepper,
+    world: &mut World,
     interruption: Interruption,
 ) -> Result<(), Failure> {
-    let duration = simulation.settings().duration;
-    let mut onlooker = Onlooker::new(interruption, simulation.run().steps, duration);
-    let end = folder.run(simulation, integrator, &mut onlooker);
+    let mut onlooker = onlooker(world.simulation(), interruption);
+    let end = folder.run(world, &mut onlooker);
     onlooker.finish();
     let end = end?;
-    for line in summary_of(simulation, &end, path) {
+    for line in summary_of(world.simulation(), &end, path) {
         complain(&line);
     }
-    Failure::of_end(end.ended, simulation, || {
+    Failure::of_end(end.ended, world.simulation(), || {
         format!("; `sinew resume {}` goes on", path.display())
     })
+}
+
+/// Of a whole run.
+fn onlooker(simulation: &Simulation, interruption: Interruption) -> Onlooker {
+    let (steps, duration) = (simulation.run().steps, simulation.settings().duration);
+    Onlooker::new(interruption, steps, duration)
 }
 
 /// Runs a scene into an empty folder, which nobody reads but a comparison.
@@ -162,107 +159,74 @@ pub(crate) fn run_for_comparison(
         complain(&format!("{}: warning: {warning}", scene.display()));
     }
     simulation.end_at_duration();
-    let mut integrator = integrator(&simulation, None)?;
-    simulation.set_up(&mut *integrator)?;
-    let folder = RunFolder::create(folder, &simulation, &Request::default())?;
-    let duration = simulation.settings().duration;
-    let mut onlooker = Onlooker::new(interruption, simulation.run().steps, duration);
-    let end = folder.run(&simulation, &mut *integrator, &mut onlooker);
+    let integrator = integrator(&simulation, None)?;
+    let mut world = World::following(simulation, integrator)?;
+    world.set_up()?;
+    let folder = RunFolder::create(folder, world.simulation(), &Request::default())?;
+    let mut onlooker = onlooker(world.simulation(), interruption);
+    let end = folder.run(&mut world, &mut onlooker);
     onlooker.finish();
-    Failure::of_end(end?.ended, &simulation, String::new)
+    Failure::of_end(end?.ended, world.simulation(), String::new)
 }
 
-/// Runs a simulation and writes the motion of its probes alone.
+/// Runs a world and writes the motion of its probes alone.
 fn probes_alone(
     path: &Path,
     destination: Destination,
-    simulation: &Simulation,
-    integrator: &mut dyn Stepper,
+    world: &mut World,
     interruption: Interruption,
 ) -> Result<(), Failure> {
     let voice = Voice::apart_from(&destination);
-    simulation.set_up(integrator)?;
-    let cutter = simulation.cutter()?.map(RefCell::new);
-    let rows = ProbeRows::new(simulation);
-    let whole = simulation.run();
-    let steps = (whole.steps, simulation.dt());
-    let schedule = words::schedule(simulation, &rows, steps, destination.is_kept())?;
-    let mut output = ProbeCsv::new(destination.open()?, rows, schedule)?.without_rows();
-    let mut state = simulation.initial_state().clone();
-    let mut onlooker = Onlooker::new(interruption, whole.steps, simulation.settings().duration);
-    let mut growth = EnergyGrowth::new(simulation);
-    let mut looked = Looked::default();
-    let mut loss = EnergyLoss::new(simulation, integrator);
-    // The scene on the body as cuts left it.
-    let mut cut: Option<Simulation> = None;
-    let mut taken = RunReport {
-        outcome: Outcome::Finished,
-        steps: 0,
-        work: StepReport::default(),
-    };
-    let (csv, report, simulation) = loop {
-        let now = cut.as_ref().unwrap_or(simulation);
-        let mut csv = output.with_rows(ProbeRows::new(now));
-        let mut looks = FrameLooks::new(now, std::mem::take(&mut looked));
-        let mut recorders = Recorders::new()
-            .with_lent(&mut csv)
-            .with_lent(&mut looks)
-            .with_lent(&mut onlooker);
-        if cutter.is_none() {
-            recorders = recorders.with_lent(&mut growth).with_lent(&mut loss);
-        }
-        let seen = Seen {
-            steps: taken.steps,
-            beginning: cut.is_some(),
-        };
-        let run = Run {
-            steps: whole.steps - taken.steps,
-            ..whole
-        };
-        let integrator: &mut dyn Integrator = integrator;
-        let moving = (cutter.as_ref(), integrator, &mut state);
-        let stretch = now.stretch(moving, &run, (&mut recorders, seen));
-        drop(recorders);
-        looked = looks.into_looked();
-        let stretch = match stretch {
-            Ok(stretch) => stretch,
-            Err(error) => break (csv, Err(error), now),
-        };
-        taken.steps += stretch.report.steps;
-        taken.work += stretch.report.work;
-        taken.outcome = stretch.report.outcome;
-        let Some(change) = stretch.change else {
-            break (csv, Ok(taken), now);
-        };
-        output = csv.without_rows();
-        cut = Some(change.simulation);
-    };
+    let scene = Arc::clone(world.simulation());
+    let rows = ProbeRows::new(&scene);
+    let steps = scene.run().steps;
+    let schedule = words::schedule(&scene, &rows, (steps, scene.dt()), destination.is_kept())?;
+    let mut csv = ProbeCsv::new(destination.open()?, rows, schedule)?;
+    let mut onlooker = onlooker(&scene, interruption);
+    let mut growth = EnergyGrowth::new(&scene);
+    let mut looks = FrameLooks::new(&scene);
+    let mut loss = EnergyLoss::new(&scene, world.integrator());
+    let mut recorders = Recorders::new()
+        .with(&mut csv)
+        .with(&mut looks)
+        .with(&mut onlooker);
+    if world.cutter().is_none() {
+        recorders = recorders.with(&mut growth).with(&mut loss);
+    }
+    let mut shown = world.show(&mut recorders);
+    let ended = world.advance_shown(steps, &mut shown);
+    let (taken, work) = (shown.steps(), shown.work());
+    drop(recorders);
     onlooker.finish();
-    let system = simulation.system();
-    let outrun = simulation.outrun(integrator, &state);
-    let mut left = simulation.left_by_tools(&state);
-    let cutters = cutter.iter();
-    left.extend(cutters.flat_map(|cutter| cutter.borrow().left_by_strokes()));
+    let (simulation, state) = (world.simulation(), world.state());
+    let outrun = simulation.outrun(world.integrator(), state);
+    let mut left = simulation.left_by_tools(state);
+    left.extend(
+        world
+            .cutter()
+            .map_or_else(Vec::new, Cutter::left_by_strokes),
+    );
     // Where the reader of the motion closed its pipe, nobody wants a summary.
-    let is_wanted = report.is_err() || csv.finish()? == Delivery::Whole;
-    let of_motion = looked.warnings().into_iter().chain(loss.in_words());
+    let is_wanted = ended.is_err() || csv.finish()? == Delivery::Whole;
+    let of_motion = looks.into_looked().warnings().into_iter();
     let of_motion = growth
         .in_words()
         .map(str::to_owned)
         .into_iter()
-        .chain(of_motion);
+        .chain(of_motion)
+        .chain(loss.in_words());
     for warning in of_motion.chain(outrun).chain(left).filter(|_| is_wanted) {
         complain(&format!("warning: {warning}"));
     }
-    let report = report?;
+    let ended = ended.map_err(|error| Failure::of_advance(error, state.t()))?;
     if is_wanted {
-        voice.say(&summary(simulation, &report))?;
-        if let Some(cutter) = &cutter {
-            let cutter = cutter.borrow();
+        voice.say(&summary(simulation, taken, work))?;
+        if let Some(cutter) = world.cutter() {
             let words = words_of_cuts(cutter.totals(), cutter.pieces());
             voice.say(&format!("cut: {words}"))?;
         }
-        for remark in integrator.computed_by().iter().chain(&integrator.remarks()) {
+        let method = world.integrator();
+        for remark in method.computed_by().iter().chain(&method.remarks()) {
             voice.say(remark)?;
         }
         let displaced = |probe: &&Probe| probe.quantity == Quantity::Displacement;
@@ -279,9 +243,9 @@ fn probes_alone(
             ))?;
         }
         // Where it diverged there is no motion to hold.
-        let reactions = match report.outcome {
-            Outcome::Diverged { .. } => Vec::new(),
-            _ => simulation.reactions(&state)?,
+        let reactions = match ended {
+            Ended::Diverged { .. } => Vec::new(),
+            _ => simulation.reactions(state)?,
         };
         for Reaction { by, on, force } in reactions {
             let force = force.map(|force| format!("{force:.6e}"));
@@ -295,17 +259,17 @@ fn probes_alone(
             voice.say(&format!("probes: {}", path.display()))?;
         }
     }
-    match report.outcome {
-        Outcome::Diverged { t, dof } => Err(Failure::Diverged {
+    match ended {
+        Ended::Diverged { t, place } => Err(Failure::Diverged {
             t,
-            place: system.cell_name(dof),
+            place,
             remedy: simulation.after_divergence(),
         }),
-        Outcome::Stopped if onlooker.is_interrupted() => Err(Failure::Interrupted {
+        Ended::Stopped if onlooker.is_interrupted() => Err(Failure::Interrupted {
             t: state.t(),
             remedy: String::new(),
         }),
-        Outcome::Finished | Outcome::Stopped => Ok(()),
+        Ended::Finished | Ended::Stopped => Ok(()),
     }
 }
 

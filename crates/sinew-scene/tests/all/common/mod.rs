@@ -2,14 +2,12 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-use std::cell::RefCell;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use sinew_core::{Outcome, Run, State, simulate};
-use sinew_integrators::Stepper;
+use sinew_core::{State, simulate};
 use sinew_scene::output::{Delivery, Destination};
-use sinew_scene::{Cutter, ProbeCsv, ProbeRows, Scene, SceneError, SceneSource, Seen, Simulation};
+use sinew_scene::{ProbeCsv, ProbeRows, Scene, SceneError, SceneSource, Simulation};
 
 /// Reads and builds the scene that stands in a file called `scene.toml`.
 pub(crate) fn try_build(text: &str) -> Result<Simulation, SceneError> {
@@ -43,56 +41,6 @@ pub(crate) fn run(simulation: &Simulation, folder: &Path) -> (State, String) {
     .unwrap();
     assert_eq!(csv.finish().unwrap(), Delivery::Whole);
     (state, fs::read_to_string(path).unwrap())
-}
-
-/// A body that is cut, on its way.
-pub(crate) struct CutRun {
-    /// The scene on the body that is left.
-    pub(crate) simulation: Simulation,
-    pub(crate) state: State,
-    pub(crate) cutter: RefCell<Cutter>,
-    pub(crate) integrator: Box<dyn Stepper>,
-    is_seen: bool,
-}
-
-impl CutRun {
-    pub(crate) fn new(simulation: Simulation) -> Self {
-        Self {
-            cutter: RefCell::new(simulation.cutter().unwrap().unwrap()),
-            integrator: simulation.integrator().unwrap(),
-            state: simulation.initial_state().clone(),
-            is_seen: false,
-            simulation,
-        }
-    }
-
-    /// Takes so many steps.
-    pub(crate) fn advance(&mut self, steps: usize) {
-        let mut left = steps;
-        while left > 0 {
-            let run = Run {
-                steps: left,
-                ..self.simulation.run()
-            };
-            let moving = (
-                Some(&self.cutter),
-                &mut *self.integrator as _,
-                &mut self.state,
-            );
-            let seen = Seen {
-                steps: 0,
-                beginning: self.is_seen,
-            };
-            let stretch = self.simulation.stretch(moving, &run, (&mut (), seen));
-            let stretch = stretch.unwrap();
-            assert_eq!(stretch.report.outcome, Outcome::Finished);
-            left -= stretch.report.steps;
-            self.is_seen = true;
-            if let Some(change) = stretch.change {
-                self.simulation = change.simulation;
-            }
-        }
-    }
 }
 
 /// The numbers in a row of a CSV file.

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use sinew_record::{Ended, Request};
 use sinew_scene::Scene;
 use sinew_scene::output::complain;
-use sinew_session::{Journal, Log, Replay};
+use sinew_world::{Journal, Log, Replay};
 
 use crate::command::Failure;
 use crate::command::interruption::Interruption;

@@ -1,12 +1,12 @@
 //! `sinew run --replay`.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
-use sinew_core::Recorders;
-use sinew_record::{Companion, Ended, FrameLooks, Looked, RecordRunError, Request, RunFolder};
+use sinew_record::{Companion, FrameLooks, Request, RunFolder};
 use sinew_scene::output::{Delivery, Destination, Voice, complain};
 use sinew_scene::{Cutter, ProbeCsv, ProbeRows, Scene, WarningKind};
-use sinew_session::{FollowError, Log, Replay};
+use sinew_world::{Ended, FollowError, Log, Recorders, Replay};
 
 use super::arguments::Arguments;
 use super::words::{schedule, summary_of};
@@ -44,47 +44,37 @@ pub(super) fn run(
             again: arguments.again,
         };
         let ended = in_folder(path, &mut replay, &request, interruption)?;
-        return Failure::of_end(ended, replay.session().simulation(), no_remedy);
+        return Failure::of_end(ended, replay.world().simulation(), no_remedy);
     };
     let voice = Voice::apart_from(&destination);
-    let recorded_scene = |replay: &Replay| replay.recorded_scene().map_err(RecordRunError::from);
-    let mut simulation = recorded_scene(&replay)?;
+    let simulation = Arc::clone(replay.world().simulation());
     let course = replay.course();
     let rows = ProbeRows::new(&simulation);
     let steps = (course.steps, course.dt);
     let schedule = schedule(&simulation, &rows, steps, destination.is_kept())?;
-    let mut csv = ProbeCsv::new(destination.open()?, rows, schedule)?.without_rows();
-    let (mut steps, mut looked) = (0, Looked::default());
-    let (followed, is_interrupted) = loop {
-        // After a change of the body steps are counted anew.
-        let mut onlooker = onlooker(&replay, interruption.clone());
-        let mut rows = csv.with_rows(ProbeRows::new(&simulation));
-        let instants = (course.steps, course.dt);
-        let mut looks = FrameLooks::of_steps(&simulation, instants, std::mem::take(&mut looked));
-        let mut recorders = Recorders::new()
-            .with_lent(&mut rows)
-            .with_lent(&mut looks)
-            .with_lent(&mut onlooker);
-        let followed = replay.follow(&simulation, &mut recorders);
-        drop(recorders);
-        onlooker.finish();
-        looked = looks.into_looked();
-        let followed = match followed {
-            Ok(followed) => followed,
-            Err(FollowError::Replay(source)) => return Err(failed(source)),
-            Err(FollowError::Record(error)) => {
-                return Err(sinew_core::SimulateError::from(error).into());
-            }
-        };
-        csv = rows.without_rows();
-        steps += followed.steps;
-        if followed.change.is_none() {
-            break (followed, onlooker.is_interrupted());
+    let mut csv = ProbeCsv::new(destination.open()?, rows, schedule)?;
+    let mut looks = FrameLooks::of_steps(&simulation, steps);
+    let mut onlooker = onlooker(&replay, interruption);
+    let mut recorders = Recorders::new()
+        .with(&mut csv)
+        .with(&mut looks)
+        .with(&mut onlooker);
+    let mut shown = replay.world().show(&mut recorders);
+    let ended = replay.advance(&mut shown);
+    let steps = shown.steps();
+    drop(recorders);
+    onlooker.finish();
+    let ended = match ended {
+        Ok(ended) => ended,
+        Err(FollowError::Replay(source)) => return Err(failed(source)),
+        Err(FollowError::Record(error)) => {
+            return Err(sinew_core::SimulateError::from(error).into());
         }
-        simulation = recorded_scene(&replay)?;
     };
-    let session = replay.session();
-    let left = session
+    let (is_interrupted, looked) = (onlooker.is_interrupted(), looks.into_looked());
+    let world = replay.world();
+    let simulation = world.simulation();
+    let left = world
         .cutter()
         .map_or_else(Vec::new, Cutter::left_by_strokes);
     for warning in looked.warnings().into_iter().chain(left) {
@@ -95,31 +85,31 @@ pub(super) fn run(
             "{}: the {} steps since the last reset repeated, of {} steps and {} commands; t = {:.6} s",
             simulation.scene().title_or_path(),
             steps,
-            session.steps(),
-            session.log().entries().len(),
-            session.t()
+            world.steps(),
+            replay.log().entries().len(),
+            world.t()
         ))?;
         if voice == Voice::StandardOutput {
             voice.say(&format!("probes: {}", probes(arguments).display()))?;
         }
     }
-    match followed.diverged {
-        Some((t, place)) => Err(Failure::Diverged {
+    match ended {
+        Ended::Diverged { t, place } => Err(Failure::Diverged {
             t,
             place,
             remedy: simulation.after_divergence(),
         }),
-        None if followed.is_stopped && is_interrupted => Err(Failure::Interrupted {
-            t: session.t(),
+        Ended::Stopped if is_interrupted => Err(Failure::Interrupted {
+            t: world.t(),
             remedy: no_remedy(),
         }),
-        None => Ok(()),
+        Ended::Finished | Ended::Stopped => Ok(()),
     }
 }
 
 /// What is to be said before a session is repeated. Its folder shows the motion of all nodes, so that probes are not missed.
 pub(crate) fn warnings_of(replay: &Replay) -> Vec<String> {
-    let mut warnings = replay.session().simulation().warnings();
+    let mut warnings = replay.world().simulation().warnings();
     warnings.retain(|warning| warning.kind != WarningKind::NoProbe);
     let warnings = warnings.iter().map(ToString::to_string);
     warnings.chain(replay.warnings()).collect()
@@ -131,12 +121,12 @@ pub(crate) fn in_folder(
     replay: &mut Replay,
     request: &Request,
     interruption: Interruption,
-) -> Result<Ended, Failure> {
+) -> Result<sinew_record::Ended, Failure> {
     let mut onlooker = onlooker(replay, interruption);
     let end = RunFolder::replay(path, replay, request, &mut onlooker);
     onlooker.finish();
     let end = end?;
-    for line in summary_of(replay.session().simulation(), &end, path) {
+    for line in summary_of(replay.world().simulation(), &end, path) {
         complain(&line);
     }
     Ok(end.ended)
@@ -146,7 +136,7 @@ pub(crate) fn in_folder(
 fn onlooker(replay: &Replay, interruption: Interruption) -> Onlooker {
     let course = replay.course();
     let duration = course.steps as f64 * course.dt;
-    let taken = replay.session().steps() - course.first;
+    let taken = replay.world().steps() - course.first;
     Onlooker::new(interruption, course.steps - taken, duration)
 }
 

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use sinew_core::RunReport;
+use sinew_core::StepReport;
 use sinew_record::{MOST_NUMBERS, RecordRunError, RunEnd, words_of_cuts};
 use sinew_scene::output::{Replaced, complain};
 use sinew_scene::{ProbeRows, Schedule, Simulation};
@@ -13,7 +13,7 @@ const MOST_ROWS: usize = 100_000;
 /// The steps after which probes are written down, which is said where they are not all. A table that is kept has no more rows than can be read.
 pub(super) fn schedule(
     simulation: &Simulation,
-    rows: &ProbeRows<'_>,
+    rows: &ProbeRows,
     steps: (usize, f64),
     is_kept: bool,
 ) -> Result<Schedule, RecordRunError> {
@@ -112,14 +112,13 @@ pub(super) fn summary_of(simulation: &Simulation, end: &RunEnd, path: &Path) -> 
 }
 
 /// Some lines about a run of which nothing is kept but the motion of probes.
-pub(super) fn summary(simulation: &Simulation, report: &RunReport) -> String {
+pub(super) fn summary(simulation: &Simulation, steps: usize, work: StepReport) -> String {
     let settings = simulation.settings();
-    let pairs = report.steps as f64 * simulation.system().dofs() as f64;
-    let work = report.work;
+    let pairs = steps as f64 * simulation.system().dofs() as f64;
     let mut text = format!(
         "{}: {} steps of {} s by `{}`: {} sweeps, {} solves",
         simulation.scene().title_or_path(),
-        report.steps,
+        steps,
         simulation.dt(),
         settings.integrator,
         work.sweeps,

@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 use assert_cmd::cargo::CommandCargoExt;
 use serde_json::Value;
 use sinew_scene::Scene;
-use sinew_session::{Log, Replay};
+use sinew_world::{Log, Replay};
 use tungstenite::client::IntoClientRequest;
 use tungstenite::{Message, client};
 
@@ -274,7 +274,7 @@ fn cuts_are_recorded_and_saved_moments_repeated_bit_for_bit() {
         let scene = Scene::load(folder.path("ball.toml")).unwrap();
         let mut replay = Replay::new(scene, log).unwrap();
         while replay.step().unwrap().is_some() {}
-        let session = replay.session();
+        let session = replay.world();
         assert!(session.cuts().unwrap().changes > 0);
         let found = session.state().to_bytes(session.simulation().system());
         assert!(

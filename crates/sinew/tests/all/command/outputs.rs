@@ -43,7 +43,7 @@ impl Folder {
     /// Keeps the log of a session of the spring.
     fn keep_session(&self, log: &str) {
         let scene = sinew_scene::Scene::load(self.path("spring.toml")).unwrap();
-        let mut session = sinew_session::Session::new(scene).unwrap();
+        let mut session = sinew_world::World::new(scene).unwrap();
         session.step().unwrap();
         fs::write(self.path(log), session.log().to_text()).unwrap();
     }

@@ -4,8 +4,8 @@ use std::fs;
 
 use crate::common::sinew;
 use sinew_scene::Scene;
-use sinew_session::{Command, Session};
 use sinew_testkit::scenes::ROLLED;
+use sinew_world::{Command, World};
 
 /// A block under its weight, which a blade splits within .025 s.
 const SPLIT: &str = "gravity = [3.0, 0.0, -5.0]\n[mesh]\ncube = { cells = 3, edge = 0.1 }\n[[region]]\ndensity = 1000.0\n\
@@ -19,7 +19,7 @@ fn the_probes_of_a_session_that_only_waits_are_those_of_the_run_also_after_cuts(
     let folder = tempfile::tempdir().unwrap();
     let path = |name: &str| folder.path().join(name);
     fs::write(path("split.toml"), SPLIT).unwrap();
-    let mut session = Session::new(Scene::load(path("split.toml")).unwrap()).unwrap();
+    let mut session = World::new(Scene::load(path("split.toml")).unwrap()).unwrap();
     for _ in 0..7 {
         session.step().unwrap();
     }
@@ -46,8 +46,7 @@ fn probes_alone_of_a_run_and_of_a_session_tell_that_the_body_is_in_itself() {
     let folder = tempfile::tempdir().unwrap();
     let probe = "[[probe]]\nname = \"end\"\npoint = [0.24, 0.0, 0.0]\n";
     fs::write(folder.path().join("rolled.toml"), [ROLLED, probe].concat()).unwrap();
-    let mut session =
-        Session::new(Scene::load(folder.path().join("rolled.toml")).unwrap()).unwrap();
+    let mut session = World::new(Scene::load(folder.path().join("rolled.toml")).unwrap()).unwrap();
     for _ in 0..50 {
         session.step().unwrap();
     }

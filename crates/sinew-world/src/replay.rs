@@ -1,37 +1,36 @@
 //! Sessions repeated by their logs.
 
-use std::sync::Arc;
-
-use sinew_core::{Moment, RecordError, Recorder, StepReport, Verdict};
-use sinew_scene::{DrivenLoadError, Scene, Simulation};
+use sinew_core::{RecordError, StepReport};
+use sinew_scene::Scene;
 
 use crate::command::CommandError;
 use crate::course::Course;
-use crate::error::{SessionError, SessionStepError};
+use crate::error::{AdvanceError, WorldError, WorldStepError};
 use crate::log::{Header, Log};
-use crate::session::{BodyCut, Session};
+use crate::recorder::{Recorder, Shown};
+use crate::world::{Ended, World};
 
 /// A session that is repeated by its log, step by step and bit for bit, from its last reset on: what came before left no trace but its number of steps.
 ///
 /// ```
 /// use sinew_scene::{Scene, SceneSource};
-/// use sinew_session::{Command, Replay, Session};
+/// use sinew_world::{Command, Replay, World};
 ///
 /// let text = "[oscillator]\nmass = 0.1\nstiffness = 100.0\ndamping = 1.0\nvelocity = -5.0\n\
 ///             [run]\nduration = 1.0\nintegrator = \"central-difference\"\ndt = 0.01\n";
 /// let scene = Scene::parse(SceneSource::new("spring.toml", text))?;
-/// let mut session = Session::new(scene.clone())?;
+/// let mut session = World::new(scene.clone())?;
 /// session.step()?;
 /// session.command(Command::Dt(0.005))?;
 /// session.step()?;
 ///
 /// let mut replay = Replay::new(scene, session.log().clone())?;
 /// while replay.step()?.is_some() {}
-/// assert_eq!(replay.session().state(), session.state());
+/// assert_eq!(replay.world().state(), session.state());
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub struct Replay {
-    session: Session,
+    world: World,
     log: Log,
     /// Commands given so far, or left out since a reset came after them.
     given: usize,
@@ -43,7 +42,7 @@ pub struct Replay {
 pub enum ReplayError {
     /// A scene that cannot be driven.
     #[error(transparent)]
-    Session(#[from] SessionError),
+    World(#[from] WorldError),
     /// A log of another scene.
     #[error(
         "the log is that of another scene: {what}; give the scene, and the values of the command line, with which the session ran"
@@ -70,7 +69,7 @@ pub enum ReplayError {
         /// The step.
         step: usize,
         /// The reason.
-        source: SessionStepError,
+        source: WorldStepError,
     },
     /// A session that takes another course.
     #[error(
@@ -97,30 +96,15 @@ pub enum FollowError {
     Record(#[from] RecordError),
 }
 
-/// The end of a session that was repeated and recorded.
-#[derive(Clone, Debug, PartialEq, Default)]
-pub struct Followed {
-    /// Steps that were recorded.
-    pub steps: usize,
-    /// Their work.
-    pub work: StepReport,
-    /// Whether a recorder stopped it.
-    pub is_stopped: bool,
-    /// The time (s) and the place at which it diverged in the end, if it did.
-    pub diverged: Option<(f64, String)>,
-    /// The change of the body at which it stands, with which another scene begins.
-    pub change: Option<BodyCut>,
-}
-
 impl Replay {
     /// Begins to repeat the session of a scene: it stands where the last reset left it, or at its beginning.
     ///
     /// # Errors
     /// [`ReplayError`] for the log of another scene, or a scene that cannot be driven.
     pub fn new(scene: Scene, log: Log) -> Result<Self, ReplayError> {
-        let header = Header::of(&scene).map_err(SessionError::from)?;
+        let header = Header::of(&scene).map_err(WorldError::from)?;
         log.header().check(&header)?;
-        let mut session = Session::with_header(scene, header)?;
+        let mut world = World::with_header(scene, header)?;
         let before = log.up_to_last_reset();
         let given = before.len();
         if let Some(reset) = before.last() {
@@ -129,13 +113,9 @@ impl Replay {
                 step: reset.step,
                 source: Box::new(source),
             };
-            session.begin_at_reset(before).map_err(failed)?;
+            world.begin_at_reset(before).map_err(failed)?;
         }
-        let mut replay = Self {
-            session,
-            log,
-            given,
-        };
+        let mut replay = Self { world, log, given };
         replay.give()?;
         Ok(replay)
     }
@@ -160,14 +140,14 @@ impl Replay {
     /// # Errors
     /// [`ReplayError`] where the session did not fail. A step that diverged then is repeated, and counts.
     pub fn step(&mut self) -> Result<Option<StepReport>, ReplayError> {
-        let step = self.session.steps();
+        let step = self.world.steps();
         if step >= self.log.steps() {
             return Ok(None);
         }
-        let work = match self.session.step() {
+        let work = match self.world.step() {
             Ok(work) => work,
             // No reset comes after it any more, so that it was the last.
-            Err(_) if self.session.steps() == step + 1 && step + 1 == self.log.steps() => {
+            Err(_) if self.world.steps() == step + 1 && step + 1 == self.log.steps() => {
                 StepReport::default()
             }
             Err(source) => {
@@ -183,12 +163,12 @@ impl Replay {
 
     /// Gives the commands that came after the steps taken so far.
     fn give(&mut self) -> Result<(), ReplayError> {
-        let step = self.session.steps();
+        let step = self.world.steps();
         while let Some(entry) = self.log.entries().get(self.given) {
             if entry.step != step {
                 break;
             }
-            let found = self.session.reached();
+            let found = self.world.reached();
             if found.to_bits() != entry.t.to_bits() {
                 let expected = entry.t;
                 return Err(ReplayError::Course {
@@ -199,7 +179,7 @@ impl Replay {
             }
             self.given += 1;
             let number = self.given;
-            self.session
+            self.world
                 .command(entry.command.clone())
                 .map_err(|source| ReplayError::Command {
                     number,
@@ -210,93 +190,72 @@ impl Replay {
         Ok(())
     }
 
-    /// The motion that [`Replay::follow`] shows.
+    /// The motion that [`Replay::advance`] shows.
     #[must_use]
     pub fn course(&self) -> Course {
-        Course::of(&self.log, self.session.simulation(), self.log.steps())
+        Course::of(&self.log, self.world.simulation(), self.log.steps())
     }
 
     /// As much of [`Replay::course`] as is repeated.
     #[must_use]
     pub fn course_so_far(&self) -> Course {
-        Course::of(&self.log, self.session.simulation(), self.session.steps())
+        Course::of(&self.log, self.world.simulation(), self.world.steps())
     }
 
-    /// The scene under whose forces [`Replay::follow`] shows the motion.
+    /// Repeats what is left, and shows it to a recorder. Time rises in it.
     ///
     /// # Errors
-    /// [`DrivenLoadError`] where loads cannot be driven.
-    pub fn recorded_scene(&self) -> Result<Arc<Simulation>, DrivenLoadError> {
-        self.session.recorded(self.course().drives_loads)
-    }
-
-    /// Repeats what is left up to the next change of the body, and shows it to a recorder, with its steps counted from where this is called. Time rises in
-    /// it. `simulation` is [`Replay::recorded_scene`], which is another one after each change.
-    ///
-    /// # Errors
-    /// [`FollowError`] for a session that takes another course than its log, and for a recorder that fails.
-    pub fn follow(
+    /// [`FollowError`] for a motion that takes another course than its log, and for a recorder that fails.
+    pub fn advance<R: Recorder + ?Sized>(
         &mut self,
-        simulation: &Simulation,
-        recorder: &mut dyn Recorder,
-    ) -> Result<Followed, FollowError> {
-        let begins = self.session.steps();
-        let watches = recorder.watches();
-        let mut watched = Vec::with_capacity(watches.len());
-        let mut work = StepReport::default();
-        let mut is_stopped = false;
+        shown: &mut Shown<'_, R>,
+    ) -> Result<Ended, FollowError> {
         loop {
-            let session = &self.session;
-            let (step, state) = (session.steps() - begins, session.state());
-            let diverged = match session.failure() {
-                Some(SessionStepError::Diverged { t, place }) => Some((*t, place.clone())),
-                _ => None,
-            };
-            if diverged.is_none() {
-                if !watches.is_empty() {
-                    watched.clear();
-                    watched.extend(watches.iter().map(|dof| state.u[*dof as usize]));
-                    is_stopped |= recorder.watched(state.t(), &watched)? == Verdict::Stop;
+            let (step, end) = (self.world.steps(), self.log.steps());
+            let next = self.log.entries().get(self.given);
+            let next = next.map_or(end, |entry| entry.step.min(end));
+            let ended = match self.world.advance_shown(next.saturating_sub(step), shown) {
+                Ok(ended) => ended,
+                Err(AdvanceError::Record(error)) => return Err(error.into()),
+                Err(AdvanceError::Step(source)) => {
+                    let step = self.world.steps() + 1;
+                    return Err(ReplayError::Step { step, source }.into());
                 }
-                if recorder.next(step) == Some(step) {
-                    let moment = Moment {
-                        system: simulation.system(),
-                        inputs: session.inputs(),
-                        state,
-                        step,
-                        work,
-                    };
-                    is_stopped |= recorder.record(&moment)? == Verdict::Stop;
-                }
-            }
-            let taken = match is_stopped || diverged.is_some() {
-                true => None,
-                false => self.step()?,
             };
-            work += taken.unwrap_or_default();
-            let change = taken.and_then(|_| self.session.change().cloned());
-            if taken.is_none() || change.is_some() {
-                return Ok(Followed {
-                    steps: self.session.steps() - begins,
-                    work,
-                    is_stopped,
-                    diverged,
-                    change,
-                });
+            match ended {
+                // No reset comes after the last step, which may have diverged then too.
+                Ended::Diverged { t, place } if self.world.steps() < end => {
+                    let (step, source) =
+                        (self.world.steps(), WorldStepError::Diverged { t, place });
+                    return Err(ReplayError::Step { step, source }.into());
+                }
+                Ended::Finished => {
+                    self.give()?;
+                    if self.world.steps() >= end {
+                        return Ok(Ended::Finished);
+                    }
+                }
+                ended => return Ok(ended),
             }
         }
     }
 
-    /// The session as far as it is repeated.
+    /// The world as far as its motion is repeated.
     #[must_use]
-    pub fn session(&self) -> &Session {
-        &self.session
+    pub fn world(&self) -> &World {
+        &self.world
     }
 
     /// The log.
     #[must_use]
     pub fn log(&self) -> &Log {
         &self.log
+    }
+}
+
+impl AsRef<World> for Replay {
+    fn as_ref(&self) -> &World {
+        &self.world
     }
 }
 

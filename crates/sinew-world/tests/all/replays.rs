@@ -6,7 +6,7 @@ use crate::common::{CUBE, scene, session};
 use proptest::prelude::Rng;
 use proptest::test_runner::{RngAlgorithm, TestRng};
 use sinew_core::Options;
-use sinew_session::{Command, Log, Replay, Session};
+use sinew_world::{Command, Log, Replay, World};
 
 /// Numbers at random, the same in every run.
 struct Dice(TestRng);
@@ -68,7 +68,7 @@ fn command(dice: &mut Dice) -> Command {
 }
 
 /// All that determines the motion. Which loads led to a state is no part of that, and a command that turns them changes it between two steps.
-fn bytes(session: &Session) -> Vec<u8> {
+fn bytes(session: &World) -> Vec<u8> {
     let mut state = session.state().clone();
     state.loads = None;
     state.to_bytes(session.simulation().system())
@@ -118,19 +118,19 @@ fn repeated(text: &str, commands: usize) {
         let log = Log::parse(Path::new("s.log"), &part.text).unwrap();
         let mut replay = Replay::new(scene(text), log.clone()).unwrap();
         // What came before a reset is not repeated.
-        assert_eq!(replay.session().steps(), part.begins);
-        assert!(bytes(replay.session()) == states[0]);
+        assert_eq!(replay.world().steps(), part.begins);
+        assert!(bytes(replay.world()) == states[0]);
         while replay.step().unwrap().is_some() {
-            let step = replay.session().steps();
-            assert!(bytes(replay.session()) == states[step], "step {step}");
+            let step = replay.world().steps();
+            assert!(bytes(replay.world()) == states[step], "step {step}");
         }
-        assert_eq!(replay.session().steps(), part.ends);
-        assert_eq!(*replay.session().log(), log);
+        assert_eq!(replay.world().steps(), part.ends);
+        assert_eq!(replay.world().log(), &log);
     }
     let mut replay = Replay::new(scene(text), read).unwrap();
     while replay.step().unwrap().is_some() {}
-    assert!(bytes(replay.session()) == bytes(&session));
-    assert_eq!(replay.session().log(), session.log());
+    assert!(bytes(replay.world()) == bytes(&session));
+    assert_eq!(replay.world().log(), session.log());
 }
 
 /// A session up to before one of its resets, or to its end.
@@ -142,7 +142,7 @@ struct Part {
     text: String,
 }
 
-fn parts(session: &Session) -> Vec<Part> {
+fn parts(session: &World) -> Vec<Part> {
     let (text, entries) = (session.log().to_text(), session.log().entries());
     let lines: Vec<&str> = text.lines().collect();
     let head = lines.len() - entries.len() - 1;
@@ -172,7 +172,7 @@ fn a_course_has_the_methods_and_the_mean_step_of_what_was_taken_since_the_reset(
     session.command(Command::Reset).unwrap();
     session.command(to("central-difference")).unwrap();
     let first = session.steps();
-    let replayed = |session: &mut Session, command, steps| {
+    let replayed = |session: &mut World, command, steps| {
         session.command(command).unwrap();
         for _ in 0..steps {
             session.step().unwrap();
@@ -240,7 +240,7 @@ fn a_table_that_changed_is_another_scene() {
     let rows = "t_s,x_m,y_m,z_m\n0.0,0.04,0.04,0.08\n0.2,0.04,0.04,0.07\n";
     std::fs::write(&table, rows).unwrap();
     let load = || sinew_scene::Scene::load(&path).unwrap();
-    let mut session = Session::new(load()).unwrap();
+    let mut session = World::new(load()).unwrap();
     session.step().unwrap();
     let log = session.log().clone();
     assert!(Replay::new(load(), log.clone()).is_ok());

@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use crate::common::{CutRun, build};
+use crate::common::{advance, build, following};
 use sinew_core::Inputs;
 use sinew_scene::Scene;
 
@@ -18,9 +18,10 @@ fn cut(text: &str, strokes: &str) -> (usize, Vec<String>) {
     )
     .unwrap();
     fs::write(&path, text).unwrap();
-    let mut run = CutRun::new(Scene::load(path).and_then(Scene::build).unwrap());
-    run.advance(run.simulation.run().steps);
-    let cutter = run.cutter.into_inner();
+    let mut run = following(Scene::load(path).and_then(Scene::build).unwrap());
+    let steps = run.simulation().run().steps;
+    advance(&mut run, steps);
+    let cutter = run.cutter().unwrap();
     (cutter.pieces(), cutter.left_by_strokes())
 }
 
@@ -74,9 +75,10 @@ fn a_cube_that_flies_through_a_resting_blade_is_parted() {
          start = [0.05, 0.05, 0.13]\nvelocity = [0.0, 0.0, 0.0]\n[cutting]\ntool = \"scalpel\"\nsnap = 0.25\n",
         "duration = 0.07\nintegrator = \"central-difference\"\ndt = 5e-4\n",
     );
-    let mut run = CutRun::new(build(&scene));
-    run.advance(run.simulation.run().steps);
-    let cutter = run.cutter.into_inner();
+    let mut run = following(build(&scene));
+    let steps = run.simulation().run().steps;
+    advance(&mut run, steps);
+    let cutter = run.cutter().unwrap();
     assert_eq!((cutter.pieces(), cutter.left_by_strokes()), (2, Vec::new()));
     assert!((cutter.totals().report.area - 0.01).abs() < 1e-6);
 }

@@ -1,6 +1,6 @@
-//! Errors of sessions and their steps.
+//! Errors of worlds and their steps.
 
-use sinew_core::{InputError, OptionError, StepError};
+use sinew_core::{InputError, OptionError, RecordError, StateBytesError, StepError};
 use sinew_scene::{CuttingError, DrivenLoadError, RefusedLoad, SceneError};
 use sinew_tools::ToolsError;
 
@@ -9,7 +9,7 @@ use crate::input_file::InputFileError;
 /// Reasons for which a scene cannot be driven.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
-pub enum SessionError {
+pub enum WorldError {
     /// A scene that cannot be built.
     #[error(transparent)]
     Scene(#[from] SceneError),
@@ -36,10 +36,10 @@ pub enum SessionError {
     File(#[from] InputFileError),
 }
 
-/// Reasons for which a step of a session fails. Only a reset goes on from there.
+/// Reasons for which a step fails. Only a reset goes on from there.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
-pub enum SessionStepError {
+pub enum WorldStepError {
     /// A displacement that is not finite, or beyond [`sinew_scene::Simulation::divergence_limit`]. The step was taken, and counts.
     #[error("the motion diverged at t = {t} s: {place} is too far away")]
     Diverged {
@@ -68,4 +68,26 @@ pub enum SessionStepError {
         /// The step (s).
         dt: f64,
     },
+}
+
+/// Reasons for which [`crate::World::advance`] ends before its time.
+#[derive(Debug, thiserror::Error)]
+pub enum AdvanceError {
+    /// A step that failed.
+    #[error(transparent)]
+    Step(#[from] WorldStepError),
+    /// A recorder that failed.
+    #[error(transparent)]
+    Record(#[from] RecordError),
+}
+
+/// Reasons for which [`crate::World::restore`] fails.
+#[derive(Debug, thiserror::Error)]
+pub enum RestoreError {
+    /// Cuts of another body.
+    #[error(transparent)]
+    Cutting(#[from] CuttingError),
+    /// A state of another system.
+    #[error(transparent)]
+    State(#[from] StateBytesError),
 }

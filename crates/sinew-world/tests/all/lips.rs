@@ -3,7 +3,9 @@
 use std::fs;
 use std::path::Path;
 
-use crate::common::CutRun;
+use sinew_world::World;
+
+use crate::common::{advance, following};
 use sinew_core::{LinearSystem, State, System};
 use sinew_scene::{Overlap, OverlapWatch, Scene, Simulation};
 
@@ -40,20 +42,20 @@ const DOWN: &str = "gravity = [0.0, 0.0, -9.81]\n";
 const TIP: &str = "[[probe]]\nname = \"tip\"\npoint = [0.02, 0.02, 0.06]\n";
 
 /// What is told of surfaces in each other at the end of a run.
-fn overlap(run: &CutRun) -> Option<Overlap> {
-    let mut watch = OverlapWatch::new(run.simulation.model().body().unwrap());
-    watch.look_at_state(&run.state).unwrap();
+fn overlap(run: &World) -> Option<Overlap> {
+    let mut watch = OverlapWatch::new(run.simulation().model().body().unwrap());
+    watch.look_at_state(run.state()).unwrap();
     watch.into_deepest()
 }
 
 /// The mean displacement (m) of the top along z at the end of a run, and what of it ran.
-fn sunk(scene: Simulation) -> (f64, CutRun) {
+fn sunk(scene: Simulation) -> (f64, World) {
     let steps = scene.run().steps;
-    let mut run = CutRun::new(scene);
-    run.advance(steps);
-    let body = run.simulation.model().body().unwrap();
+    let mut run = following(scene);
+    advance(&mut run, steps);
+    let body = run.simulation().model().body().unwrap();
     let mut u = vec![[0.0; 3]; body.mesh.points.len()];
-    let (t, state) = (run.state.t(), &run.state);
+    let (t, state) = (run.state().t(), run.state());
     body.model.displacements_at(t, &state.u, &mut u).unwrap();
     let all = body.mesh.points.iter().zip(&u);
     let top: Vec<f64> = all
@@ -73,16 +75,16 @@ fn a_cut_bar_bears_what_rests_on_it_as_a_whole_one() {
     };
     // A blade above the bar cuts nothing.
     let (whole, run) = of(0.07, "lips = \"contact\"");
-    assert_eq!(run.cutter.borrow().pieces(), 1);
+    assert_eq!(run.cutter().unwrap().pieces(), 1);
     // The tip of a column under its own weight sinks by rho g L^2 / (2 E).
     let expected = 1000.0 * 9.81 * 0.06_f64.powi(2) / (2.0 * E);
     assert!((whole / expected - 1.0).abs() < 0.02, "{whole} {expected}");
     let (met, run) = of(0.03, "lips = \"contact\"");
-    assert_eq!(run.cutter.borrow().pieces(), 2);
+    assert_eq!(run.cutter().unwrap().pieces(), 2);
     // Lips slide: only what the unequal loads of corners shear across the cut is lost.
     assert!((met / whole - 1.0).abs() < 0.01, "{met} {whole}");
-    let contact = run.simulation.model().contact().unwrap();
-    let report = contact.lips_report(&run.state);
+    let contact = run.simulation().model().contact().unwrap();
+    let report = contact.lips_report(run.state());
     assert_eq!((contact.lip_pairs(), report.contacts), (9, 9));
     let (free, _) = of(0.03, "lips = \"free\"");
     assert!(free > 10.0 * whole, "{free} {whole}");
@@ -103,15 +105,15 @@ fn a_plate_on_a_cut_bar_presses_with_e_a_d_over_l() {
         let strokes = across([0.03; 2]) + crossing;
         let scene = bar_of_strokes(folder.path(), &strokes, plate, lips, EXPLICIT);
         let (top, run) = sunk(scene);
-        let contact = run.simulation.model().contact().unwrap();
-        let force = contact.report(&run.state, 0).force[2];
-        let residual = contact.lips_report(&run.state).largest_residual;
-        let said = run.simulation.left_by_tools(&run.state).join("\n");
+        let contact = run.simulation().model().contact().unwrap();
+        let force = contact.report(run.state(), 0).force[2];
+        let residual = contact.lips_report(run.state()).largest_residual;
+        let said = run.simulation().left_by_tools(run.state()).join("\n");
         let depth = overlap(&run).map(|overlap| overlap.depth);
         (
             force,
             residual,
-            (run.cutter.borrow().pieces(), top, said, depth),
+            (run.cutter().unwrap().pieces(), top, said, depth),
         )
     };
     let expected = E * 4e-4 * 0.002 / 0.06;
@@ -157,9 +159,9 @@ impl Energy {
     };
 
     /// That after one more step of `dt` (s), which is not more.
-    fn that_fell(self, run: &CutRun, dt: f64) -> Self {
-        let body = run.simulation.model().body().unwrap();
-        let (model, State { u, v, .. }) = (&body.model, &run.state);
+    fn that_fell(self, run: &World, dt: f64) -> Self {
+        let body = run.simulation().model().body().unwrap();
+        let (model, State { u, v, .. }) = (&body.model, run.state());
         let quadratic = |x: &[f64]| {
             let mut out = vec![0.0; x.len()];
             model.operators().stiffness().multiply(x, &mut out);
@@ -178,7 +180,7 @@ impl Energy {
             sum <= bound,
             "{sum} after {} at {}",
             self.sum,
-            run.state.t()
+            run.state().t()
         );
         Self { sum, scale }
     }
@@ -190,18 +192,18 @@ fn lips_that_bounce_on_each_other_bring_in_no_energy() {
     for heights in [[0.03; 2], [0.022, 0.038]] {
         let scene = cut_bar(folder.path(), heights, DOWN, "snap = 0.25", EXPLICIT);
         let dt = scene.run().dt;
-        let mut run = CutRun::new(scene);
-        run.advance(1);
-        assert_eq!(run.cutter.borrow().pieces(), 2);
+        let mut run = following(scene);
+        advance(&mut run, 1);
+        assert_eq!(run.cutter().unwrap().pieces(), 2);
         let (mut energy, mut met): (Energy, usize) = (Energy::NONE, 0);
         for step in 0..2000 {
-            run.advance(1);
+            advance(&mut run, 1);
             energy = energy.that_fell(&run, dt);
             if heights[0] == heights[1] && step % 100 == 0 {
                 assert_eq!(overlap(&run), None);
             }
-            let contact = run.simulation.model().contact().unwrap();
-            met += contact.lips_report(&run.state).contacts;
+            let contact = run.simulation().model().contact().unwrap();
+            met += contact.lips_report(run.state()).contacts;
         }
         assert!(met > 1000, "{met}");
     }
@@ -221,21 +223,21 @@ fn lips_that_overlap_as_a_blade_cuts_on_bring_in_no_energy() {
     fs::write(&path, text).unwrap();
     let scene = Scene::load(path).and_then(Scene::build).unwrap();
     let dt = scene.run().dt;
-    let mut run = CutRun::new(scene);
+    let mut run = following(scene);
     let (mut energy, mut met_before_cuts) = (Energy::NONE, 0);
     for _ in 0..300 {
-        let (changes, contact) = (run.cutter.borrow().totals().changes, &run.state.contact);
-        let pushed = run.simulation.model().contact();
+        let (changes, contact) = (run.cutter().unwrap().totals().changes, &run.state().contact);
+        let pushed = run.simulation().model().contact();
         let pushed = pushed.filter(|_| !contact.is_empty());
-        let met = pushed.map_or(0, |tools| tools.lips_report(&run.state).contacts);
-        run.advance(1);
+        let met = pushed.map_or(0, |tools| tools.lips_report(run.state()).contacts);
+        advance(&mut run, 1);
         // Copies lie where their originals lie: without snapping, a cut changes no energy.
         energy = energy.that_fell(&run, dt);
-        if run.cutter.borrow().totals().changes > changes {
+        if run.cutter().unwrap().totals().changes > changes {
             met_before_cuts += met;
         }
     }
-    assert!(run.cutter.borrow().totals().changes > 4);
+    assert!(run.cutter().unwrap().totals().changes > 4);
     assert!(met_before_cuts > 0);
 }
 

@@ -2,8 +2,11 @@
 
 use std::fs;
 use std::path::Path;
+use std::sync::Arc;
 
-use crate::common::{CutRun, build};
+use sinew_world::World;
+
+use crate::common::{advance, build, end_of, following};
 use sinew_core::{Inputs, State};
 use sinew_scene::{CutTotals, Cutter, Scene, Simulation};
 
@@ -36,7 +39,7 @@ fn load(folder: &Path, text: &str, strokes: &str) -> Simulation {
 
 /// A run to its end: the scene on the body that is left, its state, and what was cut.
 struct Ended {
-    simulation: Simulation,
+    simulation: Arc<Simulation>,
     state: State,
     totals: CutTotals,
     mass: [f64; 2],
@@ -46,17 +49,17 @@ struct Ended {
 /// Runs a scene, in runs of so many steps each.
 fn run_in_parts(simulation: Simulation, steps: usize) -> Ended {
     let mut left = simulation.run().steps;
-    let mut run = CutRun::new(simulation);
-    let mass = run.cutter.borrow().mass();
+    let mut run = following(simulation);
+    let mass = run.cutter().unwrap().mass();
     while left > 0 {
         let part = steps.min(left);
-        run.advance(part);
+        advance(&mut run, part);
         left -= part;
     }
-    let cutter = run.cutter.into_inner();
+    let cutter = run.cutter().unwrap();
     Ended {
-        simulation: run.simulation,
-        state: run.state,
+        simulation: Arc::clone(run.simulation()),
+        state: run.state().clone(),
         totals: *cutter.totals(),
         mass: [mass, cutter.mass()],
         pieces: cutter.pieces(),
@@ -215,7 +218,7 @@ fn a_scene_whose_blade_never_comes_has_the_motion_of_one_without() {
     let ended = run(load(folder.path(), &text, &across(9.0, 9.1)));
     assert_eq!(ended.totals, CutTotals::default());
     let whole = load(folder.path(), &bar("", EXPLICIT), "");
-    let (state, _) = crate::common::run(&whole, folder.path());
+    let state = end_of(whole);
     assert_eq!(ended.state.u, state.u);
 }
 
@@ -303,7 +306,7 @@ fn strokes_before_the_motion_cut_the_body_that_it_starts_with() {
     assert!(!built(-0.3, 0.0).is_cut_later());
     let beforehand = built(-0.3, -0.1).cut_beforehand().unwrap();
     assert!(!beforehand.is_cut());
-    let (state, _) = crate::common::run(&beforehand, folder.path());
+    let state = end_of(beforehand);
     assert_eq!(state, run_on_the_way.state);
 
     // A stroke that goes on is only begun beforehand.
@@ -465,8 +468,9 @@ fn a_grasp_outlives_a_cut() {
         assert!(top > 9, "{top}");
         assert_eq!((report.contacts, report.seized), (top, 9));
         let whole = load(folder.path(), &bar(&jaw, EXPLICIT), "");
-        let (other, _) = crate::common::run(&whole, folder.path());
-        let theirs = whole.model().tools().unwrap().report(&other, 0);
+        let tools = std::sync::Arc::clone(whole.model().tools().unwrap());
+        let other = end_of(whole);
+        let theirs = tools.report(&other, 0);
         assert!((report.work / theirs.work - 1.0).abs() < 0.5);
         let probe = ended.simulation.probes()[0].displacement(state.t(), &state.u);
         assert!((probe.last().unwrap() - 0.003).abs() < 1.1e-3);
@@ -689,9 +693,62 @@ fn the_certificate_counts_steps_before_and_after_cuts() {
     let folder = tempfile::tempdir().unwrap();
     let cutting = "[cutting]\ntable = \"strokes.csv\"\n";
     let text = bar(cutting, "integrator = \"cnn-energy\"\ndt = 1e-3\n");
-    let mut run = CutRun::new(load(folder.path(), &text, &across(0.01, 0.02)));
-    run.advance(40);
-    assert_eq!(run.cutter.borrow().pieces(), 2);
-    let said = run.integrator.remarks().join("\n");
+    let mut run = following(load(folder.path(), &text, &across(0.01, 0.02)));
+    advance(&mut run, 40);
+    assert_eq!(run.cutter().unwrap().pieces(), 2);
+    let said = run.integrator().remarks().join("\n");
     assert!(said.contains("in 40 steps it rose by"), "{said}");
+}
+
+/// Before the cut the strip has the stress of its law with nu = 0, P = mu (l - 1/l); after it the slit is open and the strip softer.
+#[test]
+fn the_strip_is_pulled_as_its_law_says_and_its_slit_opens() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/ready/slit.toml");
+    let simulation = Scene::load(path).and_then(Scene::build).unwrap();
+    let mass = simulation.model().body().unwrap().model.report().mass;
+    let steps = simulation.run().steps;
+    let mut run = following(simulation);
+    // The blade begins in the middle of the duration.
+    advance(&mut run, steps / 2);
+    let (stretch, mu) = (1.1, 3500.0 / 2.0);
+    let pull = mu * (stretch - 1.0 / stretch) * 0.04 * 0.01;
+    let force = |run: &World| run.simulation().reactions(run.state()).unwrap()[3].force[0];
+    is_near(force(&run), pull, 1e-3);
+    assert_eq!(run.cutter().unwrap().totals().changes, 0);
+    advance(&mut run, steps - steps / 2);
+    let after = force(&run) / pull;
+    assert!(
+        (0.2..0.8).contains(&after),
+        "{after} {:?} {}",
+        run.cutter().unwrap().totals(),
+        run.state().t()
+    );
+    let totals = *run.cutter().unwrap().totals();
+    // From an edge to the middle, through all of the thickness, as the mesh has it.
+    is_near(totals.report.area, 0.02 * 0.01, 0.3);
+    is_near(totals.blade_work, 50.0 * totals.report.area, 1e-12);
+    is_near(run.cutter().unwrap().mass(), mass, 1e-12);
+    // Both lips at the edge, of which one has the probe, are apart by more than half of what the ends are pulled.
+    let cut = run.simulation().model().body().unwrap();
+    let mut places = vec![[0.0; 3]; cut.mesh.points.len()];
+    let (t, u) = (run.state().t(), &run.state().u);
+    cut.model.positions(t, u, &mut places).unwrap();
+    let from = cut.cut.as_ref().unwrap();
+    let own = run.simulation().probes()[0].nodes[0].index;
+    let origin = from.cut.origins[own as usize];
+    let copies = (0..)
+        .zip(&from.cut.origins)
+        .filter(|(_, other)| **other == origin);
+    let x: Vec<f64> = copies
+        .map(|(node, _): (usize, _)| places[node][0])
+        .collect();
+    assert_eq!(x.len(), 2);
+    assert!((x[0] - x[1]).abs() > 0.004, "{x:?}");
+}
+
+fn is_near(value: f64, expected: f64, tolerance: f64) {
+    assert!(
+        (value / expected - 1.0).abs() < tolerance,
+        "{value} {expected}"
+    );
 }

@@ -176,7 +176,7 @@ mod tests {
 
     use super::*;
     use crate::command::Command;
-    use crate::session::Session;
+    use crate::session::World;
 
     const SPRING: &str = "[oscillator]\nmass = 0.1\nstiffness = 100.0\ndamping = 1.0\nvelocity = -5.0\n\
         [run]\nduration = 1.0\nintegrator = \"central-difference\"\ndt = 0.01\n";
@@ -186,7 +186,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("s.log");
         let scene = Scene::parse(SceneSource::new("spring.toml", SPRING)).unwrap();
-        let mut session = Session::new(scene).unwrap();
+        let mut session = World::new(scene).unwrap();
         let mut journal = Journal::create(path.clone()).unwrap();
         let mut drive = |journal: &mut Journal, dt: f64| {
             session.command(Command::Dt(dt)).unwrap();
@@ -217,7 +217,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("s.log");
         let scene = Scene::parse(SceneSource::new("spring.toml", SPRING)).unwrap();
-        let mut session = Session::new(scene).unwrap();
+        let mut session = World::new(scene).unwrap();
         session.step().unwrap();
         let mut journal = Journal::create(path.clone()).unwrap();
         journal.keep_up(session.log()).unwrap();

@@ -15,7 +15,7 @@ use crate::command::Command;
 use crate::input_file::{InputFile, InputFileError, sha256};
 
 /// What a log belongs to.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Header {
     /// Version of the program.
     pub program: String,

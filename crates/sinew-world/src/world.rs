@@ -1,18 +1,23 @@
-//! A scene that is driven while it runs.
+//! A scene in motion.
 
 use std::cell::OnceCell;
 use std::sync::Arc;
 
 use sinew_core::{
-    Batch, Channel, Inputs, OptionError, Options, StableStep, State, StepError, StepReport, System,
+    Batch, Channel, Inputs, OptionError, Options, Outcome, RecordedSteps, Run, SimulateError,
+    StableStep, State, StepError, StepReport, System,
 };
 use sinew_integrators::Stepper;
-use sinew_scene::{CutTotals, Cutter, DrivenLoadError, Overlap, OverlapWatch, Scene, Simulation};
+use sinew_scene::{
+    CutTotals, Cutter, CuttingError, DrivenLoadError, Overlap, OverlapWatch, Scene, SceneError,
+    Simulation,
+};
 use sinew_tools::{Pose, Steering};
 
 use crate::command::{Command, CommandError};
-use crate::error::{SessionError, SessionStepError};
+use crate::error::{AdvanceError, RestoreError, WorldError, WorldStepError};
 use crate::log::{Entry, Header, Log};
+use crate::recorder::{BodyCut, Recorder, Shown};
 
 /// Largest number of a pose (m or rad): far beyond any body, and far from what overflows.
 const FARTHEST: f64 = 1e6;
@@ -20,40 +25,44 @@ const FARTHEST: f64 = 1e6;
 /// Largest factor of a load.
 const STRONGEST: f64 = 1e6;
 
-/// A scene that is driven while it runs: [`Command`]s between its steps, and a [`Log`] of them that repeats it bit for bit.
+/// A scene in motion: the only thing that takes its steps.
 ///
-/// Without commands it takes the steps that `sinew run` takes, with the same bits, unless a tool is finer than the surface somewhere off its path: it may be
-/// led there, and meets triangles from the beginning.
+/// It holds the scene as it was built, the body as cuts left it, state, integrator, tools and inputs. A [`Recorder`] sees
+/// the motion of [`World::advance`]; [`Command`]s between steps steer tools, turn loads up and down, cut, and switch methods.
+///
+/// A world of [`World::new`] takes commands, and its [`Log`] repeats it bit for bit. Without commands it takes the steps of
+/// [`World::following`], with the same bits, unless a tool is smaller than the surface triangles somewhere off its path: it may be
+/// steered there, and meets triangles from the beginning.
 ///
 /// ```
 /// use sinew_scene::{Scene, SceneSource};
-/// use sinew_session::{Command, Session};
+/// use sinew_world::{Command, World};
 ///
 /// let text = "[oscillator]\nmass = 0.1\nstiffness = 100.0\ndamping = 1.0\nvelocity = -5.0\n\
 ///             [run]\nduration = 1.0\nintegrator = \"central-difference\"\ndt = 0.01\n";
 /// let scene = Scene::parse(SceneSource::new("spring.toml", text))?;
-/// let mut session = Session::new(scene)?;
-/// session.step()?;
-/// session.command(Command::Dt(0.005))?;
-/// session.step()?;
-/// assert!((session.t() - 0.015).abs() < 1e-12);
-/// assert_eq!(session.log().entries().len(), 1);
+/// let mut world = World::new(scene)?;
+/// world.step()?;
+/// world.command(Command::Dt(0.005))?;
+/// world.advance(1, &mut ())?;
+/// assert!((world.t() - 0.015).abs() < 1e-12);
+/// assert_eq!(world.log().entries().len(), 1);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub struct Session {
-    /// The scene in the beginning.
+pub struct World {
+    /// The scene as it was built.
     scene: Arc<Simulation>,
     /// The scene on the body as cuts left it, with its loads as it has them.
     body: Arc<Simulation>,
-    /// The scene as it runs: from the first factor of a load on one whose loads follow inputs. Until then they are known beforehand, which some
-    /// methods need, and every sum has the bits of a run.
+    /// The scene as it runs: from the first factor of a load on with loads that follow inputs. Until then they are known
+    /// beforehand, which some methods need, and every sum has the bits of a run.
     simulation: Arc<Simulation>,
     cutter: Option<Cutter>,
-    /// Sheets that the next step begins with: both ends (m) of a blade before and after.
+    /// Sheets that the next step begins with.
     sheets: Vec<Sheet>,
-    /// Where the blade of the last sheet came to.
+    /// The last place of the blade of the last sheet.
     blade: Option<[[f64; 3]; 2]>,
-    /// The change of the body in the last step.
+    /// The cut at the beginning of the last step.
     change: Option<BodyCut>,
     method: Method,
     /// Channels without values.
@@ -62,28 +71,46 @@ pub struct Session {
     tools: Vec<Hand>,
     loads: Vec<Knob>,
     state: State,
-    /// Room for a step that is tried.
+    /// Buffer for a step that is tried.
     trial: State,
     steps: usize,
     /// Time (s) after the last step that was taken whole; a step that fails may leave a part of it behind.
     reached: f64,
-    failure: Option<SessionStepError>,
+    failure: Option<WorldStepError>,
+    /// Displacement (m) beyond which the motion counts as diverged.
+    limit: f64,
     log: Log,
+    /// True if tools and loads have their courses alone.
+    follows: bool,
+}
+
+/// End of [`World::advance`].
+#[derive(Clone, Debug, PartialEq)]
+pub enum Ended {
+    /// All steps were taken.
+    Finished,
+    /// The recorder stopped it.
+    Stopped,
+    /// A displacement was not finite or passed the limit. The step counts.
+    Diverged {
+        /// Time (s).
+        t: f64,
+        /// The degree of freedom that went farthest, in the system's words.
+        place: String,
+    },
+}
+
+/// All that the motion of a world continues from.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Saved {
+    /// What was cut; empty if nothing can cut.
+    pub cuts: Vec<u8>,
+    /// The state, see [`State::to_bytes`].
+    pub state: Vec<u8>,
 }
 
 /// The ends (m) of a blade before and after.
 type Sheet = [[[f64; 3]; 2]; 2];
-
-/// A body that became another one at the beginning of the last step.
-#[derive(Clone, Debug, PartialEq)]
-pub struct BodyCut {
-    /// The state before the cut.
-    pub before: State,
-    /// The state after it, before the step.
-    pub after: State,
-    /// The energy (J) that it brought in.
-    pub energy: f64,
-}
 
 /// An integrator with its step.
 struct Method {
@@ -140,18 +167,18 @@ impl Method {
     }
 }
 
-impl Session {
-    /// Builds a scene and checks that a step can be taken.
+impl World {
+    /// Builds a scene that takes commands, and checks that a step can be taken.
     ///
     /// # Errors
-    /// [`SessionError`] for a scene that `sinew run` refuses as well, and for files of it that cannot be read again.
-    pub fn new(scene: Scene) -> Result<Self, SessionError> {
+    /// [`WorldError`] for a scene that `sinew run` refuses as well, and for files of it that cannot be read again.
+    pub fn new(scene: Scene) -> Result<Self, WorldError> {
         let header = Header::of(&scene)?;
         Self::with_header(scene, header)
     }
 
-    /// As [`Session::new`], with what is known of the scene's files already.
-    pub(crate) fn with_header(scene: Scene, header: Header) -> Result<Self, SessionError> {
+    /// Like [`World::new`], with a header that is known already.
+    pub(crate) fn with_header(scene: Scene, header: Header) -> Result<Self, WorldError> {
         let mut simulation = scene.build()?;
         if let Some(refused) = simulation.refused_load() {
             return Err(refused.into());
@@ -172,27 +199,15 @@ impl Session {
             channel,
             next: None,
         });
-        let state = simulation.initial_state().clone();
-        let simulation = Arc::new(simulation);
-        let mut session = Self {
+        let method = Method::of_scene(&simulation)?;
+        let mut world = Self {
             tools: tools.collect(),
-            method: Method::of_scene(&simulation)?,
             loads: loads.collect(),
-            cutter: simulation.cutter()?,
-            sheets: Vec::new(),
-            blade: None,
-            change: None,
-            scene: Arc::clone(&simulation),
-            body: Arc::clone(&simulation),
-            simulation,
             fresh: inputs.clone(),
             inputs,
-            trial: state.clone(),
-            reached: state.t(),
-            state,
-            steps: 0,
-            failure: None,
             log: Log::new(header),
+            follows: false,
+            ..Self::still(simulation, method)?
         };
         let Self {
             simulation,
@@ -201,9 +216,57 @@ impl Session {
             trial,
             method,
             ..
-        } = &mut session;
+        } = &mut world;
         try_step(simulation.system(), inputs, state, trial, method)?;
-        Ok(session)
+        Ok(world)
+    }
+
+    /// A world that follows its scene, by an integrator that is set up for it: tools and loads have their courses, and
+    /// commands to them are refused.
+    ///
+    /// # Errors
+    /// [`CuttingError`] for a body that cannot be cut, which building the scene rules out.
+    pub fn following(
+        simulation: Simulation,
+        integrator: Box<dyn Stepper>,
+    ) -> Result<Self, CuttingError> {
+        let settings = simulation.settings();
+        let method = Method {
+            integrator,
+            dt: simulation.dt(),
+            asked: (settings.integrator.clone(), settings.options.clone()),
+            stable_step: OnceCell::new(),
+        };
+        Self::still(simulation, method)
+    }
+
+    /// The beginning of a motion without inputs.
+    fn still(simulation: Simulation, method: Method) -> Result<Self, CuttingError> {
+        let state = simulation.initial_state().clone();
+        let limit = simulation.run().divergence_limit;
+        let simulation = Arc::new(simulation);
+        Ok(Self {
+            method,
+            tools: Vec::new(),
+            loads: Vec::new(),
+            cutter: simulation.cutter()?,
+            sheets: Vec::new(),
+            blade: None,
+            change: None,
+            scene: Arc::clone(&simulation),
+            body: Arc::clone(&simulation),
+            simulation,
+            fresh: Inputs::new(),
+            inputs: Inputs::new(),
+            trial: state.clone(),
+            reached: state.t(),
+            state,
+            steps: 0,
+            failure: None,
+            limit,
+            log: Log::new(Header::default()),
+            follows: true,
+        })
     }
 
     /// The same session, whose log says which values, as `KEY=VALUE`, were set in the scene's file to get the scene.
@@ -217,18 +280,6 @@ impl Session {
     #[must_use]
     pub fn simulation(&self) -> &Arc<Simulation> {
         &self.simulation
-    }
-
-    /// The scene whose forces under [`Session::inputs`] are those of the session from its last reset on, for a recorder that sees all of it: also where loads
-    /// are driven later.
-    ///
-    /// # Errors
-    /// [`DrivenLoadError`] where loads cannot be driven.
-    pub fn recorded(&self, drives_loads: bool) -> Result<Arc<Simulation>, DrivenLoadError> {
-        if drives_loads {
-            return Ok(Arc::new(self.driven()?));
-        }
-        Ok(Arc::clone(&self.body))
     }
 
     /// The scene with loads that follow inputs.
@@ -308,7 +359,7 @@ impl Session {
     /// loads that are not known beforehand. Whether a step can be taken by another method shows when that is given.
     ///
     /// # Errors
-    /// [`CommandError`] for a command that [`Session::command`] refuses as well.
+    /// [`CommandError`] for a command that [`World::command`] refuses as well.
     pub fn check(&self, command: &Command) -> Result<(), CommandError> {
         self.check_words(command)?;
         if matches!(command, Command::LoadFactor { .. }) && !self.drives_loads() {
@@ -320,6 +371,9 @@ impl Session {
     /// Checks names and numbers of a command.
     fn check_words(&self, command: &Command) -> Result<(), CommandError> {
         match command {
+            Command::Pose { .. } | Command::LoadFactor { .. } if self.follows => {
+                Err(CommandError::Follows)
+            }
             Command::Pose {
                 tool,
                 position,
@@ -443,29 +497,176 @@ impl Session {
         Ok(())
     }
 
-    /// Takes one step of [`Session::dt`].
+    /// Takes one step of [`World::dt`].
     ///
     /// # Errors
-    /// [`SessionStepError`] where the motion diverges, a law refuses a state or a method finds no solution: only [`Command::Reset`] goes on from
-    /// there, and every other step gives the same error.
-    pub fn step(&mut self) -> Result<StepReport, SessionStepError> {
+    /// [`WorldStepError`] where the motion diverges, a law refuses a state or a method finds no solution: only [`Command::Reset`]
+    /// continues from there, and every other step gives the same error.
+    pub fn step(&mut self) -> Result<StepReport, WorldStepError> {
+        self.guarded(|world| {
+            world.begin_step()?;
+            let system = world.simulation.system();
+            let mut batch = Batch::new(system, &world.inputs, world.method.dt, 1);
+            batch = batch.with_divergence_limit(world.limit);
+            let taken = batch.take(&mut *world.method.integrator, &mut world.state);
+            let (count, work, diverged) = (batch.taken(), batch.work(), batch.diverged());
+            world.count(count);
+            taken?;
+            match diverged {
+                Some(dof) => Err(world.diverged(dof)),
+                None => Ok(work),
+            }
+        })
+    }
+
+    /// Takes steps under the eyes of a recorder, which sees the present state first.
+    ///
+    /// # Errors
+    /// [`AdvanceError`].
+    pub fn advance<R: Recorder + ?Sized>(
+        &mut self,
+        steps: usize,
+        recorder: &mut R,
+    ) -> Result<Ended, AdvanceError> {
+        let mut shown = self.show(recorder);
+        self.advance_shown(steps, &mut shown)
+    }
+
+    /// Takes the steps of [`World::dt`] that cover the time up to `t` (s).
+    ///
+    /// # Errors
+    /// [`AdvanceError`].
+    pub fn advance_to<R: Recorder + ?Sized>(
+        &mut self,
+        t: f64,
+        recorder: &mut R,
+    ) -> Result<Ended, AdvanceError> {
+        let steps = Run::covering(t - self.t(), self.dt()).steps;
+        self.advance(steps, recorder)
+    }
+
+    /// A recorder that has not seen the present state.
+    pub fn show<'r, R: Recorder + ?Sized>(&self, recorder: &'r mut R) -> Shown<'r, R> {
+        Shown {
+            steps: RecordedSteps::new(recorder),
+            simulation: Arc::clone(&self.simulation),
+        }
+    }
+
+    /// A recorder that saw the motion up to the present state earlier, in so many steps.
+    pub fn show_again<'r, R: Recorder + ?Sized>(
+        &self,
+        recorder: &'r mut R,
+        steps: usize,
+    ) -> Shown<'r, R> {
+        Shown {
+            steps: RecordedSteps::resumed(recorder, steps),
+            simulation: Arc::clone(&self.simulation),
+        }
+    }
+
+    /// Takes steps under the eyes of a recorder that may have seen others.
+    ///
+    /// Between two acts of a blade steps are taken in batches, as by [`sinew_core::simulate()`].
+    ///
+    /// # Errors
+    /// [`AdvanceError`] where a step or the recorder fails. A step that fails is counted as in [`World::step`].
+    pub fn advance_shown<R: Recorder + ?Sized>(
+        &mut self,
+        steps: usize,
+        shown: &mut Shown<'_, R>,
+    ) -> Result<Ended, AdvanceError> {
+        let end = shown.steps() + steps;
+        // The body before any cut is what stands at the beginning.
+        let ended = self.take(0, shown)?;
+        if steps == 0 || ended != Ended::Finished {
+            return Ok(ended);
+        }
+        loop {
+            let span = self.guarded(Self::begin_step)?;
+            shown.follow(&self.simulation, &self.inputs, self.change.as_ref())?;
+            let ended = self.take(span.min(end - shown.steps()), shown)?;
+            if ended != Ended::Finished || shown.steps() >= end {
+                return Ok(ended);
+            }
+        }
+    }
+
+    /// Takes steps within which nothing is cut or steered.
+    fn take<R: Recorder + ?Sized>(
+        &mut self,
+        steps: usize,
+        shown: &mut Shown<'_, R>,
+    ) -> Result<Ended, AdvanceError> {
+        shown.follow(&self.simulation, &self.inputs, None)?;
+        let run = Run {
+            dt: self.method.dt,
+            steps,
+            divergence_limit: self.limit,
+        };
+        let before = shown.steps();
+        let system = (self.simulation.system(), &self.inputs);
+        let taken = shown
+            .steps
+            .take(system, &mut *self.method.integrator, &mut self.state, &run);
+        self.count(shown.steps() - before);
+        match taken {
+            Ok(Outcome::Finished) => Ok(Ended::Finished),
+            Ok(Outcome::Stopped) => Ok(Ended::Stopped),
+            Ok(Outcome::Diverged { dof, .. }) => {
+                let failure = self.diverged(dof);
+                self.failure = Some(failure.clone());
+                match failure {
+                    WorldStepError::Diverged { t, place } => Ok(Ended::Diverged { t, place }),
+                    failure => Err(failure.into()),
+                }
+            }
+            Err(SimulateError::Step(error)) => {
+                let failure = WorldStepError::from(error);
+                self.failure = Some(failure.clone());
+                Err(failure.into())
+            }
+            Err(SimulateError::Record(error)) => Err(error.into()),
+        }
+    }
+
+    /// Keeps the failure of a step.
+    fn guarded<T>(
+        &mut self,
+        act: impl FnOnce(&mut Self) -> Result<T, WorldStepError>,
+    ) -> Result<T, WorldStepError> {
         if let Some(failure) = &self.failure {
             return Err(failure.clone());
         }
-        let stepped = self.advance();
-        if let Err(failure) = &stepped {
+        let acted = act(self);
+        if let Err(failure) = &acted {
             self.failure = Some(failure.clone());
         }
-        stepped
+        acted
     }
 
-    fn advance(&mut self) -> Result<StepReport, SessionStepError> {
+    /// Counts steps that were taken.
+    fn count(&mut self, steps: usize) {
+        self.steps += steps;
+        self.reached = self.state.t();
+        self.log.ends_after(self.steps);
+    }
+
+    fn diverged(&self, dof: usize) -> WorldStepError {
+        WorldStepError::Diverged {
+            t: self.state.t(),
+            place: self.simulation.system().cell_name(dof),
+        }
+    }
+
+    /// Steers, turns loads and cuts at the beginning of a step; the number of steps until it must be called again.
+    fn begin_step(&mut self) -> Result<usize, WorldStepError> {
         let dt = self.method.dt;
         let mut clock = self.state.clock;
         clock.advance(dt);
         let (t, end) = (self.state.t(), clock.time());
         if end <= t {
-            return Err(SessionStepError::Time { t, dt });
+            return Err(WorldStepError::Time { t, dt });
         }
         self.steer(t, end)?;
         for load in &mut self.loads {
@@ -474,22 +675,19 @@ impl Session {
             }
         }
         self.cut_before(end)?;
-        let system = self.simulation.system();
-        let limit = self.simulation.run().divergence_limit;
-        let mut batch = Batch::new(system, &self.inputs, dt, 1).with_divergence_limit(limit);
-        batch.take(&mut *self.method.integrator, &mut self.state)?;
-        self.steps += batch.taken();
-        self.reached = self.state.t();
-        self.log.ends_after(self.steps);
-        if let Some(dof) = batch.diverged() {
-            let (t, place) = (self.state.t(), system.cell_name(dof));
-            return Err(SessionStepError::Diverged { t, place });
+        if self.tools.iter().any(|hand| hand.target.is_some()) {
+            return Ok(1);
         }
-        Ok(batch.work())
+        let idle = match &self.cutter {
+            // A stroke that is met late is followed from its beginning all the same.
+            Some(cutter) => (cutter.idle_until(t) - t) / dt,
+            None => f64::INFINITY,
+        };
+        Ok((idle as usize).max(1))
     }
 
     /// Cuts what hands and the scene cut at the beginning of a step that ends at `end` (s).
-    fn cut_before(&mut self, end: f64) -> Result<(), SessionStepError> {
+    fn cut_before(&mut self, end: f64) -> Result<(), WorldStepError> {
         self.change = None;
         let drives_loads = self.drives_loads();
         let Some(cutter) = &mut self.cutter else {
@@ -519,7 +717,7 @@ impl Session {
             Err(error) => {
                 // What is shown of a session that failed is one body with its own state.
                 self.state = before;
-                return Err(SessionStepError::Cutting(error));
+                return Err(WorldStepError::Cutting(error));
             }
         };
         self.change = Some(BodyCut {
@@ -531,7 +729,7 @@ impl Session {
         self.simulation = Arc::clone(&self.body);
         if drives_loads {
             let driven = self.driven();
-            let driven = driven.map_err(|error| SessionStepError::Driven(error.to_string()))?;
+            let driven = driven.map_err(|error| WorldStepError::Driven(error.to_string()))?;
             self.simulation = Arc::new(driven);
         }
         self.method.stable_step = OnceCell::new();
@@ -539,7 +737,7 @@ impl Session {
     }
 
     /// Gives the channels of all tools in hand their poses at the end (s) of a step that begins at `t` (s).
-    fn steer(&mut self, t: f64, end: f64) -> Result<(), SessionStepError> {
+    fn steer(&mut self, t: f64, end: f64) -> Result<(), WorldStepError> {
         let last = self.state.clock.last_step().unwrap_or(0.0);
         for (index, hand) in self.tools.iter_mut().enumerate() {
             let Some((position, rotation_vector)) = hand.target else {
@@ -560,6 +758,39 @@ impl Session {
             hand.steering
                 .forget_before(&mut self.inputs, t - 2.0 * last);
         }
+        Ok(())
+    }
+
+    /// Sets the integrator up for the body and the step.
+    ///
+    /// # Errors
+    /// [`SceneError`] at the key for which it is refused.
+    pub fn set_up(&mut self) -> Result<StepReport, SceneError> {
+        self.simulation.set_up(&mut *self.method.integrator)
+    }
+
+    /// All that the motion continues from, on the same scene.
+    #[must_use]
+    pub fn save(&self) -> Saved {
+        Saved {
+            cuts: self.cutter.as_ref().map_or_else(Vec::new, Cutter::to_bytes),
+            state: self.state.to_bytes(self.body.system()),
+        }
+    }
+
+    /// Continues from what [`World::save`] returned in a world that follows the same scene, which has taken no step.
+    ///
+    /// # Errors
+    /// [`RestoreError`] for the bytes of another scene.
+    pub fn restore(&mut self, saved: &Saved) -> Result<(), RestoreError> {
+        if let Some(cutter) = &mut self.cutter
+            && let Some(cut) = cutter.restore(&saved.cuts, &self.scene)?
+        {
+            self.body = Arc::new(cut);
+            self.simulation = Arc::clone(&self.body);
+        }
+        self.state = State::from_bytes(&saved.state, self.body.system())?;
+        self.reached = self.state.t();
         Ok(())
     }
 
@@ -623,7 +854,7 @@ impl Session {
 
     /// The failure of the last step, from which only a reset goes on.
     #[must_use]
-    pub fn failure(&self) -> Option<&SessionStepError> {
+    pub fn failure(&self) -> Option<&WorldStepError> {
         self.failure.as_ref()
     }
 
@@ -654,16 +885,22 @@ impl Session {
         watch.into_deepest()
     }
 
-    /// All commands so far.
+    /// All commands so far; none in a world that follows its scene.
     #[must_use]
     pub fn log(&self) -> &Log {
         &self.log
     }
 
-    /// All commands of a session that has ended.
+    /// All commands of a motion that has ended.
     #[must_use]
     pub fn into_log(self) -> Log {
         self.log
+    }
+}
+
+impl AsRef<World> for World {
+    fn as_ref(&self) -> &World {
+        self
     }
 }
 

@@ -6,7 +6,7 @@ use std::path::Path;
 use crate::common::{CUBE, session};
 use proptest::prelude::*;
 use sinew_core::{OptionValue, Options};
-use sinew_session::{Command, Journal, Log, Replay};
+use sinew_world::{Command, Journal, Log, Replay};
 
 fn parse(text: &str) -> Result<Log, String> {
     Log::parse(Path::new("s.log"), text).map_err(|error| error.to_string())

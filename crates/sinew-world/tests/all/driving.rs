@@ -2,10 +2,10 @@
 
 use crate::common::{CUBE, scene, session};
 use sinew_core::{LinearModel, LinearOperators, Load, Options, Ramp, Run, State, simulate};
-use sinew_session::{Command, Session, SessionStepError};
 use sinew_testkit::scenes::ROLLED;
+use sinew_world::{Command, World, WorldStepError};
 
-fn steps(session: &mut Session, count: usize) {
+fn steps(session: &mut World, count: usize) {
     for _ in 0..count {
         session.step().unwrap();
     }
@@ -89,7 +89,7 @@ fn a_tip_that_is_led_between_nodes_far_from_its_path_does_not_pass_through() {
 #[test]
 fn sessions_are_sent_to_other_threads() {
     fn is_send<T: Send>() {}
-    is_send::<Session>();
+    is_send::<World>();
 }
 
 #[test]
@@ -311,7 +311,7 @@ fn a_motion_that_diverges_ends_by_name_and_can_be_reset() {
     session.command(Command::Dt(0.2)).unwrap();
     let failed = (0..1000).find_map(|_| session.step().err()).unwrap();
     assert!(
-        matches!(failed, SessionStepError::Diverged { .. }),
+        matches!(failed, WorldStepError::Diverged { .. }),
         "{failed}"
     );
     assert_eq!(session.step().unwrap_err().to_string(), failed.to_string());
@@ -327,7 +327,7 @@ fn a_motion_that_diverges_ends_by_name_and_can_be_reset() {
 fn a_step_longer_than_the_duration_is_refused_at_its_line() {
     let text = CUBE.replace("dt = 0.002", "dt = 100.0");
     let line = 1 + text.lines().position(|line| line == "dt = 100.0").unwrap();
-    let refused = Session::new(scene(&text)).err().unwrap();
+    let refused = World::new(scene(&text)).err().unwrap();
     assert_eq!(
         refused.to_string(),
         format!(
@@ -355,7 +355,7 @@ fn a_cut_that_leaves_nothing_fails_by_name_and_leaves_the_body_before_it() {
     session.command(cut(-0.1, 0.2)).unwrap();
     session.command(cut(0.2, -0.1)).unwrap();
     let failed = session.step().unwrap_err();
-    assert!(matches!(failed, SessionStepError::Cutting(_)), "{failed}");
+    assert!(matches!(failed, WorldStepError::Cutting(_)), "{failed}");
     assert_eq!(failed.to_string(), "nothing that moves is left of the body");
     assert!(*session.state() == before);
     assert_eq!(session.simulation().system().dofs(), before.u.len());

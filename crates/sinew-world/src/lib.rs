@@ -1,0 +1,23 @@
+//! Scenes in motion.
+//!
+//! A [`World`] is the only thing that takes the steps of a scene: alone, or under the eyes of a [`Recorder`]. [`Command`]s between
+//! its steps steer tools, turn loads up and down, cut, and switch methods. Every command is kept in its [`Log`], which repeats the
+//! motion bit for bit: states depend on the scene and the log, and on nothing else.
+
+mod command;
+mod course;
+mod error;
+mod input_file;
+mod log;
+mod recorder;
+mod replay;
+mod world;
+
+pub use command::{Command, CommandError};
+pub use course::Course;
+pub use error::{AdvanceError, RestoreError, WorldError, WorldStepError};
+pub use input_file::{InputFile, InputFileError};
+pub use log::{Entry, Header, Journal, JournalError, Log, LogError, LogFault};
+pub use recorder::{BodyChange, BodyCut, Recorder, Recorders, Shown};
+pub use replay::{FollowError, Replay, ReplayError};
+pub use world::{Ended, Saved, World};
