@@ -14,7 +14,7 @@ pub trait Contact: Debug + Send + Sync {
     /// The cells whose displacement and velocity it reads after each step.
     fn cells(&self) -> &[u32];
 
-    /// Rest position (m) of each of these cells.
+    /// Rest position (m) of each cell of [`Contact::cells`].
     fn rest(&self) -> &[[f64; 3]];
 
     /// True if a method that does not support this contact may run without it, as with cut faces, which then penetrate

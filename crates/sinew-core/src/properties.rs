@@ -271,7 +271,7 @@ pub enum StableStep {
 }
 
 impl StableStep {
-    /// Stability of a step of `dt` (s); `None` if unknown.
+    /// True if a step of `dt` (s) is stable; `None` if unknown.
     #[must_use]
     pub fn allows(self, dt: f64) -> Option<bool> {
         match self {

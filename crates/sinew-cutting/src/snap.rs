@@ -207,8 +207,8 @@ impl CuttableBody {
         }
     }
 
-    /// True if all tetrahedra at a node keep their shape and frequency within bounds with the node at `place` at rest,
-    /// and are not inverted in the current positions with the node at `now`.
+    /// True if, with the node at `place` at rest, all tetrahedra at it keep their shape and frequency within bounds,
+    /// and if none of them becomes inverted with the node at `now` in the current positions.
     fn may_be_at(&self, node: u32, place: Vector, now: Vector, positions: &[Vector]) -> bool {
         self.incidence.of(node).iter().all(|tet| {
             let corners = self.tets[*tet as usize];

@@ -34,7 +34,7 @@ pub enum PrecisionName {
     F32,
 }
 
-/// Requirements for a machine.
+/// Kind, precision, instructions and threads of a machine.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Settings {
     /// Its kind.

@@ -29,7 +29,7 @@ impl MethodChoice {
     }
 
     /// The choice under which an integrator is compared with others on a case: the scene's own integrator has the
-    /// scene's options, every other its defaults. Those that saturate say at which voltage.
+    /// scene's options, every other its defaults. Methods that saturate show their voltage.
     #[must_use]
     pub fn on(case: &Case, integrator: &str) -> Self {
         Self::of_scene(case.simulation(), integrator)

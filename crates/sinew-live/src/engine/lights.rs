@@ -10,7 +10,7 @@ pub(crate) enum Colour {
     Green,
     /// With a reservation.
     Amber,
-    /// Not as it should be.
+    /// Bad.
     Red,
 }
 

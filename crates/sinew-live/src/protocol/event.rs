@@ -20,7 +20,7 @@ pub(crate) enum Event {
         field: Field,
         /// Factors of the loads, in the order of the scenery.
         factors: Vec<f64>,
-        /// True if a trusted run follows.
+        /// True if a trusted run is computed next to the panes.
         trusted: bool,
     },
     /// Capabilities of the integrators on this scene.

@@ -159,7 +159,7 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// Displacement (m) of a cell against which friction does work, without contact.
+    /// Displacement (m) of a cell over which friction does work, without contact.
     fn swing(&self, place: usize) -> Vector {
         let (from, to) = self.ways.whole(place);
         let kept = self.velocities.get(place);

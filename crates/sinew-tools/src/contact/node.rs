@@ -40,7 +40,7 @@ pub(super) struct Constraint {
     pub(super) stick: Vector,
     /// Coefficient of Coulomb's friction.
     pub(super) friction: f64,
-    /// Displacement (m) against which friction does work: that of the node relative to the tool in the step, in
+    /// Displacement (m) over which friction does work: that of the node relative to the tool in the step, in
     /// staggered steps together with that in the step before.
     pub(super) swing: Vector,
 }

@@ -50,7 +50,7 @@ pub(super) const LIP_CONTACTS: usize = 0;
 pub(super) const LIP_RESIDUAL: usize = 1;
 pub(super) const LARGEST_LIP_RESIDUAL: usize = 2;
 
-/// Displacement (m) of a cell against which friction does work, in a step that moves it by `way` (m). `velocity` (m/s)
+/// Displacement (m) of a cell over which friction does work, in a step that moves it by `way` (m). `velocity` (m/s)
 /// is the velocity before the step, if it was kept: in staggered steps contact works at the mean of the velocities
 /// before and after, otherwise at the velocity after.
 pub(super) fn swing(

@@ -150,7 +150,7 @@ pub enum ToolsError {
     Body {
         /// The tool.
         name: String,
-        /// Error in its body.
+        /// Reason why its body is refused.
         source: ToolBodyError,
     },
     /// A place beyond the triangles.

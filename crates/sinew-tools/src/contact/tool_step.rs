@@ -332,7 +332,7 @@ impl ToolStep {
         }
     }
 
-    /// Displacement (m) of the tool against which friction does work, in a step of `dt` (s), at a place (m) after the
+    /// Displacement (m) of the tool over which friction does work, in a step of `dt` (s), at a place (m) after the
     /// step and without the push of contact on a body. In staggered steps the displacement in the step before is added.
     pub(super) fn swing(&self, place: Vector, dt: f64) -> Vector {
         match &self.body {

@@ -9,7 +9,7 @@ use crate::report::three;
 /// A ratio of two times with its limit.
 #[derive(Clone, Debug, Serialize)]
 pub struct Guard {
-    /// The two kernels or settings that are compared.
+    /// Name of the comparison.
     pub name: String,
     /// The ratio, a median of laps in turn.
     pub ratio: f64,
