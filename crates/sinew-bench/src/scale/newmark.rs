@@ -1,4 +1,4 @@
-//! Decision whether a factorisation is tried: its time and memory grow faster than the body.
+//! Rule that decides if a factorisation is tried: its time and memory grow faster than the body.
 
 use super::row::ScaleRow;
 

@@ -1,4 +1,4 @@
-//! Decision whether sharing sweeps with other threads saves time.
+//! Rule that decides if sweeps are shared with other threads.
 
 /// Kinds of sweeps whose times are told apart; further ones share these.
 const KINDS: usize = 8;
