@@ -150,14 +150,14 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
 
 /// The checks that failed so far.
 struct Failed {
-    /// Whether the first of them ends the run.
+    /// True if the first failed check ends the run.
     is_last: bool,
     /// Each with its reason.
     checks: Vec<String>,
 }
 
 impl Failed {
-    /// What a check comes to if it did not fail.
+    /// The value of a check that did not fail; a failure is noted, or ends the run if `is_last`.
     fn without<T>(
         &mut self,
         name: &str,

@@ -18,7 +18,7 @@ mod trial;
 pub(crate) use programs::finish;
 use programs::text_of;
 
-/// What goes into the archive beside the command, as `git ls-files` takes it.
+/// Content of the archive besides the command, as paths for `git ls-files`.
 const CONTENT: [&str; 8] = [
     "CHANGELOG.md",
     "CITATION.cff",
@@ -108,7 +108,7 @@ fn flags(target: &str) -> Option<&'static str> {
     (!is_gnu || has_static_libc()).then_some("-Ctarget-feature=+crt-static")
 }
 
-/// Whether the C compiler has a C library to link statically.
+/// True if the C compiler has a C library to link statically.
 fn has_static_libc() -> bool {
     let path = text_of(Command::new("cc").arg("-print-file-name=libc.a"));
     path.is_ok_and(|path| Path::new(path.trim()).is_absolute())

@@ -36,7 +36,7 @@ pub(crate) fn run() -> Result<(), Failure> {
     }
 }
 
-/// Whether valgrind is installed.
+/// True if valgrind is installed.
 pub(crate) fn has_valgrind() -> bool {
     succeeds(Command::new("valgrind").arg("--version"))
 }

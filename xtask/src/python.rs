@@ -21,7 +21,7 @@ pub(crate) struct Packages {
     pub(crate) folder: &'static str,
     /// Names and versions in pip's form.
     pub(crate) names: &'static [&'static str],
-    /// Whether they bring libraries that lie beside the modules, which pip's `--target` leaves out.
+    /// True if they bring libraries that lie next to the modules, which pip's `--target` leaves out.
     pub(crate) beside_libraries: bool,
 }
 

@@ -144,7 +144,7 @@ mod tests {
         fs::read_to_string(root().join("README.md")).unwrap()
     }
 
-    /// What a fragment of a scene leaves out.
+    /// Keys that a fragment of a scene leaves out.
     const REST: &str = r#"
 [mesh]
 cube = { cells = 2, edge = 0.1 }

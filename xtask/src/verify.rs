@@ -80,7 +80,7 @@ mod tests {
 
     use super::*;
 
-    /// What a verification of one row leaves in a folder, and how the command ends.
+    /// Files that a verification of one row leaves in a folder, and the result of the command.
     fn concluded(got: f64, verdict: MarkVerdict) -> (Result<(), Failure>, String) {
         let row = VerifiedRow {
             case: "a beam".into(),

@@ -24,7 +24,7 @@ pub struct Bench {
     pub integrators: Vec<String>,
     /// Steps (s); empty for [`default_steps`] of each scene.
     pub steps: Vec<f64>,
-    /// Whether to make fewer steps and repeats.
+    /// True for fewer steps and repeats.
     pub quick: bool,
 }
 
@@ -284,7 +284,7 @@ fn variants(case: &Case, integrator: &str) -> Vec<MethodChoice> {
 /// and are no better.
 const STEPS_OF_EXACT_METHODS: usize = 4;
 
-/// Whether the error of a method does not depend on the step.
+/// True if the error of a method does not depend on the step.
 fn is_exact(method: &MethodChoice) -> bool {
     sinew_integrators::build(&method.integrator, &method.options)
         .is_ok_and(|integrator| integrator.properties().accuracy == Accuracy::Exact)

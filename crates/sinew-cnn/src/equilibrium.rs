@@ -8,7 +8,7 @@ use crate::blocks::CellBlocks;
 /// Most products with K.
 const MOST_PRODUCTS: usize = 20_000;
 
-/// Where a body rests under forces, and how nearly.
+/// Displacement of a body at rest under forces, with its residual.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Equilibrium {
     /// x of `K x = f` (m).

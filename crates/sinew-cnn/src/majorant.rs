@@ -28,7 +28,7 @@ pub enum GammaRule {
 /// Share of `dt^2/4 K` that is added to M.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Blend {
-    /// As much as the step needs: none below .99 of central difference's limit.
+    /// The smallest share that the step needs: 0 below .99 of central difference's limit.
     #[default]
     Auto,
     /// s = 1 at every step.
@@ -168,13 +168,13 @@ impl Majorant {
         self.gamma
     }
 
-    /// Whether the step is below .99 of central difference's limit, so that P1 is M'.
+    /// True if the step is below .99 of central difference's limit, so that P1 is M'.
     #[must_use]
     pub fn mass_suffices(&self) -> bool {
         self.mass_suffices
     }
 
-    /// Whether W is 0: the step is then central difference's.
+    /// True if W is 0: the step is then central difference's.
     #[must_use]
     pub fn adds_nothing(&self) -> bool {
         self.stiffness_weight() == 0.0 && self.dashpot_weight() == 0.0

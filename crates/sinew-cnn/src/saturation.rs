@@ -55,7 +55,7 @@ impl Saturation {
         x.clamp(-self.voltage, self.voltage)
     }
 
-    /// Whether df/dx is 0 at x.
+    /// True if df/dx is 0 at x.
     #[must_use]
     #[inline]
     pub fn saturates(self, x: f64) -> bool {

@@ -62,7 +62,7 @@ impl Inner {
         }
     }
 
-    /// Whether P is one block for each cell.
+    /// True if P is one block for each cell.
     #[must_use]
     pub fn is_single(self) -> bool {
         matches!(self, Self::Block | Self::Jacobi { sweeps: 1 })
@@ -114,7 +114,7 @@ struct Slowest(Option<SlowestMode>);
 #[derive(Clone, Debug)]
 enum Spared {
     None,
-    /// By the blocks.
+    /// Rigid motions deflated from the blocks.
     Blocks(Arc<Deflation>),
     /// Beside an iteration.
     Iteration(Arc<Projection>),
@@ -266,13 +266,14 @@ impl Stabiliser {
         })
     }
 
-    /// Whether rigid motions are spared, so that P takes sums over all cells of a part.
+    /// True if rigid motions are spared, so that P takes sums over all cells of a part.
     #[must_use]
     pub fn spares(&self) -> bool {
         !matches!(self.spared, Spared::None)
     }
 
-    /// Whether P is made of one block for each cell, beside rigid motions that it may spare: a force on a cell then moves that cell alone, or its part as a whole.
+    /// True if P is made of one block for each cell, apart from rigid motions that it may spare: a force on a cell then
+    /// moves that cell alone, or its part as a whole.
     #[must_use]
     pub fn is_of_blocks(&self) -> bool {
         self.inner.is_single()
@@ -429,7 +430,7 @@ impl Solution {
         }
     }
 
-    /// Whether it is one division by the blocks.
+    /// True if the solution is one division by the blocks.
     #[must_use]
     pub fn is_single(&self) -> bool {
         self.sweeps.len() == 1 && self.terms.is_empty()
@@ -480,7 +481,7 @@ fn of_register(r: Register) -> Sweep {
 pub struct Inverse {
     solver: Solver,
     spared: Spared,
-    /// What an iteration is given.
+    /// Right-hand side of an iteration.
     right: Vec<f64>,
 }
 

@@ -16,7 +16,7 @@ struct Change {
 }
 
 impl Changes {
-    /// Whether nothing changed.
+    /// True if nothing changed.
     pub(crate) fn is_empty(&self) -> bool {
         self.0.is_empty()
     }

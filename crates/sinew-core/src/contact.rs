@@ -4,19 +4,21 @@ use std::fmt::Debug;
 
 use crate::{Inputs, State};
 
-/// What touches a body from outside and pushes cells back after each step.
+/// Contact of a body with obstacles or with itself, applied as a correction at the end of each step.
 ///
-/// A step that ends in `P (v+ - v-) = dt F`, `u+ = u + dt v+` with P of one block for each cell leads to a trial state; forces lambda of contact at
-/// cells then change it by `dt P^-1 lambda` (m/s) and `dt^2 P^-1 lambda` (m), which is the step's own response to them: no
-/// stiffness is added, and the stable step stays as it is. What contact remembers stands in [`State::contact`].
+/// A step that ends in `P (v+ - v-) = dt F`, `u+ = u + dt v+`, where P has one block for each cell, leads to a trial
+/// state. Contact forces lambda at cells then change it by `dt P^-1 lambda` (m/s) and `dt^2 P^-1 lambda` (m). This is
+/// the step's own response to them: no stiffness is added, and the stable step is unchanged. The history variables of
+/// contact are stored in [`State::contact`].
 pub trait Contact: Debug + Send + Sync {
     /// The cells whose displacement and velocity it reads after each step.
     fn cells(&self) -> &[u32];
 
-    /// Where each of them rests (m).
+    /// Rest position (m) of each cell of [`Contact::cells`].
     fn rest(&self) -> &[[f64; 3]];
 
-    /// Whether a method that cannot meet it may go on without it, as with the lips of cuts, which then pass each other.
+    /// True if a method that does not support this contact may run without it, as with cut faces, which then penetrate
+    /// each other.
     fn may_be_left_out(&self) -> bool {
         false
     }
@@ -57,12 +59,12 @@ pub trait ShowCells {
     ) -> Shown;
 }
 
-/// Which cells are shown.
+/// Set of cells that a trial state has copied into `state`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shown {
     /// All that contact reads.
     All,
-    /// Those that were listed.
+    /// The cells listed in `near`.
     Listed,
 }
 
@@ -97,7 +99,8 @@ pub struct Meeting<'a> {
     pub kick: Option<f64>,
     /// The size (m/s) up to which a component of a velocity moves the displacement: infinite but for a network that saturates.
     pub saturation: f64,
-    /// Whether velocities hold in the middle of steps, so that what touches works at the mean of its own velocities in this step and the last, and not at that in this step.
+    /// True if velocities hold in the middle of steps. Obstacles then do work at the mean of their velocities in this
+    /// step and the last, instead of their velocity in this step.
     pub is_staggered: bool,
 }
 
@@ -111,7 +114,7 @@ pub enum Inertia<'a> {
 }
 
 impl Meeting<'_> {
-    /// How far (m) a component of a velocity (m/s) after the step moved the displacement in it.
+    /// Displacement (m) over the step of a component whose velocity after the step is `velocity` (m/s).
     #[must_use]
     pub fn way(&self, velocity: f64) -> f64 {
         self.dt * velocity.min(self.saturation).max(-self.saturation)

@@ -73,7 +73,7 @@ pub trait ElasticLaw: Send + Sync {
     /// As [`ElasticLaw::elastic_force`].
     fn node_blocks(&self, trial: &Trial<'_>, out: &mut [f64]) -> Result<(), EvaluationError>;
 
-    /// Whether loads depend on the displacement, as those that follow the surface.
+    /// True if loads depend on the displacement, as loads that follow the surface do.
     fn loads_follow(&self) -> bool {
         false
     }
@@ -100,7 +100,7 @@ pub trait ElasticLaw: Send + Sync {
     /// The mass-proportional rate, the factor of stiffness damping, and a constant matrix.
     fn damping(&self) -> &Damping;
 
-    /// Whether supports move, so that damping between them and cells does work.
+    /// True if supports move, so that damping between them and cells does work.
     fn supports_move(&self) -> bool {
         false
     }
@@ -181,7 +181,7 @@ pub enum Velocities<'a> {
     Cells(&'a [f64]),
     /// These of the degrees of freedom, and those of supports at the trial's time.
     All(&'a [f64]),
-    /// Those of supports alone.
+    /// Velocities of supports alone.
     Supports,
 }
 
@@ -255,7 +255,7 @@ impl ElasticLaw for LinearOperators {
     }
 }
 
-/// What a sweep over deformed elements finds.
+/// Result of a sweep over deformed elements.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Deformed {
     /// W: stored energy (J).

@@ -31,7 +31,7 @@ pub trait ElementForces: Send + Sync {
     fn in_single(&self, shape: SweepShape<'_>) -> Box<dyn ElementSweep<f32>>;
 }
 
-/// What a machine asks of a sweep over elements.
+/// Requirements of a machine for a sweep over elements.
 #[derive(Clone, Copy, Debug)]
 pub struct SweepShape<'a> {
     /// The position of each cell in the machine's vectors.

@@ -25,7 +25,7 @@ impl Twist {
 pub struct FreePart {
     /// Its cells, increasing.
     pub cells: Vec<u32>,
-    /// Where they rest (m).
+    /// Rest positions of the cells (m).
     pub rest: Vec<[f64; 3]>,
     /// Components of them that move.
     pub moves: Vec<[bool; 3]>,

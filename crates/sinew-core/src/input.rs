@@ -139,7 +139,7 @@ impl Inputs {
         }
     }
 
-    /// As [`Inputs::forget_before`], the values of these channels only.
+    /// Like [`Inputs::forget_before`], for the values of these channels only.
     pub fn forget_channels_before(&mut self, channels: &[Channel], t: f64) {
         for Channel(number) in channels {
             if let Some(record) = self.channels.get_mut(*number as usize) {
@@ -164,7 +164,7 @@ impl Inputs {
         self.forces.highest_dof()
     }
 
-    /// Whether a channel exists.
+    /// True if the channel exists.
     #[must_use]
     pub fn has(&self, channel: Channel) -> bool {
         (channel.0 as usize) < self.channels.len()

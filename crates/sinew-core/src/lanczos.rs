@@ -145,8 +145,8 @@ impl Lanczos {
         self.beta = Some(dot(&self.next, &self.primal).max(0.0).sqrt());
     }
 
-    /// Whether the basis spans all that its start can reach, seen beside the size of an eigenvalue. Rounding
-    /// costs the basis its orthogonality, so that n steps need not be enough.
+    /// True if the basis spans all that its start vector can reach: the residual norm is at the rounding of an
+    /// eigenvalue of this size. Rounding costs the basis its orthogonality, so that n steps need not be enough.
     pub(crate) fn is_exhausted(&self, eigenvalue: f64) -> bool {
         let alpha = self.diagonal.last().copied().unwrap_or(0.0);
         self.beta

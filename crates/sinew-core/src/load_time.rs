@@ -296,11 +296,10 @@ impl Ramp {
         smooth + sum
     }
 
-    /// Whether a step over `from`..`to` (s) may take the value as it finds it: no breakpoint lies
-    /// between, rounding of either instant apart. A rise of a squared sine that is long compared with
-    /// the step is smooth at its ends too, where value and slope are continuous; a short one is smooth
-    /// nowhere, so that all steps over it see means of it. Nor is a sine of a short period, of which samples
-    /// would make a slower one.
+    /// True if a step over `from`..`to` (s) may use sampled values: no breakpoint lies between, apart from rounding of
+    /// either instant. A rise of a squared sine that is long compared with the step is smooth at its ends too, where
+    /// value and slope are continuous. A short one is smooth nowhere, so that all steps over it use means of it. Nor is
+    /// a sine of a short period smooth, because samples of it would make a slower sine.
     #[must_use]
     pub fn is_smooth_between(&self, from: f64, to: f64) -> bool {
         self.is_smooth_in_steps(from, to, to - from)

@@ -264,7 +264,7 @@ impl LinearOperators {
         self.matrices.changes.since(revision)
     }
 
-    /// Whether rows changed since the matrices were made.
+    /// True if rows changed since the matrices were made.
     #[must_use]
     pub fn has_changed(&self) -> bool {
         !self.matrices.changes.is_empty()

@@ -162,7 +162,7 @@ impl Options {
         self.0.iter().map(|(key, value)| (key.as_str(), value))
     }
 
-    /// Whether there are none.
+    /// True if there are no options.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()

@@ -12,7 +12,7 @@ pub struct Prepared {
 }
 
 impl Prepared {
-    /// Whether set-up for this system and step is done, under any loads.
+    /// True if set-up for this system and step is done, under any loads.
     #[must_use]
     pub fn is_for(&self, system: &dyn System, dt: f64) -> bool {
         self.done_for == Some((system.revision(), dt))
@@ -27,7 +27,7 @@ impl Prepared {
         operators.changed_since(revision).filter(|_| step == dt)
     }
 
-    /// Whether set-up for this system, its loads and this step is done.
+    /// True if set-up for this system, its loads and this step is done.
     #[must_use]
     pub fn is_for_loads(&self, system: &dyn System, dt: f64) -> bool {
         self.is_for(system, dt) && self.loads == loads_revision(system)

@@ -17,7 +17,7 @@ pub struct Properties {
     pub other_damping: OtherDamping,
     /// Accuracy in dt while loads change.
     pub changing_loads: ChangingLoads,
-    /// Whether set-up may refuse steps at which the method is stable, because it cannot resolve them
+    /// True if set-up may refuse steps at which the method is stable, because it cannot resolve them
     /// ([`SetupError::Unresolved`]).
     pub refuses_long_steps: bool,
 }
@@ -109,7 +109,7 @@ impl ChangingLoads {
         }
     }
 
-    /// Whether the error does not depend on the step.
+    /// True if the error does not depend on the step.
     #[must_use]
     pub fn is_exact(self) -> bool {
         matches!(self, Self::Exact(_))
@@ -271,7 +271,7 @@ pub enum StableStep {
 }
 
 impl StableStep {
-    /// Whether a step of `dt` (s) is known to be stable.
+    /// True if a step of `dt` (s) is stable; `None` if unknown.
     #[must_use]
     pub fn allows(self, dt: f64) -> Option<bool> {
         match self {

@@ -216,7 +216,7 @@ impl Ramp {
         }
     }
 
-    /// Whether it follows an input, and so is known only as it happens.
+    /// True if the course follows an input, so that its values are known only during the run.
     #[must_use]
     pub fn is_input(&self) -> bool {
         matches!(self.course(), Self::Input(_) | Self::InputRate(_))
@@ -459,8 +459,7 @@ impl Ramp {
         }
     }
 
-    /// Whether the value stays the same from `t0` up to, but not at, `t1` (s), where no breakpoint
-    /// lies between them.
+    /// True if the value stays the same from `t0` up to, but not at, `t1` (s). No breakpoint may lie between them.
     #[must_use]
     pub fn is_constant_between(&self, t0: f64, t1: f64) -> bool {
         let middle = 0.5 * (t0 + t1);
@@ -477,8 +476,8 @@ impl Ramp {
         }
     }
 
-    /// Whether the value is constant or linear from `t0` up to, but not at, `t1` (s), where no
-    /// breakpoint lies between them.
+    /// True if the value is constant or linear from `t0` up to, but not at, `t1` (s). No breakpoint may lie between
+    /// them.
     #[must_use]
     pub fn is_linear_between(&self, t0: f64, t1: f64) -> bool {
         match self {

@@ -208,7 +208,7 @@ mod tests {
         }
     }
 
-    /// Of a long chain 400 points suffice for 3000 masses, and the moments are those of the matrices.
+    /// Fewer than 400 points suffice for a chain of 3000 masses, and their moments are those of the matrices.
     #[test]
     fn moments_are_those_of_the_matrices() {
         let (n, mass) = (3000_u32, 0.5);

@@ -27,7 +27,7 @@ pub struct Spectrum {
     pub mass_damping: f64,
     /// beta (s).
     pub stiffness_damping: f64,
-    /// Whether D is alpha M + beta K and nothing else.
+    /// True if D is alpha M + beta K and nothing else.
     pub proportional: bool,
 }
 

@@ -23,7 +23,7 @@ pub struct State {
     pub v: Vec<f64>,
     /// The velocity's time.
     pub velocity: VelocityTime,
-    /// Where damping takes velocities.
+    /// Times at which damping takes velocities.
     pub damped: DampedAt,
     /// Acceleration (m/s^2), of the kind given by `acceleration`; work space otherwise.
     pub a: Vec<f64>,
@@ -32,7 +32,7 @@ pub struct State {
     /// Internal variables of laws with memory, in an order that the system knows; empty for
     /// elastic ones.
     pub internal: Vec<f64>,
-    /// What contact keeps from step to step, in an order which it knows ([`crate::Contact`]); empty where nothing touches the body.
+    /// History variables of contact, in an order defined by [`crate::Contact`]; empty if nothing touches the body.
     pub contact: Vec<f64>,
     /// Identity of the matrices and the loads under which the last step was taken.
     pub loads: Option<[Revision; 2]>,
@@ -143,9 +143,11 @@ pub enum VelocityTime {
 /// First-order methods set the way of one step over its time beside that of another; what supports feel of damping is the force of that pair.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct DampedAt {
-    /// Of cells, after the velocity's own time: more than 0 where a state keeps the acceleration of the last kick, and damping does not lag whole.
+    /// Offset for cells, after the velocity's own time: more than 0 where a state keeps the acceleration of the last
+    /// kick, and damping does not lag by a whole step.
     pub cells: f64,
-    /// Of supports in motion, after the displacement's time: -1/2 stands for their way over the last step, 1/2 for that over the next.
+    /// Offset for moving supports, after the displacement's time: -1/2 stands for their displacement over the last
+    /// step, 1/2 for that over the next.
     pub supports: f64,
 }
 
@@ -225,7 +227,7 @@ impl State {
         self.clock.time()
     }
 
-    /// Whether a staggered method has taken the last step, of `dt` (s), and can go on with another.
+    /// True if a staggered method has taken the last step, of `dt` (s), and can continue with another.
     #[must_use]
     pub fn is_staggered_by(&self, dt: f64) -> bool {
         self.velocity != VelocityTime::Same && self.clock.last_step() == Some(dt)

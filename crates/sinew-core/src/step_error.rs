@@ -38,7 +38,7 @@ pub enum SetupError {
     Contact {
         /// Integrator id.
         integrator: &'static str,
-        /// What is in the way.
+        /// Reason why contact is impossible.
         reason: &'static str,
         /// Methods that can.
         methods: &'static str,
@@ -175,7 +175,7 @@ pub enum StepError {
         t: f64,
         /// Iterations of the step.
         iterations: u64,
-        /// What is left unbalanced, over the largest of the forces.
+        /// Unbalanced force, relative to the largest of the forces.
         residual: f64,
         /// Reason why the iteration ended.
         reason: &'static str,

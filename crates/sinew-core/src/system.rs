@@ -67,8 +67,8 @@ pub trait System: Send + Sync {
         Ok(())
     }
 
-    /// Whether [`System::accept`] looks at the state. Where it does not, machines that hold u and v in a form
-    /// of their own need not write them out after each step.
+    /// True if [`System::accept`] reads the state. If it does not, machines that hold u and v in a form of their own
+    /// need not write them out after each step.
     fn looks_at_steps(&self) -> bool {
         true
     }
@@ -89,12 +89,12 @@ pub trait System: Send + Sync {
         None
     }
 
-    /// What touches it from outside, where anything does; its cells have three layers then.
+    /// Contact of the system, if it has any; its cells have three layers then.
     fn contact(&self) -> Option<&dyn Contact> {
         None
     }
 
-    /// Whether something touches it that a method has to meet: see [`Contact::may_be_left_out`].
+    /// True if the system has contact that a method must support: see [`Contact::may_be_left_out`].
     fn needs_contact(&self) -> bool {
         let contact = self.contact();
         contact.is_some_and(|contact| !contact.may_be_left_out())
@@ -165,7 +165,8 @@ pub trait ForceLaw: Send + Sync {
         0.0
     }
 
-    /// What tells this law from others on the same masses, such as a hash of its parameters: the same in every process.
+    /// Fingerprint that tells this law from others on the same masses, such as a hash of its parameters: the same in
+    /// every process.
     fn fingerprint(&self) -> u64 {
         0
     }

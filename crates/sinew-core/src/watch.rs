@@ -22,7 +22,7 @@ impl Watch {
         }
     }
 
-    /// Whether it watches nothing.
+    /// True if no degree of freedom is watched.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.dofs.is_empty()

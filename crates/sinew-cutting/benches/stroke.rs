@@ -22,7 +22,7 @@ use sinew_mesh::structured::{Split, cube};
 const EDGE: f64 = 0.1;
 const LAPS: usize = 5;
 
-/// What one stroke cost.
+/// Cost of one stroke.
 #[derive(Clone)]
 struct Cost {
     time: Duration,

@@ -24,7 +24,7 @@ pub(crate) const NONE: u32 = u32::MAX;
 /// the beginning: until it is used up, strokes allocate nothing.
 pub struct CuttableBody {
     pub(crate) properties: Box<dyn TetProperties>,
-    /// Where the mesh had each of its own nodes.
+    /// Rest positions of the mesh's own nodes, as the mesh gave them.
     pub(crate) first_places: Vec<Vector>,
     /// Shortest edge at each node of the mesh.
     pub(crate) edge_at: Vec<f64>,
@@ -35,7 +35,8 @@ pub struct CuttableBody {
     pub(crate) points: Vec<Vector>,
     /// The node of the mesh that each node is, or is a copy of.
     pub(crate) origins: Vec<u32>,
-    /// Whether each node stays where it is at rest: on a face that was cut, at a tetrahedron that was removed, or as was asked.
+    /// One flag per node: true if it must not be moved at rest, because it is on a cut face, at a removed tetrahedron,
+    /// or was fixed on request.
     pub(crate) is_kept: Vec<bool>,
     /// Nodes, increasing, that stay where they are at rest for now.
     pub(crate) held: Vec<u32>,
@@ -72,7 +73,7 @@ pub(crate) struct Room {
     pub(crate) near: Vec<(f64, u32)>,
     /// Nodes of faces that were cut, each once.
     pub(crate) corners: Vec<u32>,
-    /// Whether each node is listed.
+    /// One flag per node: true if it is listed.
     pub(crate) is_listed: Vec<bool>,
     /// Group of each tetrahedron at the node at hand.
     pub(crate) group_of: Vec<u32>,
@@ -216,7 +217,7 @@ impl CuttableBody {
         &self.tets
     }
 
-    /// Whether each tetrahedron was removed.
+    /// One flag per tetrahedron: true if it was removed.
     #[must_use]
     pub fn is_removed(&self) -> &[bool] {
         &self.is_removed
@@ -247,7 +248,7 @@ impl CuttableBody {
         (neighbour != NONE).then_some(neighbour)
     }
 
-    /// What the last stroke, or the last cut of faces, did.
+    /// Changes made by the last stroke, or by the last cut of faces.
     #[must_use]
     pub fn last_stroke(&self) -> &Stroke {
         &self.stroke
@@ -276,13 +277,13 @@ impl CuttableBody {
         self.properties.density(tet as usize) * crate::tet::volume(&self.vertices(tet))
     }
 
-    /// Whether the last sheet touched any tetrahedron.
+    /// True if the last sheet touched any tetrahedron.
     #[must_use]
     pub fn is_touched(&self) -> bool {
         !self.room.touched.is_empty()
     }
 
-    /// Whether a blade, a segment between two ends (m), is in the body where its nodes have these positions (m).
+    /// True if a blade, a segment between two ends (m), is inside the body when its nodes have these positions (m).
     #[must_use]
     pub fn holds(&self, [from, to]: [[f64; 3]; 2], positions: &[[f64; 3]]) -> bool {
         let is_near = self.is_near(bounds_of([from, to]));

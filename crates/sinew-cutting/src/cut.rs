@@ -246,7 +246,8 @@ impl CuttableBody {
         }
     }
 
-    /// Whether the blade has come over a face between two tetrahedra, given by one of them and the vertex opposite: over its centroid, or past its nodes.
+    /// True if the blade has swept a face between two tetrahedra, given by one of them and the vertex opposite: over
+    /// its centroid, or past all of its nodes.
     pub(crate) fn is_swept(&self, tet: u32, vertex: usize, other: u32) -> bool {
         let towards = self.vertex_towards(other, tet);
         let is_swept_beyond = towards.is_some_and(|vertex| self.marks.of(other).has_swept(vertex));
@@ -258,7 +259,7 @@ impl CuttableBody {
             || nodes.all(|node| self.marks.has_passed(node))
     }
 
-    /// Whether faces of a tetrahedron may be cut: the blade has come through it, or passes beside it.
+    /// True if faces of a tetrahedron may be cut: the blade has come through it, or passes beside it.
     fn lets_through(&self, tet: u32) -> bool {
         let mark = self.marks.of(tet);
         if mark.is_crossed() {

@@ -1,8 +1,8 @@
-//! How tissue along a blade moves.
+//! Motion of tissue along a blade.
 
 use crate::vector::{Vector, add, dot, scaled, sub};
 
-/// How tissue along a blade has moved since the blade was where it begins: linear along the blade.
+/// Displacement of tissue along a blade since the blade was at the beginning of a sheet: linear along the blade.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Drift {
     /// The first end of the blade.

@@ -16,7 +16,7 @@ impl Incidence {
         Self::of_some(nodes, (0..).zip(tets), tets.len(), spare)
     }
 
-    /// That of some of `count` tetrahedra, each with its number, increasing.
+    /// Incidence of `count` of the tetrahedra, each given with its number, in increasing order.
     pub(crate) fn of_some<'a>(
         nodes: usize,
         tets: impl Iterator<Item = (u32, &'a [u32; 4])> + Clone,

@@ -1,9 +1,9 @@
-//! How far a blade has come through each tetrahedron.
+//! Progress of a blade through each tetrahedron.
 
 use crate::course::Course;
 use crate::tet::EDGES;
 
-/// How far the blade has come through one tetrahedron since it was set on.
+/// Progress of the blade through one tetrahedron since the blade was set on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Mark {
     /// Side on which the tetrahedron stays: -1 or 1; 0 before it was touched.
@@ -14,7 +14,7 @@ pub(crate) struct Mark {
     on_sheet: u8,
     /// Faces whose centroid was swept.
     faces: u8,
-    /// Whether one of its faces was cut, so that it stays on its side.
+    /// True if one of its faces was cut, so that it stays on its side.
     settled: bool,
 }
 
@@ -63,7 +63,7 @@ impl Mark {
         self.edges != 0
     }
 
-    /// Whether the edges that were crossed separate its vertices, those on the sheet left out.
+    /// True if the crossed edges separate its vertices; vertices on the sheet are left out.
     pub(crate) fn is_crossed(&self) -> bool {
         let off_sheet = !self.on_sheet & 0b1111;
         let mut reached = off_sheet & off_sheet.wrapping_neg();
@@ -136,7 +136,7 @@ pub(crate) struct Marks {
     pub(crate) sides: Vec<NodeSide>,
     /// The side of each node that the blade has passed, as it was then.
     pub(crate) passed: Vec<NodeSide>,
-    /// Where each node was when the last sheet came (m); empty before the first one.
+    /// Position (m) of each node at the last sheet; empty before the first one.
     pub(crate) places: Vec<[f64; 3]>,
 }
 
@@ -171,7 +171,7 @@ impl Marks {
         }
     }
 
-    /// Whether the blade has passed a node.
+    /// True if the blade has passed a node.
     pub(crate) fn has_passed(&self, node: u32) -> bool {
         self.passed[node as usize] != NodeSide::Open
     }
@@ -199,7 +199,7 @@ impl Marks {
         }
     }
 
-    /// How far a node, which is here now, has moved since the last sheet.
+    /// Displacement since the last sheet of a node that is now at `place`.
     pub(crate) fn moved(&self, node: u32, place: [f64; 3]) -> [f64; 3] {
         match self.places.get(node as usize) {
             Some(before) => std::array::from_fn(|axis| place[axis] - before[axis]),

@@ -1,6 +1,6 @@
-//! What a sheet passes of a tetrahedron.
+//! Edges, vertices and faces of a tetrahedron that a sheet passes.
 
-/// What a sheet passes of a tetrahedron, one bit each: it is told once, and asked for by all that follows.
+/// Edges, vertices and faces of a tetrahedron that a sheet passes, one bit each. They are computed once per sheet.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Passed {
     /// Edges that the plane crosses within the sheet.
@@ -12,7 +12,7 @@ pub(crate) struct Passed {
 }
 
 impl Passed {
-    /// Whether it passes anything.
+    /// True if the sheet passes anything.
     pub(crate) fn is_any(self) -> bool {
         self != Self::default()
     }

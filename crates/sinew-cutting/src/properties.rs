@@ -1,4 +1,4 @@
-//! What a cut needs to know of the tissue.
+//! Tissue properties that a cut needs.
 
 /// Properties of the tetrahedra of a body.
 pub trait TetProperties: Send + Sync {

@@ -1,15 +1,16 @@
-//! What strokes and removals did.
+//! Reports of strokes and removals.
 
 use sinew_mesh::MovedNode;
 
-/// What one stroke did.
+/// Changes made by one stroke.
 #[derive(Clone, Debug, Default)]
 pub struct Stroke {
     /// Faces that were cut, each by a tetrahedron and the vertex (0 to 3) opposite.
     pub faces: Vec<(u32, u8)>,
     /// Area of these faces at rest (m^2).
     pub area: f64,
-    /// What moved nodes added to the mass (kg): rounding, but for nodes of a curved surface and where density varies within a region.
+    /// Mass (kg) added by moved nodes: only rounding, except for nodes of a curved surface and in regions of varying
+    /// density.
     pub mass_gained: f64,
     /// Nodes that were moved at rest onto the sheet, in this order.
     pub moved: Vec<MovedNode>,
@@ -19,7 +20,7 @@ pub struct Stroke {
     pub changed_tets: Vec<u32>,
 }
 
-/// What a removal of tetrahedra did.
+/// Changes made by a removal of tetrahedra.
 #[derive(Clone, Debug, Default)]
 pub struct Removal {
     /// The tetrahedra that are gone, increasing.
@@ -50,7 +51,7 @@ impl Stroke {
         self.changed_tets.clear();
     }
 
-    /// Whether nothing changed.
+    /// True if nothing changed.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.faces.is_empty() && self.moved.is_empty()

@@ -36,7 +36,7 @@ impl Chips {
 pub struct Missed {
     /// Their number.
     pub strokes: usize,
-    /// How far under the surface the first one passed (m); `None` where its rim lay within the body.
+    /// Depth (m) below the surface at which the first one passed; `None` if its rim lay inside the body.
     pub depth: Option<f64>,
     /// The longest edge (m) at rest of the tetrahedra that it entered.
     pub edge: f64,
@@ -83,7 +83,7 @@ impl CuttableBody {
         })
     }
 
-    /// That the stroke at hand entered the body and cut nothing.
+    /// Report of the current stroke if it entered the body and cut nothing.
     #[must_use]
     pub fn missed(&self) -> Option<Missed> {
         let (normal, blade) = (self.marks.normal?, self.marks.course.blade?);
@@ -111,7 +111,7 @@ impl CuttableBody {
         })
     }
 
-    /// Whether the stroke at hand has cut a face.
+    /// True if the current stroke has cut a face.
     fn has_cut(&self) -> bool {
         (0..self.tets.len() as u32).any(|tet| self.marks.of(tet).is_settled())
     }

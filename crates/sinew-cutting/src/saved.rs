@@ -11,7 +11,7 @@ use crate::marks::{Mark, Marks, NodeSide};
 pub struct SavedBodyError;
 
 impl CuttableBody {
-    /// What cuts changed of it, as bytes.
+    /// Serializes the changes that cuts made to the body.
     #[must_use]
     pub fn to_bytes(&self) -> Vec<u8> {
         let mut bytes = Vec::new();

@@ -5,7 +5,8 @@
 pub(crate) struct Flat {
     /// Its place in the plane, from the sheet's centre.
     pub(crate) place: [f64; 2],
-    /// How much farther than the sheet's beginning it has moved there since the blade was at that.
+    /// Displacement of the point in the plane since the blade was at the beginning of the sheet, relative to that of
+    /// the beginning.
     pub(crate) shift: [f64; 2],
 }
 
@@ -72,7 +73,7 @@ impl SeenNodes {
         (self.distances[node as usize], self.flats[node as usize])
     }
 
-    /// Whether a node is seen for the first time in a look.
+    /// True if a node is seen for the first time in search number `look`.
     pub(crate) fn is_new(&mut self, node: u32, look: u32) -> bool {
         std::mem::replace(&mut self.looks[node as usize], look) != look
     }

@@ -23,7 +23,7 @@ pub struct Sheet {
     /// The box around them, rim included.
     flat_bounds: [[f64; 2]; 2],
     size: f64,
-    /// How the tissue moved with which the beginning went.
+    /// Motion of the tissue that carried the beginning of the sheet along.
     drift: Drift,
 }
 
@@ -92,7 +92,7 @@ impl Sheet {
         scaled(across, 1.0 / length(across))
     }
 
-    /// How far an end of the blade goes, at most.
+    /// Largest displacement of an end of the blade.
     pub(crate) fn way(&self) -> f64 {
         let [a, b, c, d] = self.corners;
         length(sub(d, a)).max(length(sub(c, b)))
@@ -128,7 +128,7 @@ impl Sheet {
         }
     }
 
-    /// Whether no point between these ones is passed, as their places in the plane tell without a closer look.
+    /// True if no point between these points is passed, by the bounding box of their positions in the plane alone.
     pub(crate) fn is_outside(&self, points: &[Flat]) -> bool {
         let [low, high] = self.flat_bounds;
         [0, 1].into_iter().any(|axis| {
@@ -142,8 +142,8 @@ impl Sheet {
         })
     }
 
-    /// Whether the blade passes a point: seen from tissue that has moved, the blade began so much farther on. Without that, tissue which
-    /// comes towards a blade would slip through between two sheets.
+    /// True if the blade passes a point. Relative to tissue that has moved, the blade began farther on by the same
+    /// amount. Without that, tissue that moves towards a blade would slip through between two sheets.
     pub(crate) fn passes(&self, point: Flat) -> bool {
         if self.is_outside(&[point]) {
             return false;
@@ -161,7 +161,7 @@ impl Sheet {
             .any(|triangle| self.is_within(place, triangle))
     }
 
-    /// Whether a point of the plane is ahead of where the blade is in the end.
+    /// True if a point of the plane is ahead of the final pose of the blade.
     pub(crate) fn is_beyond_end(&self, Flat { place, .. }: Flat) -> bool {
         let [a, b, c, d] = self.corners_flat;
         let side = |from: [f64; 2], to: [f64; 2]| {
@@ -201,7 +201,7 @@ fn turned_over(&[a, b, c, d]: &[Vector; 4]) -> Option<Vector> {
     (dot(of_first, of_second) < 0.0).then(|| sub(of_second, of_first))
 }
 
-/// Where two segments cross between their ends.
+/// Intersection of two segments between their ends.
 fn crossing([a, b]: [[f64; 2]; 2], [d, c]: [[f64; 2]; 2]) -> Option<[f64; 2]> {
     let way = |from: [f64; 2], to: [f64; 2]| [to[0] - from[0], to[1] - from[1]];
     let turn = |[x, y]: [f64; 2], [p, q]: [f64; 2]| x * q - y * p;

@@ -21,7 +21,7 @@ const SAME_FACE: f64 = 0.95;
 enum Freedom {
     /// All: it lies inside.
     Space,
-    /// Those across this unit normal of the surface.
+    /// Directions in the plane normal to this unit normal of the surface.
     Face(Vector),
     /// This unit vector along an edge of the surface.
     Edge(Vector),
@@ -207,8 +207,8 @@ impl CuttableBody {
         }
     }
 
-    /// Whether all tetrahedra at a node keep their shape and frequency within bounds with the node at another place at rest, and
-    /// stay upright now where they are.
+    /// True if, with the node at `place` at rest, all tetrahedra at it keep their shape and frequency within bounds,
+    /// and if none of them becomes inverted with the node at `now` in the current positions.
     fn may_be_at(&self, node: u32, place: Vector, now: Vector, positions: &[Vector]) -> bool {
         self.incidence.of(node).iter().all(|tet| {
             let corners = self.tets[*tet as usize];

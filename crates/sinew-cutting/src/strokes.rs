@@ -95,7 +95,7 @@ impl StrokesError {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Strokes(Vec<BladePose>);
 
-/// What a blade does within a time.
+/// Action of a blade within a time.
 #[derive(Clone, Copy, Debug)]
 pub enum BladeAct {
     /// It is lifted, or set on anew.
@@ -147,8 +147,9 @@ impl Strokes {
         Ok(Self(poses))
     }
 
-    /// What the blade does after `from` and up to `to` (s), in order: a sweep for each straight line of which a part falls into that time, and a lift where
-    /// a stroke ends from `from` on. Cut at any instants, a time has the same sweeps and lifts put together.
+    /// Actions of the blade after `from` and up to `to` (s), in order: a sweep for each straight line of which a part
+    /// falls into that time, and a lift if a stroke ends from `from` on. The sweeps and lifts of a time are the same
+    /// when it is cut at any instants and its parts are put together.
     pub fn between(&self, from: f64, to: f64) -> impl Iterator<Item = BladeAct> {
         let first = self
             .0
@@ -221,7 +222,7 @@ mod tests {
         ]
     }
 
-    /// Where sweeps begin and end along x.
+    /// Start and end of the sweeps along x.
     fn swept(strokes: &Strokes, from: f64, to: f64) -> Vec<Option<[f64; 2]>> {
         let act = |act| match act {
             BladeAct::Lift => None,

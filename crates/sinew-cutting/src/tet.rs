@@ -33,7 +33,7 @@ pub(crate) fn gradients(vertices: &[Vector; 4]) -> [Vector; 4] {
     })
 }
 
-/// Whether a segment between two points is in it anywhere, or on its surface.
+/// True if a segment between two points meets the tetrahedron, inside or on its surface.
 pub(crate) fn is_met(vertices: &[Vector; 4], [from, to]: [Vector; 2]) -> bool {
     // The shares of the segment between which it is on the inner side of all faces so far.
     let [mut first, mut last] = [0.0_f64, 1.0_f64];

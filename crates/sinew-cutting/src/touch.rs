@@ -28,13 +28,13 @@ impl Beside {
         }
     }
 
-    /// Whether the plane passes between its vertices.
+    /// True if the plane passes between its vertices.
     pub(crate) fn is_divided(self) -> bool {
         let any = |is: fn(f64) -> bool| self.0.into_iter().any(is);
         any(|distance| distance > 0.0) && any(|distance| distance < 0.0)
     }
 
-    /// Whether the plane touches it at all.
+    /// True if the plane touches it at all.
     fn is_at_plane(self) -> bool {
         self.is_divided() || self.0.contains(&0.0)
     }
@@ -83,7 +83,8 @@ impl CuttableBody {
         }
     }
 
-    /// Whether a node that lay ahead of the blade lies behind it since its way has turned, as those on the outer side do.
+    /// True if a node that lay ahead of the blade now lies behind it because the blade's direction has turned. Nodes on
+    /// the outer side of the turn do.
     fn is_passed_by_turn(&self, node: u32, sheet: &Sheet, place: Vector) -> bool {
         let Some(last) = self.marks.heading else {
             return false;
@@ -100,7 +101,7 @@ impl CuttableBody {
         is_beside && dot(last, now) > 0.0 && dot(last, from) > -room && dot(now, from) < room
     }
 
-    /// What a sheet passes of a tetrahedron whose nodes this look has seen.
+    /// Edges, vertices and faces that a sheet passes, of a tetrahedron whose nodes this search has seen.
     fn passed(&self, tet: u32, sheet: &Sheet) -> Passed {
         let beside = self.beside(tet);
         if !beside.is_at_plane() {

@@ -10,7 +10,7 @@ const SAME_PLACE: f64 = 1e-6;
 /// The part of tetrahedra in chips.
 pub(crate) const CHIP: u32 = NONE - 1;
 
-/// What a stroke through a body left uncut between the parts to its sides.
+/// Tissue that a stroke through a body left uncut between the parts on its two sides.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Uncut {
     /// Area of the faces at rest (m^2).
@@ -31,8 +31,9 @@ impl Uncut {
 }
 
 impl CuttableBody {
-    /// What the stroke at hand left uncut of the body that it came out of; `None` while the blade is in the body, and for a stroke that was no cut
-    /// through: that began in the body, had an end of the blade in it, or went back.
+    /// Tissue left uncut by the current stroke, in a body that the blade has left. `None` while the blade is inside the
+    /// body, and for a stroke that was no cut through: it began inside the body, had an end of the blade inside it, or
+    /// went back.
     #[must_use]
     pub fn uncut(&self) -> Option<Uncut> {
         let course = &self.marks.course;
@@ -123,7 +124,7 @@ impl CuttableBody {
         parts
     }
 
-    /// Whether a blade that is here goes on from where the last sheet ended.
+    /// True if a blade at this pose continues from the end of the last sheet.
     pub(crate) fn goes_on(&self, before: [Vector; 2]) -> bool {
         let least = SAME_PLACE * self.longest_edge;
         self.marks.course.blade.is_some_and(|last| {
@@ -132,7 +133,7 @@ impl CuttableBody {
         })
     }
 
-    /// Whether no node is near a blade on its way from one pose to another.
+    /// True if no node is near a blade on its way from one pose to another.
     pub(crate) fn is_in_the_air(
         &self,
         [before, after]: [[Vector; 2]; 2],

@@ -7,7 +7,7 @@ use crate::number;
 pub enum Scale {
     /// Evenly.
     Linear,
-    /// By their logarithm; what is not positive is left out, but minus infinity lies below all.
+    /// Logarithmic; values that are not positive are left out, but minus infinity lies below all.
     Log,
 }
 

@@ -17,7 +17,7 @@ impl LoadCase {
         Self::of_loads(operators, operators.loads().iter())
     }
 
-    /// Those by which places of supports act.
+    /// The load cases through which positions of supports act.
     #[cfg(feature = "implicit")]
     pub(crate) fn of_places(operators: &LinearOperators) -> Vec<Self> {
         let is_place = |load: &&Load| matches!(load.ramp, Ramp::Position(_));

@@ -16,11 +16,10 @@ pub trait Method: Scheme {
     const SUMMARY: &'static str;
     /// The options it takes.
     const OPTIONS: &'static [OptionHelp] = &[];
-    /// Whether it takes `substeps`: methods with a largest stable step do.
+    /// True if the method takes `substeps`: methods with a largest stable step do.
     const SUBSTEPS: bool = false;
 
-    /// Whether its set-up factorises a matrix of the whole body, which on a large mesh costs more
-    /// than many runs.
+    /// True if set-up factorises a matrix of the whole body, which on a large mesh costs more than many runs.
     const FACTORISES: bool = false;
 
     /// Form of its options in the labels of runs; every other option reads `key=value`.
@@ -29,7 +28,7 @@ pub trait Method: Scheme {
     /// Meaning of the option `saturation` for it: methods that can grow without bound take a guard.
     const GUARD: GuardOption = GuardOption::None;
 
-    /// Whether its steps are programs, so that it takes the options of machines.
+    /// True if its steps are programs, so that it takes the options of machines.
     const PROGRAMS: bool = false;
 
     /// Builds it. Keys outside [`Method::OPTIONS`] have been refused before.

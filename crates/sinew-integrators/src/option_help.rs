@@ -15,7 +15,7 @@ pub struct OptionHelp {
     pub expected: &'static str,
     /// The values that fit, as data.
     pub kind: OptionKind,
-    /// What holds where it is absent.
+    /// Behaviour if the option is absent.
     pub default: OptionDefault,
     /// Lines of `[run]` that use it.
     pub example: &'static str,
@@ -23,7 +23,7 @@ pub struct OptionHelp {
     pub shown_default: Option<f64>,
 }
 
-/// What holds where an option is absent.
+/// Behaviour if an option is absent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum OptionDefault {
     /// This value, as a scene writes it.

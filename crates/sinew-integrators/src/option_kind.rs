@@ -29,7 +29,7 @@ impl OptionKind {
     /// A number above 0 and below 1.
     pub const PART: Self = Self::Number(Bound::Excluded(0.0), Bound::Excluded(1.0));
 
-    /// Whether a value is of this kind.
+    /// True if a value is of this kind.
     #[must_use]
     pub fn fits(&self, value: &OptionValue) -> bool {
         match *self {

@@ -50,13 +50,13 @@ pub struct Entry {
     pub summary: &'static str,
     /// The options it takes, `substeps` and the guard's apart.
     pub options: &'static [OptionHelp],
-    /// Whether it takes `substeps`.
+    /// True if the method takes `substeps`.
     pub substeps: bool,
     /// Meaning of `saturation` for it.
     pub guard: GuardOption,
-    /// Whether its steps are programs, which take the options of machines.
+    /// True if its steps are programs, which take the options of machines.
     pub programs: bool,
-    /// Whether its set-up factorises a matrix of the whole body.
+    /// True if its set-up factorises a matrix of the whole body.
     pub factorises: bool,
     /// Options of the variants that comparisons show besides the plain method.
     pub variants: fn() -> Vec<Options>,

@@ -39,18 +39,19 @@ pub trait Scheme: Send + Sized + 'static {
         self.properties().needs.lacking(Self::ID)
     }
 
-    /// Whether its steps are others under other loads, so that set-up has to look at them again.
+    /// True if its steps depend on the loads, so that set-up must be checked again when they change.
     fn depends_on_loads(&self) -> bool {
         false
     }
 
-    /// Whether tools can push none of its steps, whatever its set-up finds: on a body with tools none is made, which may take long.
+    /// True if no step of this method supports contact; set-up, which may take long, is skipped then on a body with
+    /// tools.
     fn refuses_contact(&self) -> bool {
         false
     }
 
-    /// Whether its steps stay the same where the values of some rows change: the steps of a program that
-    /// holds nothing but numbers.
+    /// True if its steps stay the same when the values of some rows change, as the steps of a program do that contains
+    /// only numbers.
     fn survives_change_of_rows(&self) -> bool {
         false
     }
@@ -139,12 +140,12 @@ impl<S> SetUp<S> {
 
 /// Steps with all that they need, made by set-up.
 pub trait StepByHand: Send {
-    /// Whether the velocity stays in the middle of the last step.
+    /// True if the velocity stays in the middle of the last step.
     fn is_staggered(&self) -> bool {
         false
     }
 
-    /// Whether the steps let what touches the system push its cells.
+    /// True if the steps support contact.
     fn meets_contact(&self) -> bool {
         false
     }

@@ -30,8 +30,8 @@ pub trait Stepper: Integrator {
         false
     }
 
-    /// What computes its steps, and what that costs in error, one sentence each; empty before set-up and
-    /// for steps that no machine takes.
+    /// Machine that computes its steps, and the error that this costs, one sentence each; empty before set-up and for
+    /// steps that no machine takes.
     fn computed_by(&self) -> Vec<String> {
         Vec::new()
     }

@@ -25,7 +25,7 @@ pub(crate) const MOST_CLIENTS: usize = 16;
 /// A picture for pages.
 pub(crate) struct Picture<'a> {
     pub(crate) message: Vec<u8>,
-    /// How often what pages see had changed.
+    /// Number of visible changes when it was made.
     pub(crate) changes: u64,
     /// The surfaces that it belongs to, and their number.
     pub(crate) topology: &'a Bytes,
@@ -86,7 +86,7 @@ impl Clients {
         self.lock().clients.retain(|client| client.id != id);
     }
 
-    /// Whether a client is still here.
+    /// True if a client is still connected.
     pub(crate) fn is_here(&self, id: u32) -> bool {
         self.lock().find(id).is_some()
     }
@@ -118,7 +118,8 @@ impl Clients {
         }
     }
 
-    /// When the next picture is to be made, which may be in the past, after so many changes; `None` where no client that holds a credit lacks one.
+    /// Time at which the next picture is to be made, which may be in the past, after `changes` changes; `None` if no
+    /// client that holds a credit lacks one.
     pub(crate) fn next_picture(&self, changes: u64) -> Option<Instant> {
         let list = self.lock();
         let lack = list.clients.iter().filter(|client| client.lacks(changes));
@@ -196,17 +197,17 @@ impl List {
 }
 
 impl Client {
-    /// Whether it holds a credit, and takes what it is sent: one that grants without reading gets no more.
+    /// True if it holds a credit and reads its messages: a client that grants credits without reading gets no more.
     fn wants_a_frame(&self) -> bool {
         self.credits > 0 && self.waiting < MOST_CREDITS
     }
 
-    /// Whether it wants a picture after so many changes.
+    /// True if it wants a picture after `changes` changes.
     fn lacks(&self, changes: u64) -> bool {
         self.shown != changes && self.wants_a_frame()
     }
 
-    /// When that is to be made.
+    /// Time at which that picture is to be made.
     fn next_picture(&self) -> Instant {
         self.next_draw.due(self.credits)
     }

@@ -1,4 +1,4 @@
-//! What a session leaves.
+//! Result of a session that has ended.
 
 use sinew_scene::Scene;
 use sinew_world::{JournalError, Log};

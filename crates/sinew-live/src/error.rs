@@ -45,7 +45,7 @@ pub enum LiveError {
     Listen {
         /// The port.
         port: u16,
-        /// What the system said.
+        /// Error of the system.
         source: std::io::Error,
     },
     /// An order that was still being carried out when the session was to end.
@@ -70,7 +70,7 @@ pub enum LiveError {
 }
 
 impl LiveError {
-    /// Whether what was asked for cannot be used, as opposed to a failure of this computer.
+    /// True if the request itself cannot be served, as opposed to a failure of this computer.
     #[must_use]
     pub fn is_refusal(&self) -> bool {
         !matches!(

@@ -1,4 +1,4 @@
-//! What pages ask of the simulation.
+//! Requests of pages to the simulation.
 
 use std::collections::VecDeque;
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
@@ -16,12 +16,12 @@ pub(crate) struct Request<T> {
     pub(crate) client: u32,
     /// The client's own number of the command.
     pub(crate) id: u32,
-    /// What is asked for.
+    /// The request itself.
     pub(crate) what: T,
 }
 
 impl<T> Request<T> {
-    /// What a client asks for under its number.
+    /// A request of a client under the client's number.
     pub(crate) fn of(client: u32, id: u32, what: T) -> Self {
         Self { client, id, what }
     }
@@ -36,8 +36,8 @@ pub(crate) struct Place {
     pub(crate) pose: [f64; 6],
 }
 
-/// What waits for the simulation: of a client's poses the latest of each tool, of its settings of one kind that follow each other the last, of all else everything
-/// in order.
+/// Requests that wait for the simulation: the latest pose of each tool from each client; the last of consecutive
+/// settings of one kind from a client; everything else, all of it in order.
 #[derive(Debug, Default)]
 pub(crate) struct Waiting {
     /// The latest pose that each client asks for, of each tool, in the order in which they came.
@@ -46,7 +46,7 @@ pub(crate) struct Waiting {
     pub(crate) orders: VecDeque<Request<Order>>,
     /// Clients that are new and know no settings.
     pub(crate) entered: Vec<u32>,
-    /// Whether the simulation shall end.
+    /// True if the simulation is to end.
     pub(crate) ends: bool,
     woken: bool,
 }

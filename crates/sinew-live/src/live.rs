@@ -44,7 +44,7 @@ pub struct Hand {
     pub note: String,
 }
 
-/// What a page is to show.
+/// Settings of a live session.
 #[derive(Debug)]
 pub struct Settings {
     /// The scene.

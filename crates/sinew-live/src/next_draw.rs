@@ -1,4 +1,4 @@
-//! When a page draws, and when the pictures for that are made.
+//! Timing of a page's draws, and of the pictures for them.
 
 use std::time::{Duration, Instant};
 
@@ -12,16 +12,16 @@ const BETWEEN_DRAWS: Duration = Duration::from_millis(16);
 /// as may be, so that the screen shows what a hand did just before; to one that can take a single picture only the late one goes.
 #[derive(Debug)]
 pub(crate) struct NextDraw {
-    /// When it was told of.
+    /// Time at which the page announced the draw.
     told: Instant,
-    /// When the late picture is to be made.
+    /// Time at which the late picture is to be made.
     late: Instant,
     has_early: bool,
     has_late: bool,
 }
 
 impl NextDraw {
-    /// That of a page which draws so long after now.
+    /// The next draw of a page that draws after a time `wait` from now.
     pub(crate) fn after(wait: Duration) -> Self {
         let told = Instant::now();
         Self {
@@ -32,7 +32,7 @@ impl NextDraw {
         }
     }
 
-    /// When the next picture is to be made for a page that can take so many: in the past where at once.
+    /// Time at which the next picture is to be made for a page that holds `takes` credits: in the past if at once.
     pub(crate) fn due(&self, takes: u32) -> Instant {
         match (self.has_early, self.has_late) {
             (false, false) if takes > 1 => self.told,

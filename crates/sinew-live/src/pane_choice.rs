@@ -1,4 +1,4 @@
-//! What a pane begins with.
+//! Initial settings of a pane.
 
 /// Integrator and step of a pane.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -1,4 +1,4 @@
-//! What pages are told of tools.
+//! Facts about tools that pages receive.
 
 use sinew_core::Inputs;
 use sinew_scene::{BodyModel, Simulation};

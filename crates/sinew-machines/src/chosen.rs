@@ -34,7 +34,7 @@ pub enum PrecisionName {
     F32,
 }
 
-/// What a machine should be.
+/// Kind, precision, instructions and threads of a machine.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Settings {
     /// Its kind.
@@ -94,7 +94,7 @@ pub enum Threads {
     One,
     /// At most so many, and no more than the system gives processors to this process.
     UpTo(NonZero<u32>),
-    /// As many as it gives.
+    /// All processors that the system gives to this process.
     All,
 }
 
@@ -121,7 +121,7 @@ const FEWEST_CELLS: usize = 16;
 pub struct Chosen {
     settings: Settings,
     machine: Option<Box<dyn Machine>>,
-    /// Whether no other than the reference machine takes the system, though others were welcome.
+    /// True if only the reference machine accepts the system, although the settings allow others.
     alone: bool,
 }
 

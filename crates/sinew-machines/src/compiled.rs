@@ -14,7 +14,7 @@ pub(crate) const ELEMENTS: usize = 5;
 /// Matrices and damping beside the elements of a force law.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct BesideElements {
-    /// Whether K is not 0.
+    /// True if K is not 0.
     pub(crate) stiffness: bool,
     pub(crate) dashpots: bool,
     /// alpha (1/s) of damping alpha M.

@@ -65,7 +65,7 @@ struct Loaded<T> {
     largest: f64,
 }
 
-/// What threads do.
+/// Kinds of parallel work.
 #[derive(Clone, Copy, Debug)]
 enum Work {
     /// Elements take the displacements of a chunk of cells, in a vector.
@@ -275,7 +275,7 @@ fn matrices(system: &dyn System) -> Option<(&LinearOperators, usize)> {
     }
 }
 
-/// What stands beside elements.
+/// Matrices and damping next to elements.
 fn beside(operators: &LinearOperators) -> BesideElements {
     let stiffness = operators.stiffness();
     let mut rows = 0..stiffness.pattern().cells();
@@ -400,7 +400,7 @@ struct Running<'a, 'c, T> {
     host: &'a mut Host<'c>,
 }
 
-/// Which sweeps of a program.
+/// Groups of sweeps of a program.
 #[derive(Clone, Copy, Debug)]
 enum Part {
     Entry,
@@ -742,7 +742,7 @@ impl<T: ElementPrecision> Loaded<T> {
         self.largest = (ROOM * largest).max(LEAST_REACH * self.touched.size());
     }
 
-    /// Whether a displacement of a cell that was pushed is none within the limit (m).
+    /// True if a pushed cell exceeds the divergence limit (m), or its displacement is NaN.
     fn are_beyond(&self, limit: f64, state: &State) -> bool {
         let layers = self.fields.layers();
         let of_cell = |cell: &u32| &state.u[*cell as usize * layers..][..layers];
@@ -822,7 +822,7 @@ impl<T> Current<T> {
 struct TouchedCells<'a, T> {
     loaded: &'a mut Loaded<T>,
     set: InstructionSet,
-    /// Whether the state shows all cells already.
+    /// True if the state shows all cells already.
     are_shown: bool,
 }
 
@@ -856,7 +856,7 @@ impl<T: ElementPrecision> ShowCells for TouchedCells<'_, T> {
     }
 }
 
-/// What a lock holds, whatever became of other threads.
+/// Value of a lock, even if another thread panicked while holding it.
 fn own<T>(lock: &mut RwLock<T>) -> &mut T {
     lock.get_mut().unwrap_or_else(PoisonError::into_inner)
 }

@@ -12,7 +12,7 @@ pub(crate) struct Forces {
     wanted: Vec<(usize, f64)>,
     /// Positions and layers that are not 0.
     touched: Vec<(u32, u32)>,
-    /// Whether a chunk has any.
+    /// One flag per chunk: true if it has any of these positions.
     pub(crate) loaded: Vec<bool>,
 }
 

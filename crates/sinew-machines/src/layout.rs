@@ -124,8 +124,8 @@ impl<T: Precision> Layout<T> {
         })
     }
 
-    /// Whether templates take less time than rows that are read from memory. Short runs fill vectors badly, which free
-    /// surfaces and holes bring about, and the rows of a small body stay in a cache.
+    /// True if templates take less time than rows that are read from memory. Short runs, which free surfaces and holes
+    /// cause, fill vectors badly, and the rows of a small body stay in a cache.
     pub(crate) fn pays(&self) -> bool {
         let Rows::Lattice(lattice) = &self.stiffness else {
             return true;

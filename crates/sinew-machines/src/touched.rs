@@ -14,7 +14,7 @@ const NONE: u32 = u32::MAX;
 #[derive(Debug)]
 pub(crate) struct Touched<T> {
     cells: Vec<u32>,
-    /// Where they rest (m).
+    /// Rest positions of the cells (m).
     rest: Vec<[f64; 3]>,
     positions: Vec<u32>,
     /// The first position of each block of [`sinew_sparse::simd::Real::LANES`].
@@ -251,7 +251,7 @@ impl<T: Precision> Search<'_, T> {
     }
 }
 
-/// Which of several boxes, by their lowest and highest coordinates along an axis, meet another one: one bit each.
+/// Bit mask of the boxes, given by their lowest and highest coordinates along an axis, that meet another box.
 #[inline(always)]
 fn lanes_met<N: Number>([low, high]: [[f64; 3]; 2], ends: impl Fn(usize) -> (N, N)) -> u32 {
     let mut met = u32::MAX;

@@ -147,8 +147,7 @@ impl Case {
         Self::at_pace(Pace::Short, id, simulation, span)
     }
 
-    /// As [`Case::over`], with the reference of large bodies whatever the size: for rows that are compared
-    /// over sizes.
+    /// Like [`Case::over`], with the reference of large bodies for every size: for rows that are compared over sizes.
     ///
     /// # Errors
     /// [`CaseError`].
@@ -160,7 +159,7 @@ impl Case {
         Self::by(Course::Faber, id.into(), simulation, span)
     }
 
-    /// As [`Case::over`], with a reference at a pace.
+    /// Like [`Case::over`], with a reference at a pace.
     ///
     /// # Errors
     /// [`CaseError`].
@@ -244,7 +243,7 @@ impl Case {
         Span::of(&self.simulation)
     }
 
-    /// Whether all of the scene is compared.
+    /// True if all of the scene is compared.
     #[must_use]
     pub fn is_whole(&self) -> bool {
         self.span.duration >= self.whole().duration

@@ -1,8 +1,8 @@
-//! What a run costs: time, or work.
+//! Cost of a run: time, or work.
 
 use crate::row::Row;
 
-/// What the cost of a run is taken from.
+/// Measure of the cost of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Cost {
     /// CPU time as it was measured: what a run takes on this machine.
@@ -14,7 +14,7 @@ pub enum Cost {
 
 /// Price (s) of a sweep over all cells.
 const SWEEP: f64 = 1e-6;
-/// What a step takes besides its sweeps.
+/// Price (s) of a step in addition to its sweeps.
 const STEP: f64 = 0.05 * SWEEP;
 /// A solution by a factor, which has several times as many entries as the matrix.
 const SOLUTION: f64 = 5.0 * SWEEP;
@@ -37,7 +37,7 @@ impl Cost {
         }
     }
 
-    /// What no step with a sweep costs less than (s), where a sweep takes `sweep` (s) of CPU time.
+    /// Lower bound of the cost (s) of a step with a sweep, if a sweep takes `sweep` (s) of CPU time.
     pub(crate) fn of_least_step(self, sweep: f64) -> f64 {
         match self {
             Self::CpuTime => sweep,

@@ -10,7 +10,7 @@ use sinew_scene::Simulation;
 /// out, so that under damping a rise is found late.
 pub(crate) struct DeformationWatch<'a> {
     law: &'a dyn ElasticLaw,
-    /// Whether all energy comes from the start and from loads: no part of the body is moved.
+    /// True if all energy comes from the start and from loads: no part of the body is moved.
     knows_energy: bool,
     smallest_volume_ratio: f64,
     /// Work (J) of what touches the body, until the last step.

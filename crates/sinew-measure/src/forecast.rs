@@ -1,4 +1,4 @@
-//! What a run will take, from a few of its steps.
+//! Forecast of the cost of a run, from a few of its steps.
 
 use std::time::Instant;
 
@@ -133,8 +133,8 @@ impl Forecast {
         })
     }
 
-    /// As [`Forecast::of`], for a run that may be long: nothing more than a step is taken where that shows that the run takes less
-    /// than `seconds`, and then there is no forecast.
+    /// Like [`Forecast::of`], for a run that may be long. If one step shows that the run takes less than `seconds`,
+    /// nothing more is computed and there is no forecast.
     ///
     /// # Errors
     /// [`ForecastError`].

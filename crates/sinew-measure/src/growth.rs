@@ -27,7 +27,7 @@ const FOR_QUARTERS: usize = 16;
 /// Factor by which one or two periods may show too little growth of a squared error.
 const MARGIN: f64 = 1.5;
 
-/// As [`MARGIN`], where instants are too few for quarters and often end within the first period.
+/// Like [`MARGIN`], for instants that are too few for quarters and often end within the first period.
 const MARGIN_OF_FEW: f64 = 4.0;
 
 impl ErrorHistory {

@@ -195,7 +195,7 @@ fn refusal(error: &SimulateError) -> Option<String> {
     }
 }
 
-/// Whether anything damps a system, or may.
+/// True if a system has damping, or may have it.
 fn is_damped(system: &dyn System) -> bool {
     let Some(linear) = system.as_linear() else {
         return true;
@@ -229,7 +229,7 @@ struct Comparison<'a> {
     /// Steps after which the last state came.
     reached: usize,
     norm: ErrorNorm,
-    /// Of the impulses between two instants.
+    /// Error norm of the impulses between two instants.
     of_impulses: ErrorNorm,
     /// Impulses (N s) at the last instant, of the run and of the reference.
     impulses: [Vec<f64>; 2],
@@ -265,7 +265,7 @@ impl<'a> Comparison<'a> {
 }
 
 impl Comparison<'_> {
-    /// Whether surfaces are looked at after this step: evenly over the run, at its end too.
+    /// True if surfaces are checked for overlap after this step: evenly over the run, and at its end.
     fn is_look(&self) -> bool {
         let looks = |step: usize| step * LOOKS / self.steps.max(1);
         self.step == self.steps || self.step > 0 && looks(self.step) > looks(self.step - 1)

@@ -28,14 +28,14 @@ impl MethodChoice {
         }
     }
 
-    /// As it is compared with others on a case: the scene's own integrator has the scene's options,
-    /// every other its defaults. Those that saturate say at which voltage.
+    /// The choice under which an integrator is compared with others on a case: the scene's own integrator has the
+    /// scene's options, every other its defaults. Methods that saturate show their voltage.
     #[must_use]
     pub fn on(case: &Case, integrator: &str) -> Self {
         Self::of_scene(case.simulation(), integrator)
     }
 
-    /// As [`MethodChoice::on`], where there is no case yet.
+    /// Like [`MethodChoice::on`], before there is a case.
     #[must_use]
     pub fn of_scene(simulation: &Simulation, integrator: &str) -> Self {
         let mut method = Self::new(integrator);

@@ -313,8 +313,7 @@ impl Row {
         }
     }
 
-    /// As [`Row::sound_error`], over the whole scene: the error to expect where only a first part
-    /// was compared.
+    /// Like [`Row::sound_error`], over the whole scene: the expected error if only a first part was compared.
     #[must_use]
     pub fn sound_error_over_scene(&self) -> Option<f64> {
         let error = self.sound_error()?;

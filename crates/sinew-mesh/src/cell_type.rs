@@ -127,7 +127,7 @@ impl CellType {
             .find(|kind| kind.name() == name)
     }
 
-    /// Whether the shape is a tetrahedron of any order. Its corners are the first four nodes.
+    /// True if the shape is a tetrahedron of any order. Its corners are the first four nodes.
     #[must_use]
     pub fn is_tetrahedron(self) -> bool {
         self.name().starts_with("tetra")

@@ -14,7 +14,7 @@ pub struct DataRange {
     pub least: f64,
     /// The greatest value; infinite if there are none.
     pub greatest: f64,
-    /// Whether all values are whole numbers, as labels are.
+    /// True if all values are whole numbers, as labels are.
     pub is_whole: bool,
     /// Number of different values, if all are whole and there are at most 4096.
     pub different: Option<usize>,

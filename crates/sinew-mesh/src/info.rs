@@ -40,7 +40,7 @@ pub struct MeshInfo {
 /// Data of a mesh.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DataInfo {
-    /// What has values: `points`, `cells` or `nodes of cells`.
+    /// Holder of the values: `points`, `cells` or `nodes of cells`.
     pub of: &'static str,
     /// Name.
     pub name: String,

@@ -84,7 +84,7 @@ impl CellBlock {
         self.connectivity.len() / self.kind.node_count()
     }
 
-    /// Whether the block has no cells.
+    /// True if the block has no cells.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0

@@ -82,7 +82,7 @@ impl PhysicalTags {
         self.list_of_cell.len()
     }
 
-    /// Whether there are no cells.
+    /// True if there are no cells.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.list_of_cell.is_empty()

@@ -129,7 +129,7 @@ impl Pattern {
         packed
     }
 
-    /// Whether so many cells and positions of blocks can be appended without asking for memory.
+    /// True if `cells` cells and `blocks` positions of blocks can be appended without allocation.
     pub(crate) fn has_room(&self, cells: usize, blocks: usize) -> bool {
         let has = |capacity: usize, len: usize, more: usize| capacity - len >= more;
         has(self.starts.capacity(), self.starts.len(), cells)
@@ -143,7 +143,7 @@ impl Pattern {
         2 * self.blocks.div_ceil(self.cells().max(1)) + 4
     }
 
-    /// Whether a row of so many blocks takes the place of a cell's.
+    /// True if a row of `blocks` blocks fits in place of the row of a cell.
     pub(crate) fn fits(&self, cell: usize, blocks: usize) -> bool {
         self.counts
             .get(cell)

@@ -7,7 +7,7 @@ use crate::steering::Steering;
 use crate::table::Table;
 use crate::vector::scaled;
 
-/// Where a tool is at any time.
+/// Pose of a tool as a function of time.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Motion {
     /// A tool that stays where it is.

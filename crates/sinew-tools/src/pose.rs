@@ -3,7 +3,7 @@
 use crate::rotation::{self, Matrix};
 use crate::vector::{add, between, length, scaled, sub};
 
-/// Where a tool's own frame stands in the world: `world = position + rotation own`.
+/// Pose of a tool's own frame in the world: `world = position + rotation own`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
     position: [f64; 3],
@@ -20,8 +20,8 @@ impl Pose {
         }
     }
 
-    /// Whether a rotation vector (rad) is one whose angle is known: finite, and at most 1e6, beyond which rounding of the vector takes more than the digits
-    /// of a path.
+    /// True if the angle of a rotation vector (rad) is well defined: the vector is finite and at most 1e6 long. Beyond
+    /// that, rounding of the vector costs more than the digits of a path.
     #[must_use]
     pub fn knows(rotation_vector: [f64; 3]) -> bool {
         rotation_vector.iter().all(|angle| angle.is_finite()) && length(rotation_vector) <= 1e6

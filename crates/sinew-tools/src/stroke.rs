@@ -165,13 +165,14 @@ impl Stroke {
         self.turn != [0.0; 3]
     }
 
-    /// How far any point of a bounded part is carried (m) by the turn about the tool's origin, at most.
+    /// Upper bound of the arc (m) over which the turn about the tool's origin carries any point of a bounded part.
     fn largest_arc(&self) -> Option<f64> {
         let reach = self.part.convex.reach()?;
         Some(length(self.turn) * (length(self.part.pose.position()) + reach))
     }
 
-    /// How far any point of a round part moves at most, in its smallest radii; 0 for parts with flat faces.
+    /// Upper bound of the displacement of any point of a round part, in its smallest radii; 0 for parts with flat
+    /// faces.
     fn longest_way(&self) -> f64 {
         let [before, after] = self.tool.map(|pose| pose.position());
         let way = length(sub(after, before));

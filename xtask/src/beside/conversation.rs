@@ -53,7 +53,7 @@ impl Conversation {
         Err(format!("{} ended at `{command}`: {reason}", self.name))
     }
 
-    /// As [`Conversation::ask`], for a CPU time (s).
+    /// Like [`Conversation::ask`], for a CPU time (s).
     pub(super) fn time(&mut self, command: &str) -> Result<f64, RivalError> {
         let answer = self.ask(command)?;
         let time = answer.parse().ok().filter(|time| *time > 0.0);

@@ -76,7 +76,7 @@ fn compare_run(python: &Python) -> Result<(), Failure> {
     ))?)
 }
 
-/// What a script of `xtask/python` prints about a folder.
+/// Output of a script of `xtask/python` for a folder.
 fn said_by(python: &Python, script: &str, folder: &Path) -> Result<String, Failure> {
     let script = root().join("xtask/python").join(script);
     let output = python

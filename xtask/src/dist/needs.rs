@@ -1,18 +1,18 @@
-//! What a program needs of the system that it runs on.
+//! System libraries that a program needs.
 
 use std::fmt;
 use std::path::Path;
 
 use crate::failure::Failure;
 
-/// What a program needs.
+/// Requirements of a program.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) enum Needs {
     /// No library of the system: it brings all it needs.
     Nothing,
     /// The C library of GNU from this version on: major, minor, patch.
     Glibc([u32; 3]),
-    /// What every system of this kind has.
+    /// Only the libraries that every system of this kind has.
     System,
 }
 

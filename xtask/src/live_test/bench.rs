@@ -1,4 +1,4 @@
-//! What the tests of the live page have in common.
+//! Helpers shared by the tests of the live page.
 
 use std::path::PathBuf;
 
@@ -11,7 +11,7 @@ use crate::failure::Failure;
 /// The scene under the ball.
 const CUBE: &str = include_str!("cube.toml");
 
-/// What the tests need.
+/// Programs and folder for the tests.
 pub(super) struct Bench {
     pub(super) sinew: PathBuf,
     pub(super) chromium: Chromium,

@@ -140,7 +140,7 @@ fn drag(tab: &mut Tab, from: [f64; 3], to: [f64; 3]) -> Result<(), Failure> {
     tab.mouse(Mouse::Release, to)
 }
 
-/// Where a place (m) is in the first pane (CSS pixels).
+/// Position on the page of a place (m) in the first pane (CSS pixels).
 pub(super) fn on_page(tab: &mut Tab, place: [f64; 3]) -> Result<[f64; 2], Failure> {
     let place = format!("window.sinew.onPage({place:?})");
     Ok([

@@ -135,7 +135,8 @@ impl Tab {
         Ok(())
     }
 
-    /// What fingers do, with the places (CSS pixels) of those that are down then: `touchStart`, `touchMove` or `touchEnd`.
+    /// Sends a touch event (`touchStart`, `touchMove` or `touchEnd`) with the positions (CSS pixels) of the fingers
+    /// that are then down.
     pub(super) fn touch(&mut self, what: &str, fingers: &[[f64; 2]]) -> Result<(), Failure> {
         let points = fingers.iter().enumerate();
         let points = points.map(|(id, [x, y])| json!({ "x": x, "y": y, "id": id }));

@@ -33,7 +33,7 @@ const FLAGS: [&str; 10] = [
 /// A browser, which ends with this value.
 pub(super) struct Chromium {
     child: Child,
-    /// Where it listens.
+    /// Address at which it listens.
     pub(super) address: String,
     /// Its profile.
     _folder: TempDir,

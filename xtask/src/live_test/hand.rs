@@ -19,7 +19,7 @@ pub(super) fn open(bench: &Bench, served: &Served) -> Result<Tab, Failure> {
     Ok(tab)
 }
 
-/// Where the hand's tool or grip is on the page.
+/// Position on the page of the steered tool or grip.
 pub(super) fn grip(tab: &mut Tab) -> Result<[f64; 2], Failure> {
     Ok([
         tab.number("window.sinew.gripOnPage()[0]")?,

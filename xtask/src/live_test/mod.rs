@@ -21,7 +21,7 @@ use self::chromium::Chromium;
 use crate::failure::Failure;
 use crate::program;
 
-/// What is tried.
+/// Options of the test.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// Ten minutes of input, after which memory must be what it was

@@ -24,7 +24,7 @@ pub(super) struct Served {
     errors: BufReader<std::process::ChildStderr>,
 }
 
-/// How a program ended.
+/// End of a program.
 pub(super) struct Ended {
     pub(super) code: Option<i32>,
     pub(super) said: String,
@@ -94,7 +94,7 @@ impl Served {
         number.map_or(f64::NAN, |number| number / 1024.0)
     }
 
-    /// Whether it still runs.
+    /// True if it still runs.
     pub(super) fn runs(&mut self) -> bool {
         matches!(self.child.try_wait(), Ok(None))
     }

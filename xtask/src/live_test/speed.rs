@@ -1,4 +1,4 @@
-//! How fast pictures follow a hand.
+//! Latency and rate of pictures that follow the user's tool pose.
 
 use std::time::{Duration, Instant};
 

@@ -1,4 +1,4 @@
-//! Those who have no business with the server, and those who behave badly.
+//! Tests of foreign pages, which must be refused, and of clients that behave badly.
 
 use std::io::{Read, Write};
 use std::net::TcpStream;

@@ -50,7 +50,7 @@ fn without_tests(stream: TokenStream) -> Vec<TokenTree> {
     kept
 }
 
-/// Whether an attribute is `cfg(test)` or `cfg(all(test, ..))`.
+/// True if an attribute is `cfg(test)` or `cfg(all(test, ..))`.
 fn is_for_tests(attribute: &Group) -> bool {
     let words: Vec<TokenTree> = attribute.stream().into_iter().collect();
     let condition = (ident(words.first()).as_deref() == Some("cfg"))
@@ -123,7 +123,7 @@ pub(super) fn group(token: Option<&TokenTree>, delimiter: Delimiter) -> Option<&
     }
 }
 
-/// Whether `::` begins at `at`.
+/// True if `::` begins at `at`.
 pub(super) fn is_path_separator(tokens: &[TokenTree], at: usize) -> bool {
     let is_joint = matches!(tokens.get(at), Some(TokenTree::Punct(punct)) if punct.spacing() == Spacing::Joint);
     is_joint && is_punct(tokens.get(at), ':') && is_punct(tokens.get(at + 1), ':')
@@ -150,7 +150,7 @@ pub(super) struct Import {
     pub(super) path: Vec<String>,
     /// The name that it gets; `None` stands for all names in `path` (`*`).
     pub(super) name: Option<String>,
-    /// Whether others may import it from here (`pub use`, with whatever visibility).
+    /// True if others may import it from here (`pub use`, of any visibility).
     pub(super) is_public: bool,
 }
 

@@ -8,7 +8,7 @@ use super::workspace::cargo;
 /// A crate whose tree of dependencies is kept small.
 pub(super) struct Light {
     name: &'static str,
-    /// Whether its default features are on.
+    /// True if its default features are on.
     with_features: bool,
     /// Libraries that have no place in its tree.
     banned: &'static [&'static str],

@@ -35,7 +35,7 @@ struct Module {
     paths: BTreeSet<Vec<String>>,
 }
 
-/// Whether the identifier at `at` belongs to what stands before it: `value.name`, `Type::<T>::name`.
+/// True if the identifier at `at` belongs to what precedes it: `value.name`, `Type::<T>::name`.
 fn is_member(tokens: &[TokenTree], at: usize) -> bool {
     let is_dot = |back: usize| at >= back && is_punct(tokens.get(at - back), '.');
     let is_range = is_dot(1) && is_dot(2);

@@ -15,7 +15,7 @@ pub(super) struct Package {
     pub(super) needs: Vec<String>,
     /// Names of the crates that only its tests, examples and benches need.
     pub(super) tests_need: Vec<String>,
-    /// Whether it is for others: not `publish = false`.
+    /// True if it is published: not `publish = false`.
     pub(super) is_published: bool,
 }
 

@@ -1,4 +1,4 @@
-//! What `cargo xtask bench` prints: the answer in few lines, and everything on demand.
+//! Output of `cargo xtask bench`: the answer in few lines, and everything on demand.
 
 use std::path::Path;
 

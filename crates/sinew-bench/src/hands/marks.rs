@@ -1,4 +1,4 @@
-//! What is asked of scenes with tools.
+//! Pass marks of scenes with tools.
 
 use sinew_measure::{CaseInfo, Row};
 
@@ -126,8 +126,8 @@ fn cells(case: &str) -> f64 {
     last.and_then(|last| last.parse().ok()).unwrap_or(10.0)
 }
 
-/// Where the cost is 1 on the straight line through the logarithms of the two sizes about it, or of the last two, and whether that is beyond all
-/// sizes.
+/// Size at which the cost is 1, on the straight line through the logarithms of the two sizes about it, or of the last
+/// two; and true if that size is larger than all measured ones.
 fn largest_in_real_time(costs: &[(f64, f64)]) -> Option<(f64, bool)> {
     let about = costs.windows(2).find(|pair| pair[1].1 > 1.0);
     let is_beyond = about.is_none();

@@ -11,7 +11,7 @@ pub(crate) struct HardCase {
     pub(crate) methods: Vec<MethodChoice>,
     /// Steps (s).
     pub(crate) steps: &'static [f64],
-    /// Whether a quick run leaves it out, because its reference alone takes seconds.
+    /// True if a quick run leaves the case out, because its reference alone takes seconds.
     pub(crate) slow: bool,
 }
 

@@ -79,7 +79,7 @@ pub(crate) fn equilibrium(case: &Case) -> Option<Vec<f64>> {
     (relative_distance(last, &rest) <= AT_REST).then_some(rest)
 }
 
-/// Whether nothing damps or loads the system.
+/// True if the system has no damping and no loads.
 fn keeps_energy(case: &Case) -> bool {
     case.simulation()
         .system()

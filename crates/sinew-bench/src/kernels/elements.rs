@@ -40,7 +40,7 @@ pub struct ElementRow {
     pub difference: f64,
 }
 
-/// What a ratio of a row should reach.
+/// Mark for a ratio of a row.
 #[derive(Clone, Debug, Serialize)]
 pub struct ElementMark {
     /// The body, law, element and numbers.
@@ -49,9 +49,9 @@ pub struct ElementMark {
     pub what: &'static str,
     /// Its value.
     pub value: f64,
-    /// What it should be at most, or at least.
+    /// Bound that the value should keep: the largest, or the smallest.
     pub mark: f64,
-    /// Whether the mark is reached.
+    /// True if the mark is reached.
     pub reached: bool,
 }
 

@@ -1,4 +1,4 @@
-//! What one thread reads of memory.
+//! Memory bandwidth of one thread.
 
 use std::hint::black_box;
 

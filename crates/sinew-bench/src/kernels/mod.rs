@@ -37,14 +37,14 @@ pub struct KernelBench {
     pub quick: bool,
 }
 
-/// What a bench of kernels measured.
+/// Measurements of a bench of kernels.
 #[derive(Clone, Debug, Serialize)]
 pub struct KernelResults {
     /// Revision of the code.
     pub revision: String,
     /// The computer.
     pub machine: Machine,
-    /// What one thread of it can do at most.
+    /// Peak rates of one thread of it.
     pub roofs: Roofs,
     /// Ratios that tell when kernels lost what makes them fast.
     pub guards: Vec<Guard>,
@@ -52,7 +52,7 @@ pub struct KernelResults {
     pub rows: Vec<KernelRow>,
     /// Forces of hyperelastic elements: one row for each body, law, element, precision and instruction set.
     pub elements: Vec<ElementRow>,
-    /// What ratios of these should reach.
+    /// Marks for ratios of these.
     pub marks: Vec<ElementMark>,
 }
 

@@ -1,4 +1,4 @@
-//! What one thread of the computer can do at most: bytes read and floating-point operations in a second.
+//! Peak rates of one thread of the computer: bytes read and floating-point operations in a second.
 
 use std::fs;
 use std::hint::black_box;
@@ -10,7 +10,7 @@ use sinew_sparse::sweep::{Precision, multiply_adds};
 
 use super::memory::bandwidth;
 
-/// What one thread can do at most, measured in the same run as the rows.
+/// Peak rates of one thread, measured in the same run as the rows.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Roofs {
     /// Rates of reading, the fastest memory first.

@@ -1,4 +1,4 @@
-//! What is measured on each body.
+//! Variants that are measured on each body.
 
 use sinew_machines::{Kind, PrecisionName};
 

@@ -1,4 +1,4 @@
-//! What the same error costs: elements that do not lock beside plain ones on finer meshes.
+//! Cost at equal error: elements that do not lock, compared with plain ones on finer meshes.
 
 use std::sync::Arc;
 

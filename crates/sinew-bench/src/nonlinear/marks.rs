@@ -1,4 +1,4 @@
-//! What is asked of large deformations.
+//! Pass marks of large deformations.
 
 use sinew_measure::{MethodChoice, Row};
 

@@ -10,14 +10,14 @@ pub(crate) struct PlannedCase {
     pub(crate) id: &'static str,
     /// The scene's file, from the folder of scenes.
     pub(crate) scene: &'static str,
-    /// What the scene changes besides.
+    /// Further changes to values of the scene.
     pub(crate) values: &'static [&'static str],
     pub(crate) methods: Vec<MethodChoice>,
     /// Steps (s), which divide the time between the scene's instants.
     pub(crate) steps: &'static [f64],
     /// Laws and elements in the place of the scene's; empty for its own.
     pub(crate) materials: Vec<Material>,
-    /// What is to be said of it besides.
+    /// Further remarks about the case.
     pub(crate) remarks: &'static [&'static str],
     /// Finer meshes by which the error of the scene's own is estimated.
     pub(crate) finer: Option<FinerMeshes>,
@@ -26,10 +26,10 @@ pub(crate) struct PlannedCase {
 /// Two finer meshes of a scene.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FinerMeshes {
-    /// What the scene changes to have them, the coarser one first.
+    /// Changes to the scene that give these meshes, the coarser one first.
     pub(crate) meshes: [&'static str; 2],
     /// Cells along an edge of the finer over those of the coarser.
     pub(crate) ratio: f64,
-    /// Whether the motion is so violent that a method of order 4 is needed to follow it.
+    /// True if the motion is so violent that only a method of order 4 can follow it.
     pub(crate) is_violent: bool,
 }

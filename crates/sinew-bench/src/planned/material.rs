@@ -30,7 +30,7 @@ impl Material {
         format!("{}, {}", self.law, self.element)
     }
 
-    /// What a scene of one region changes to be made of it.
+    /// Changes to a scene of one region that give it this material.
     pub(crate) fn values(self) -> Vec<String> {
         let mut values = vec![
             format!("region.1.model={}", self.law),

@@ -14,7 +14,7 @@ pub(crate) fn yardstick() -> MethodChoice {
     )
 }
 
-/// Whether a row is of [`yardstick`].
+/// True if a row is of [`yardstick`].
 pub(crate) fn is_yardstick(row: &Row) -> bool {
     row.integrator == yardstick().integrator && row.options.contains_key(SUBSTEPS)
 }

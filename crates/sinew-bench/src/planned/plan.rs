@@ -11,13 +11,13 @@ use crate::report::file_names;
 use crate::results::{BenchResults, Mark, Missing};
 use crate::{BenchError, Progress};
 
-/// What a bench goes through.
+/// Runs of a bench.
 pub(crate) struct Plan {
-    /// What it is about, in words.
+    /// Description of its subject.
     pub(crate) subject: &'static str,
     /// The folder of scenes.
     pub(crate) scenes: PathBuf,
-    /// Whether times are taken from few repeats.
+    /// True if times are taken from few repeats.
     pub(crate) quick: bool,
     pub(crate) cases: Vec<PlannedCase>,
 }

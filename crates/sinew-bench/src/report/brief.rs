@@ -1,4 +1,4 @@
-//! What a reader wants first, in few lines: the cheapest runs that are good enough, and marks.
+//! Summary in few lines for a terminal: the cheapest runs that are good enough, and marks.
 
 use sinew_measure::Row;
 

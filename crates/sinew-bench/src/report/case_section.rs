@@ -72,7 +72,7 @@ fn facts(page: &mut Page, info: &CaseInfo) {
     ]);
 }
 
-/// Who is on the front, and why.
+/// Writes the members of the Pareto front, with the reason for each.
 fn front(page: &mut Page, results: &BenchResults, id: &str) {
     page.heading("The front");
     let members = front_members(results, id);

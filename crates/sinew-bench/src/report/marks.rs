@@ -22,7 +22,8 @@ pub fn terminal_marks(marks: &[Mark]) -> String {
     ruled::lines(table(marks, RULED_HEAD, str::to_owned), 1)
 }
 
-/// What was asked and measured, failed marks first, in at most this many rows, and how many there are.
+/// Table of the required and measured figures, failed marks first, in at most `most` rows, followed by the number of
+/// marks.
 pub(super) fn brief(marks: &[Mark], most: usize) -> String {
     let mut sorted: Vec<&Mark> = marks.iter().collect();
     sorted.sort_by_key(|mark| mark.verdict == MarkVerdict::Pass);

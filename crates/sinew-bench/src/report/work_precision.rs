@@ -110,7 +110,7 @@ fn front<'a>(rows: &[&'a Row]) -> Vec<&'a Row> {
     front
 }
 
-/// What can be had for a given cost.
+/// Smallest error at a given cost, as a staircase.
 fn staircase(front: &[&Row]) -> Series {
     let points = front
         .iter()

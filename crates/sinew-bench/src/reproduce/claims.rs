@@ -14,11 +14,11 @@ pub struct Claim {
     pub says: &'static str,
     /// The measured figures, in words.
     pub measured: String,
-    /// Whether it holds.
+    /// Verdict on the claim.
     pub holds: Holds,
 }
 
-/// Whether a claim holds.
+/// Verdict on a claim.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Holds {
     /// It holds as it is written.

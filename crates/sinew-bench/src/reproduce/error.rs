@@ -9,7 +9,7 @@ pub enum ReproduceError {
     /// A run failed.
     #[error("{run}: {source}")]
     Run {
-        /// Which.
+        /// Name of the run.
         run: String,
         /// Why.
         source: MeasureError,

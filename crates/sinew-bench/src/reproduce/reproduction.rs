@@ -1,4 +1,4 @@
-//! What was reproduced.
+//! Result of a reproduction.
 
 use super::claims::Claim;
 use super::figures::Figure;

@@ -19,14 +19,14 @@ pub struct Mark {
     pub limit: Option<f64>,
     /// The method and step that gave the figure.
     pub by: String,
-    /// Whether it passes.
+    /// Verdict.
     pub verdict: MarkVerdict,
     /// A remark.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub note: String,
 }
 
-/// Whether a mark is passed.
+/// Verdict on a mark.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum MarkVerdict {
@@ -38,7 +38,7 @@ pub enum MarkVerdict {
 }
 
 impl MarkVerdict {
-    /// Whether what was asked holds.
+    /// The verdict for a condition that holds or does not.
     #[must_use]
     pub fn of(holds: bool) -> Self {
         match holds {

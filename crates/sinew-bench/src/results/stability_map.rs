@@ -29,7 +29,7 @@ pub struct MapPanel {
     /// The largest stable step (s) at each value of the parameter, as the method computes it from
     /// the matrices; none where it is stable at any step or cannot tell.
     pub stable_steps: Vec<Option<f64>>,
-    /// Whether there is a value at which the method cannot tell its stable step.
+    /// True if there is a value at which the method cannot tell its stable step.
     #[serde(default)]
     pub cannot_tell: bool,
     /// The run at each step, for each value of the parameter.

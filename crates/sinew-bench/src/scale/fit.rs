@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::row::ScaleRow;
 
-/// How a method's figures grow with the body.
+/// Growth of a method's figures with the size of the body.
 #[derive(Clone, Debug, Serialize)]
 pub struct ScaleFit {
     /// The method.
@@ -21,22 +21,22 @@ pub struct ScaleFit {
     /// Tetrahedra of the largest body in real time: where wall time is simulated time, between the two sizes
     /// about it or on the line through all sizes beyond them; none without two sizes.
     pub real_time_tets: Option<f64>,
-    /// Whether that lies beyond the sizes that were measured.
+    /// True if that lies beyond the sizes that were measured.
     pub real_time_is_extrapolated: bool,
 }
 
 /// Powers of the number of tetrahedra.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Exponents {
-    /// Of the error.
+    /// Exponent of the error.
     pub error: Option<f64>,
-    /// Of CPU time per simulated second.
+    /// Exponent of the CPU time per simulated second.
     pub cpu_s_per_s: Option<f64>,
-    /// Of wall time per simulated second.
+    /// Exponent of the wall time per simulated second.
     pub wall_s_per_s: Option<f64>,
-    /// Of the set-up's CPU time.
+    /// Exponent of the set-up's CPU time.
     pub setup_cpu_s: Option<f64>,
-    /// Of the memory per tetrahedron.
+    /// Exponent of the memory per tetrahedron.
     pub bytes_per_tet: Option<f64>,
 }
 
@@ -67,7 +67,7 @@ impl Power {
         })
     }
 
-    /// Where it is 1.
+    /// The x at which y is 1.
     fn at_one(self) -> Option<f64> {
         let at = (-self.constant / self.exponent).exp();
         (self.exponent > 0.0 && at.is_finite()).then_some(at)

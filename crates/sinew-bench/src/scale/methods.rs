@@ -5,7 +5,7 @@ use sinew_measure::MethodChoice;
 
 use super::cube::SHARE;
 
-/// How a method's step follows from the body.
+/// Rule by which a method's step follows from the body.
 #[derive(Clone, Copy, Debug)]
 enum StepRule {
     /// At most this share of the critical step.
@@ -30,7 +30,7 @@ pub(super) struct Variant {
     rule: StepRule,
     pub(super) precision: &'static str,
     pub(super) threads: Threads,
-    /// Whether it factorises a matrix; it is no program then.
+    /// True if it factorises a matrix; it is not a program then.
     pub(super) factorises: bool,
 }
 

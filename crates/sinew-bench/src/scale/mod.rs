@@ -31,7 +31,7 @@ pub struct ScaleBench {
     pub quick: bool,
 }
 
-/// What a bench over sizes measured.
+/// Measurements of a bench over sizes.
 #[derive(Clone, Debug, Serialize)]
 pub struct ScaleResults {
     /// Version of this format.
@@ -46,7 +46,7 @@ pub struct ScaleResults {
     pub rows: Vec<ScaleRow>,
     /// Powers of the number of tetrahedra, and the largest body in real time, of each method.
     pub fits: Vec<ScaleFit>,
-    /// What did not run, and why.
+    /// Runs that were skipped, with the reason.
     pub skipped: Vec<ScaleSkipped>,
 }
 

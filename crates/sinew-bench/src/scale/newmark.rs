@@ -1,4 +1,4 @@
-//! Whether a factor is worth a try: what it takes grows faster than the body.
+//! Rule that decides if a factorisation is tried: its time and memory grow faster than the body.
 
 use super::row::ScaleRow;
 

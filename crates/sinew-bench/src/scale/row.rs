@@ -1,4 +1,4 @@
-//! What a bench over sizes writes down.
+//! Rows of a bench over sizes.
 
 use serde::Serialize;
 
@@ -27,7 +27,7 @@ pub struct ScaleBody {
     pub reference_error: f64,
     /// Products with the matrices that it took, its check included.
     pub reference_sweeps: u64,
-    /// Those products over the largest angular frequency times the simulated time.
+    /// Number of these products, divided by the largest angular frequency times the simulated time.
     pub reference_sweeps_per_omega_t: f64,
     /// Wall time (s) that it took, with the search for the largest frequency.
     pub reference_wall_s: f64,

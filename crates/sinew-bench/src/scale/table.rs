@@ -67,7 +67,7 @@ impl fmt::Display for ScaleResults {
 }
 
 impl ScaleResults {
-    /// How all figures grow with the size, for a terminal.
+    /// Growth of all figures with the size, for a terminal.
     #[must_use]
     pub fn brief(&self) -> String {
         let fits = ruled::table(FITS, self.fits.iter().map(fit), 3);

@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::error::VerifyError;
 use super::inputs::Inputs;
 
-/// What a figure is to be.
+/// Requirement for a figure.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum Asked {
@@ -53,7 +53,7 @@ impl Asked {
         Self::AtLeast { value }
     }
 
-    /// Whether a figure passes; one that is not a number never does.
+    /// True if a figure passes; NaN never does.
     #[must_use]
     pub fn passes(self, got: f64) -> bool {
         match self {
@@ -99,7 +99,7 @@ pub(crate) struct Check {
     pub(super) source: Source,
     /// A remark.
     pub(super) note: &'static str,
-    /// Whether it takes so long that it runs on demand only.
+    /// True if it takes so long that it runs only on demand.
     pub(super) is_long: bool,
     pub(super) compute: Compute,
 }

@@ -98,7 +98,7 @@ pub enum VerifyError {
     /// A node that a mesh lacks.
     #[error("the mesh has no node at ({}, {}, {})", .place[0], .place[1], .place[2])]
     NoNode {
-        /// Where it was looked for (m).
+        /// Position of the missing node (m).
         place: [f64; 3],
     },
     /// A computation that gives another number of figures than it has names for.

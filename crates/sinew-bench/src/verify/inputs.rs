@@ -1,4 +1,4 @@
-//! What checks read.
+//! Input files of checks.
 
 use std::path::PathBuf;
 

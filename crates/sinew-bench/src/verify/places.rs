@@ -36,7 +36,7 @@ pub(crate) fn triangles_where(
     Ok(triangles.copied().collect())
 }
 
-/// Whether each node is on the surface of a box that the mesh fills.
+/// One flag per node: true if it is on the surface of a box that the mesh fills.
 pub(crate) fn on_surface(mesh: &TetMesh) -> Vec<bool> {
     let (low, high) = mesh.bounding_box();
     let is_end = |point: &[f64; 3], axis: usize| {

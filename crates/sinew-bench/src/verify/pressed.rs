@@ -119,7 +119,7 @@ impl Pressed {
         self.tools.report(&self.state, 0).force
     }
 
-    /// How far the deepest node is from the tool (m), negative inside.
+    /// Distance of the deepest node from the tool (m), negative inside.
     pub(crate) fn gap(&self) -> f64 {
         let pose = self.tools.pose(&self.state, Inputs::none(), 0);
         let deepest = self.tools.deepest(&self.state.u, &pose, 0);

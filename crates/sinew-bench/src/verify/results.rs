@@ -1,4 +1,4 @@
-//! What a verification found.
+//! Results of a verification.
 
 use serde::Serialize;
 
@@ -31,7 +31,7 @@ pub struct VerifiedSubject {
     pub id: &'static str,
     /// Its heading.
     pub title: &'static str,
-    /// How its figures are computed.
+    /// Method by which its figures are computed.
     pub says: &'static str,
     /// A row for each figure.
     pub rows: Vec<VerifiedRow>,
@@ -47,7 +47,7 @@ pub struct VerifiedRow {
     pub case: String,
     /// The figure, with its unit.
     pub figure: String,
-    /// What is asked of it.
+    /// Requirement for the figure.
     pub asked: Asked,
     /// The figure; none where it could not be computed or is not finite.
     pub got: Option<f64>,
@@ -56,7 +56,7 @@ pub struct VerifiedRow {
     pub missing: Option<String>,
     /// The origin of what is asked.
     pub source: Source,
-    /// Whether it passes.
+    /// Verdict.
     pub verdict: MarkVerdict,
     /// A remark.
     #[serde(skip_serializing_if = "str::is_empty")]

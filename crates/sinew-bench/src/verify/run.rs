@@ -21,7 +21,7 @@ pub struct VerifyPlan {
     pub root: PathBuf,
     /// Subjects by their short names; all where there are none.
     pub only: Vec<String>,
-    /// Whether rows that take long run too.
+    /// True if rows that take long run too.
     pub long: bool,
     /// Checks that run at the same time.
     pub threads: usize,

@@ -10,7 +10,7 @@ pub(crate) struct Subject {
     pub(super) id: &'static str,
     /// Its heading.
     pub(super) title: &'static str,
-    /// How its figures are computed.
+    /// Method by which its figures are computed.
     pub(super) says: &'static str,
     /// The checks.
     pub(super) checks: fn() -> Vec<Check>,

@@ -130,7 +130,7 @@ fn the_reference_knows_its_own_error_and_the_case_its_facts() {
     close(case.critical_step_s.unwrap(), 0.0079, 3e-3);
 }
 
-/// Where dt does not divide the distance of the instants, the error is taken over all steps.
+/// The error is taken over all steps if dt does not divide the distance of the instants.
 #[test]
 fn the_papers_oscillator_at_15_ms_is_compared_at_every_step() {
     let results = run(

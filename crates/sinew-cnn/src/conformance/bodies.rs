@@ -19,7 +19,7 @@ pub struct Body {
     pub start: State,
     /// Its largest angular frequency (rad/s), about.
     pub omega: f64,
-    /// Whether its law refuses elements that are inside out.
+    /// True if its law refuses inverted elements.
     pub refuses: bool,
 }
 

@@ -30,7 +30,7 @@ impl<K: Hash + Eq, V: Clone> Once<K, V> {
 /// Name of a run of one method, and its number of steps.
 type Key = (String, usize);
 
-/// What the definition says of the runs of one method.
+/// Reference results for the runs of one method.
 #[derive(Debug, Default)]
 pub(super) struct Known {
     ends: Once<Key, Arc<(State, StepReport)>>,

@@ -79,7 +79,7 @@ pub struct Method {
     pub properties: Properties,
     /// Length of its steps times the largest angular frequency.
     pub omega_dt: f64,
-    /// Whether it bounds velocities, so that it need not converge.
+    /// True if the method bounds velocities, so that it need not converge.
     pub bounds: bool,
     known: Arc<known::Known>,
 }

@@ -26,11 +26,11 @@ pub(super) const STEPS: usize = 100;
 /// A program on a case, with its name.
 pub(super) struct Run {
     pub(super) name: String,
-    /// Whether velocities are clamped.
+    /// True if velocities are clamped.
     pub(super) bounds: bool,
     pub(super) case: Case,
     pub(super) program: Arc<Program>,
-    /// What the definition says of this run and of others of its method.
+    /// Reference results for this run and for others of its method.
     known: Arc<Known>,
 }
 

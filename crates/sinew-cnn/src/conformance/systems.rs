@@ -32,7 +32,7 @@ pub(super) struct Kind {
     pub(super) layers: Layers,
     pub(super) damped: Damped,
     pub(super) changing: Changing,
-    /// Whether some components are held.
+    /// True if some components are fixed.
     pub(super) held: bool,
     /// Cells along each axis.
     pub(super) cells: [usize; 3],
@@ -254,7 +254,7 @@ fn add_spring(matrix: &mut BlockMatrix, cells: &[u32; 2], k: f64, direction: &[f
     }
 }
 
-/// Whether the loads of a case meet the condition of a method.
+/// True if the loads of a case meet the condition of a method.
 pub(super) fn takes(needed: LoadOverStep, changing: Changing) -> bool {
     match changing {
         Changing::Not | Changing::Jumps => true,

@@ -70,7 +70,7 @@ enum Mistake {
     StartForgotten,
     /// Nothing is clamped.
     ClampsForgotten,
-    /// What belongs to the last step of a batch is done in none.
+    /// Updates for the last step of a batch alone are never made.
     LastStepForgotten,
     /// Sweeps are made whether a step needs them or not.
     ConditionsForgotten,
@@ -181,7 +181,7 @@ impl Machine for Broken {
 
 type Law = fn(&[Method], &Make);
 
-/// Whether a law notices a mistake.
+/// True if a law detects a mistake.
 fn notices(law: Law, mistake: Mistake) -> bool {
     let make = move || -> Box<dyn Machine> {
         Box::new(Broken {

@@ -245,8 +245,8 @@ impl Update {
             .reduce(|a, b| a + b)
     }
 
-    /// Whether it is `next <- own next + weight target` after an update `target <- ..` that does not
-    /// read `next`, so that one pass makes both.
+    /// True if this update is `next <- own next + weight target` after an update `target <- ..` that does not read
+    /// `next`, so that one pass can make both.
     fn follows(&self, before: &Self) -> bool {
         let reads = |register| before.terms.iter().any(|term| term.register == register);
         let [own, of_before] = &self.terms[..] else {

@@ -1,4 +1,4 @@
-//! What is found out once for all cells before a sweep: its loads and the weights that follow them.
+//! Values found once for all cells before a sweep: its loads and the weights that follow them.
 
 use std::sync::Arc;
 
@@ -27,7 +27,7 @@ impl<'a> StepTime<'a> {
         }
     }
 
-    /// Whether the step needs a sweep.
+    /// True if the step needs a sweep.
     #[must_use]
     pub fn needs(self, when: When, operators: Option<&LinearOperators>) -> bool {
         let Some(operators) = operators else {

@@ -29,7 +29,7 @@ pub trait Machine: Send + std::fmt::Debug {
         self.name().to_owned()
     }
 
-    /// What it computes with, for plans: kernels, numbers, threads.
+    /// Description for plans: kernels, number format, threads.
     fn in_words(&self) -> String {
         "plain loops in f64".to_owned()
     }

@@ -70,7 +70,7 @@ impl Line {
         format!("{}{sum}{}", self.head, self.tail)
     }
 
-    /// Whether both lines differ at most in coefficients.
+    /// True if both lines differ at most in coefficients.
     fn is_like(&self, other: &Self) -> bool {
         let of = |line: &Self| -> Vec<String> {
             let terms = line.terms.iter();
@@ -81,7 +81,7 @@ impl Line {
 }
 
 impl Lines {
-    /// Whether both sweeps differ at most in coefficients.
+    /// True if both sweeps differ at most in coefficients.
     pub(super) fn are_like(&self, other: &Self) -> bool {
         let pairs = || self.lines.iter().zip(&other.lines);
         self.when == other.when

@@ -55,7 +55,7 @@ pub struct Program {
     pub step: Vec<Sweep>,
     /// Time of V after a step.
     pub velocity: VelocityTime,
-    /// Where damping takes velocities after a step.
+    /// Times at which damping takes velocities after a step.
     pub damped: DampedAt,
     /// Kind of acceleration in A after the last step of a batch.
     pub acceleration: Acceleration,

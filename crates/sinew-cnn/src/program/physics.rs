@@ -7,13 +7,13 @@ use super::{Loads, Register, Sweep};
 /// Kind of the forces of a system: which products a net force takes, and with which constants.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Physics {
-    /// Whether it shows matrices.
+    /// True if the system shows matrices.
     pub matrices: bool,
     /// alpha (1/s) of damping alpha M.
     pub mass_damping: f64,
     /// beta (s) of damping beta K.
     pub stiffness_damping: f64,
-    /// Whether there are dashpots, a damping matrix proportional to neither.
+    /// True if there are dashpots, a damping matrix proportional to neither M nor K.
     pub dashpots: bool,
     /// Number of loads, those from outside not counted.
     pub loads: u32,

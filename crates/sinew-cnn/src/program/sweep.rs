@@ -60,7 +60,7 @@ impl Register {
 /// from one register.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sweep {
-    /// Whether a step needs it.
+    /// Condition under which a step needs the sweep.
     pub when: When,
     /// `phi F`.
     pub loads: Loads,
@@ -187,7 +187,7 @@ pub struct Update {
     pub of_q: f64,
     /// Bound of the result.
     pub clamp: Option<Clamp>,
-    /// Whether only the last step of a batch does it.
+    /// True if the update is made only in the last step of a batch.
     pub last_only: bool,
 }
 
@@ -375,7 +375,7 @@ impl Sweep {
         self
     }
 
-    /// Whether it reads neighbours.
+    /// True if the sweep reads neighbours.
     #[must_use]
     pub fn reads_neighbours(&self) -> bool {
         !matches!(

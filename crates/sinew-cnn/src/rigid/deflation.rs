@@ -30,7 +30,7 @@ struct Part {
     /// G and its factor.
     gram: [[f64; MOST]; MOST],
     factor: Factor,
-    /// Whether S resists all motions; where it does not nothing is taken out.
+    /// True if S resists all motions; if it does not, nothing is subtracted.
     is_sound: bool,
 }
 
@@ -50,7 +50,7 @@ impl Deflation {
         }
     }
 
-    /// Whether there is no part.
+    /// True if there are no parts.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.parts.is_empty()

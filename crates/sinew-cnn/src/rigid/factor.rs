@@ -13,7 +13,7 @@ pub(super) struct Factor {
 }
 
 impl Factor {
-    /// By Cholesky's method, of the first rows and columns; `None` where it is singular.
+    /// Cholesky factor of the first `count` rows and columns; `None` if they are singular.
     pub(super) fn of(matrix: &[Coefficients; MOST], count: usize) -> Option<Self> {
         let mut rows = [[0.0; MOST]; MOST];
         for i in 0..count {

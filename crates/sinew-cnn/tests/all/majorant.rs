@@ -41,7 +41,7 @@ fn mass_with_damping(operators: &LinearOperators, dt: f64) -> DMatrix<f64> {
     mass(operators) * (1.0 + dt / 2.0 * operators.damping().mass)
 }
 
-/// What a majorant adds to that.
+/// Matrix that a majorant adds to that.
 fn added(operators: &LinearOperators, dt: f64, majorant: &Majorant) -> DMatrix<f64> {
     other_damping(operators) * (majorant.damping_share() * dt / 2.0)
         + stiffness(operators) * (majorant.s() * dt * dt / 4.0)
@@ -140,7 +140,7 @@ fn inners(sweeps: [u32; 3]) -> [Inner; 4] {
     ]
 }
 
-/// Which damping a body has.
+/// Damping of a body.
 #[derive(Clone, Copy, Debug)]
 struct Damped {
     mass: bool,

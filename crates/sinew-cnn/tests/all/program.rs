@@ -121,7 +121,7 @@ fn a_guard_changes_not_a_bit_while_no_limit_is_reached() {
     assert!(state.v[0].abs() <= 0.5 * (1.0 + 1e-9));
 }
 
-/// What the clamp takes from a velocity it takes from the acceleration that led to it.
+/// The clamp reduces a velocity and the acceleration that led to it consistently.
 #[test]
 fn a_guarded_acceleration_leads_to_the_clamped_velocity() {
     let program = leapfrog(&damped(), DT)

@@ -18,9 +18,9 @@ const SOLVED: f64 = 1e-10;
 /// The forces of a linear system that hides its matrices.
 struct Hidden {
     inner: LinearModel,
-    /// Whether it tells its fastest motions.
+    /// True if the law reports the spectrum of its fastest motions.
     knows_spectrum: bool,
-    /// Whether it tells its energy and tangent.
+    /// True if the law reports its energy and tangent.
     tells_tangent: bool,
 }
 
@@ -56,7 +56,7 @@ impl ForceLaw for Hidden {
     }
 }
 
-/// Whether set-up or the stable step was refused because the system lacks something, by name.
+/// True if set-up or the stable step was refused with [`SetupError::Lacks`] under this integrator's id.
 pub(super) fn lacks<T>(integrator: &dyn Integrator, answer: &Result<T, SetupError>) -> bool {
     matches!(answer, Err(SetupError::Lacks { integrator: id, .. }) if *id == integrator.id())
 }
@@ -181,7 +181,7 @@ fn sizes(states: &[State]) -> [f64; 3] {
     ]
 }
 
-/// Whether two states are the same but for differences in u, v and a up to these.
+/// True if two states agree: u, v and a within the bounds `allowed`, everything else exactly.
 pub(super) fn agree(one: &State, other: &State, allowed: [f64; 3]) -> bool {
     let pairs = [(&one.u, &other.u), (&one.v, &other.v), (&one.a, &other.a)];
     let close = pairs.iter().zip(allowed).all(|((one, other), allowed)| {

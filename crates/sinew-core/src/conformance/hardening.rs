@@ -35,7 +35,7 @@ struct Hardening {
     damping: Damping,
     largest_stretch: f64,
     pattern: Arc<Pattern>,
-    /// Whether it tells its energy and tangent.
+    /// True if the law reports its energy and tangent.
     tells_tangent: bool,
 }
 
@@ -370,7 +370,7 @@ pub fn a_refusal_ends_the_run_and_keeps_what_was(make: &dyn Fn() -> Boxed) {
     }
 }
 
-/// Whether values differ by no more than is allowed.
+/// True if both lists have the same length and their values differ by at most `allowed`.
 fn close(found: &[f64], expected: &[f64], allowed: f64) -> bool {
     let mut pairs = found.iter().zip(expected);
     found.len() == expected.len() && pairs.all(|(a, b)| (a - b).abs() <= allowed)

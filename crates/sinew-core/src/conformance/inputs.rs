@@ -65,7 +65,7 @@ fn known(
     frames(integrator, system, inputs, steps, |_, _, _| {})
 }
 
-/// Whether the error says that the method cannot take such inputs.
+/// True if the error says that the method cannot take such inputs.
 fn is_lacking(error: &StepError) -> bool {
     matches!(error, StepError::Setup(SetupError::Lacks { .. }))
 }

@@ -274,7 +274,7 @@ pub(super) fn gentle_step(integrator: &dyn Integrator, system: &dyn System) -> f
     }
 }
 
-/// Whether the method is never stable on this system.
+/// True if the method is never stable on this system.
 pub(super) fn is_never_stable(integrator: &dyn Integrator, system: &dyn System) -> bool {
     matches!(integrator.stable_step(system), Ok(StableStep::UpTo(limit)) if limit <= 0.0)
 }

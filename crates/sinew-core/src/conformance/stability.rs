@@ -104,7 +104,7 @@ impl Followed {
         if first > 0.0 { last / first } else { 0.0 }
     }
 
-    /// Whether a motion that has grown already need not be followed any longer.
+    /// True if the growth of the motion is established already, so that it need not be followed any longer.
     fn has_grown(&self) -> bool {
         let count = self.blocks.len();
         self.largest > FAR || (count >= 16 && count.is_power_of_two() && self.growth() > GROWN)

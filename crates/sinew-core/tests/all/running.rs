@@ -1,4 +1,4 @@
-//! What batches, watches and recorders owe their users.
+//! Contracts of batches, watches and recorders with their users.
 
 use std::cell::RefCell;
 
@@ -97,7 +97,7 @@ fn singly(system: &ForceModel<Springs>, steps: usize) -> Vec<State> {
     states
 }
 
-/// What a recorder is told, in the order in which it is told.
+/// Calls that a recorder received, in order.
 #[derive(Clone, Debug, PartialEq)]
 enum Told {
     Row(f64, Vec<f64>),

@@ -67,7 +67,7 @@ impl Motion {
     }
 }
 
-/// Where the blade comes from, and what it cuts.
+/// Direction of the blade, and the point that it cuts through.
 struct Way {
     normal: [f64; 3],
     across: [f64; 3],

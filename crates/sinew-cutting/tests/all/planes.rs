@@ -216,7 +216,7 @@ fn a_sheared_body_is_parted_as_at_rest_but_for_tetrahedra_that_the_plane_divides
     }
 }
 
-/// Which side a divided tetrahedron is on may be settled before its neighbours are known.
+/// The side of a divided tetrahedron may be settled before its neighbours are known.
 #[test]
 fn a_cut_in_many_strokes_parts_what_one_stroke_parts_and_is_as_large_to_a_sixteenth() {
     let mesh = kuhn_cube();

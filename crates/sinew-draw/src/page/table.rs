@@ -12,7 +12,7 @@ pub struct Table {
     pub columns: Vec<Column>,
     /// Its rows.
     pub rows: Vec<TableRow>,
-    /// Whether a click on a head sorts the rows.
+    /// True if a click on a head sorts the rows.
     pub is_sortable: bool,
     /// A name for rules of style; none where it is empty.
     pub class: String,
@@ -80,9 +80,9 @@ impl Column {
 pub struct TableRow {
     /// Its cells, one for each column.
     pub cells: Vec<Cell>,
-    /// Whether a line parts it from the row before.
+    /// True if a line separates it from the row before.
     pub begins_group: bool,
-    /// Whether its first cell is set bold.
+    /// True if its first cell is bold.
     pub is_strong: bool,
 }
 

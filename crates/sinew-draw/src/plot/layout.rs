@@ -149,7 +149,7 @@ impl Layout {
         (x.is_finite() && !y.is_nan()).then_some((x, y))
     }
 
-    /// Whether a place in shares of the frame is in the frame or in a lane.
+    /// True if a point, in shares of the frame, is in the frame or in a lane.
     pub(super) fn is_shown(&self, (x, y): (f64, f64)) -> bool {
         let inside = |share: f64| (-1e-9..=1.0 + 1e-9).contains(&share);
         let in_a_lane = y > 1.0 && self.above.is_some() || y < 0.0 && self.below.is_some();

@@ -23,7 +23,7 @@ pub struct Text<'a> {
     pub x: f64,
     /// Middle of its line (px from the top).
     pub y: f64,
-    /// What it says.
+    /// Its characters.
     pub content: &'a str,
     /// Size of its letters (px).
     pub size: f64,
@@ -31,7 +31,7 @@ pub struct Text<'a> {
     pub anchor: Anchor,
     /// Its colour.
     pub paint: Paint,
-    /// Whether it is set bold.
+    /// True if it is bold.
     pub bold: bool,
     /// Turned a quarter to the left.
     pub upward: bool,

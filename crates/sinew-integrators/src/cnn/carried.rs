@@ -4,7 +4,7 @@ use sinew_cnn::equilibrium;
 use sinew_core::vectors::add_scaled;
 use sinew_core::{LinearOperators, LoadTime, Ramp};
 
-/// What is left of forces, as a share of them, at which a carried displacement is found.
+/// Relative residual of forces at which a carried displacement counts as found.
 const FOUND: f64 = 1e-12;
 
 /// The displacements by which supports in motion carry a body without inertia, `K g = -K_p d`: what a stabilising matrix adds to the mass must not brake these.
@@ -27,7 +27,7 @@ struct Course {
 }
 
 impl Carried {
-    /// Whether loads move supports.
+    /// True if loads move supports.
     pub(super) fn carries(operators: &LinearOperators) -> bool {
         let mut ramps = operators.loads().iter().map(|load| &load.ramp);
         ramps.any(|ramp| matches!(ramp, Ramp::Position(_)))

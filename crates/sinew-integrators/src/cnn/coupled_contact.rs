@@ -7,7 +7,7 @@ use sinew_core::{AllShown, Contact, Meeting, State};
 /// Most improvements of the answer in a step.
 const MOST_ROUNDS: usize = 40;
 
-/// What is left of the rigid motions' equation, as a share of its terms, at which they are found.
+/// Residual of the rigid motions' equation, relative to its terms, at which they count as found.
 const FOUND: f64 = 1e-11;
 
 /// The same where it falls no further, as rounding of places lets it.
@@ -54,7 +54,7 @@ pub(super) struct CoupledContact {
     slopes: Vec<f64>,
     eliminated: Vec<f64>,
     step: Vec<f64>,
-    /// What the worst step left, as a share of its terms.
+    /// Residual of the worst step, relative to its terms.
     pub(super) largest_left: f64,
 }
 
@@ -67,14 +67,14 @@ struct Row {
     moved: [[f64; 3]; 6],
 }
 
-/// What a step of contact is about.
+/// Inputs of a step of contact.
 #[derive(Clone, Copy)]
 pub(super) struct Coupled<'a> {
     pub(super) contact: &'a dyn Contact,
     /// With the blocks B and no acceleration.
     pub(super) meeting: &'a Meeting<'a>,
     pub(super) deflation: &'a Deflation,
-    /// What contact kept before the step.
+    /// History variables of contact before the step.
     pub(super) kept: &'a [f64],
 }
 

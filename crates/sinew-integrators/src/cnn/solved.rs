@@ -12,7 +12,7 @@ use super::carried::Carried;
 use super::coupled_contact::{Coupled, CoupledContact};
 use crate::StepByHand;
 
-/// What contact's iteration may leave without a word.
+/// Residual of the contact iteration above which a remark is made.
 const SETTLED: f64 = 1e-6;
 
 /// The step of [`super::CnnStabilised`] with sums over all cells of a part, beside supports in motion, or with an iteration in the order of the cells.
@@ -29,7 +29,7 @@ pub struct SolvedSteps {
     carried: Carried,
 }
 
-/// What contact needs.
+/// Data for contact.
 struct Touched {
     blocks: Arc<CellBlocks>,
     /// Present where parts that may move as rigid ones are touched.

@@ -21,7 +21,7 @@ pub trait OneAcceleration: Scheme + Clone {
     /// d and k of the matrix `M + d D + k K` in steps of `dt` (s).
     fn coefficients(&self, dt: f64) -> [f64; 2];
 
-    /// How far and how long Newton's method goes.
+    /// Tolerance and iteration limit of Newton's method.
     fn newton(&self) -> NewtonSettings;
 
     /// Takes one step.
@@ -166,7 +166,7 @@ pub(super) struct Sought {
     pub(super) of_old_forces: f64,
     /// Times of the loads at both ends of the step.
     pub(super) loads: [LoadTime<'static>; 2],
-    /// Where stiffness damping of force laws acts.
+    /// Displacement at which stiffness damping of force laws acts.
     pub(super) viscosity: ViscousPlace<'static>,
 }
 
@@ -185,7 +185,7 @@ impl Sought {
 }
 
 impl EffectiveMass {
-    /// Whether the system is linear.
+    /// True if the system is linear.
     pub(super) fn is_linear(&self) -> bool {
         matches!(self.solver, Solver::Once(_))
     }

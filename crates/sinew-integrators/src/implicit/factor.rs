@@ -73,7 +73,7 @@ impl Factor {
         Ok(bytes(&cell_order(pattern)?, layers))
     }
 
-    /// Whether the analysis holds for these matrices.
+    /// True if the analysis holds for these matrices.
     #[must_use]
     pub fn fits<'m>(&self, matrices: impl Into<Matrices<'m>>) -> bool {
         let (pattern, layers) = matrices.into().shape();

@@ -17,9 +17,9 @@ pub enum FactorError {
         "it takes about {needed} MB and {left} MB of memory are left; a coarser mesh or an explicit method takes less, and memory = {needed} in [run] tries it"
     )]
     Memory {
-        /// What it takes (MB).
+        /// Memory that the factor takes (MB).
         needed: u64,
-        /// What is left (MB).
+        /// Memory that is left (MB).
         left: u64,
     },
     /// Conjugate gradients that did not come to the solution.

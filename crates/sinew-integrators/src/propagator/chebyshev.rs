@@ -186,7 +186,7 @@ impl Chebyshev {
     }
 }
 
-/// Whether a ramp may change within a step when its jumps and kinks fall on ends of steps.
+/// True if a ramp may change within a step when its jumps and kinks coincide with ends of steps.
 fn may_change(ramp: &Ramp) -> bool {
     !matches!(
         ramp.course(),

@@ -97,7 +97,7 @@ impl PropagatorKind {
     }
 }
 
-/// What the polynomial of the two-step form is fitted to.
+/// Modes to which the polynomial of the two-step form is fitted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Fit {
     /// All modes alike: the tolerance bounds the error of every mode, see [`PropagatorKind::TwoStep`].

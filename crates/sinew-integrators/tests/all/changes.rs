@@ -1,4 +1,4 @@
-//! What changes on the way costs what it changes: other loads cost nothing, other rows those rows.
+//! Changes during a run cost no more than the changed part: other loads cost nothing, other rows cost those rows.
 
 use std::sync::Arc;
 

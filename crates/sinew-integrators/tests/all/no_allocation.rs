@@ -77,7 +77,7 @@ fn no_integrator_allocates_after_its_second_step() {
     }
 }
 
-/// What may move as a rigid body takes sums over its cells.
+/// Bodies that may move as rigid ones take sums over their cells.
 #[test]
 fn neither_do_networks_on_a_body_that_nothing_holds() {
     let mesh = structured::cube(2, 0.1, Split::Kuhn).unwrap();

@@ -1,4 +1,4 @@
-//! What methods say about themselves to those that choose between them.
+//! Statements of methods about themselves to programs that choose between them.
 
 use crate::common::cube::paper_cube;
 use sinew_core::Options;

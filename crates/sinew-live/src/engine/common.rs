@@ -1,4 +1,4 @@
-//! What two bodies of a scene that were cut each in its own way have in common.
+//! Cells that two bodies of a scene, cut in different ways, have in common.
 
 use std::sync::Arc;
 
@@ -42,7 +42,7 @@ impl Common {
         }
     }
 
-    /// Whether it is that of these two.
+    /// True if these are the common cells of these two bodies.
     pub(super) fn is_of(&self, own: &BodyModel, other: &BodyModel) -> bool {
         let [a, b] = &self.meshes;
         Arc::ptr_eq(a, &own.mesh) && Arc::ptr_eq(b, &other.mesh)

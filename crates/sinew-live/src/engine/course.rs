@@ -2,7 +2,8 @@
 
 use std::collections::VecDeque;
 
-/// Where a hand was and will be: straight lines between corners in simulated time, the same for all that follow it.
+/// Past and future path of a steered tool: straight lines between corners in simulated time, the same for all panes
+/// that follow it.
 #[derive(Clone, Debug)]
 pub(crate) struct Course {
     corners: VecDeque<(f64, [f64; 6])>,
@@ -16,7 +17,7 @@ impl Course {
         }
     }
 
-    /// Where it is at a time (s).
+    /// Pose at a time (s).
     pub(crate) fn at(&self, t: f64) -> [f64; 6] {
         let next = self.corners.partition_point(|(time, _)| *time <= t);
         let before = next.checked_sub(1).and_then(|last| self.corners.get(last));
@@ -30,7 +31,7 @@ impl Course {
         }
     }
 
-    /// Where it comes to rest.
+    /// Pose at which it comes to rest.
     pub(crate) fn end(&self) -> [f64; 6] {
         self.corners.back().map_or([0.0; 6], |(_, pose)| *pose)
     }

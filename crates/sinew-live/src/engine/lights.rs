@@ -6,11 +6,11 @@
 pub(crate) enum Colour {
     /// Not measured.
     Grey,
-    /// As it should be.
+    /// Good.
     Green,
     /// With a reservation.
     Amber,
-    /// Not as it should be.
+    /// Bad.
     Red,
 }
 
@@ -34,16 +34,16 @@ impl Light {
 /// energies half a step apart.
 const SLACK: f64 = 0.05;
 
-/// What tells whether a motion is bounded.
+/// Data from which the light for a bounded motion is derived.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Bounds {
-    /// Whether it stopped with an error.
+    /// True if it stopped with an error.
     pub(crate) stopped: bool,
-    /// Whether velocities were at their limit.
+    /// True if velocities were at their limit.
     pub(crate) is_saturated: bool,
     /// Tetrahedra inside out.
     pub(crate) inverted: u32,
-    /// Whether parts or surfaces of the body are in each other.
+    /// True if parts or surfaces of the body overlap.
     pub(crate) overlaps: bool,
     /// Energy less what was put in (J), not a number where it is not known, and the largest energy or work so far (J).
     pub(crate) balance: f64,

@@ -72,7 +72,7 @@ pub(crate) struct Engine {
     panes: Vec<Pane>,
     /// The other pane, where one comes.
     second: PaneChoice,
-    /// Where each tool is led; `None` as long as it goes its own way.
+    /// Steered path of each tool; `None` as long as it follows its own motion.
     hands: Vec<Option<Course>>,
     /// Names and factors of the loads.
     loads: Vec<String>,
@@ -80,9 +80,9 @@ pub(crate) struct Engine {
     /// The surface of the body before all cuts.
     uncut: Surface,
     topology: Topology,
-    /// When a body became another one whose stable steps were not asked for yet.
+    /// Time at which a body changed whose stable steps have not been computed yet.
     cut_at: Option<Instant>,
-    /// Whether those that are known are of a body that was cut.
+    /// True if the known stable steps belong to a cut body.
     knows_cut: bool,
     /// The fields that the body has, and the one that colours show.
     fields: Vec<Field>,
@@ -92,14 +92,14 @@ pub(crate) struct Engine {
     paused: bool,
     /// Simulated time up to which all panes have stepped, rounded as theirs.
     clock: Clock,
-    /// What they are stepping through.
+    /// Span that the panes are stepping through.
     ahead: Option<Span>,
     pace: Pace,
     pictures: u32,
     last_picture: Option<Instant>,
-    /// How often what pages see has changed.
+    /// Number of visible changes.
     changes: u64,
-    /// Whether settings are other than pages know, and whether all went back to the beginning.
+    /// News that pages have not received: changed settings, and a return to the beginning.
     news: News,
     /// Commands that no step has taken yet.
     under_way: Vec<UnderWay>,
@@ -123,7 +123,7 @@ struct UnderWay {
     arrival: f64,
 }
 
-/// What pages have not been told yet.
+/// News that pages have not received yet.
 #[derive(Clone, Copy, Debug, Default)]
 struct News {
     settings: bool,
@@ -131,7 +131,7 @@ struct News {
     last_told: Option<Instant>,
 }
 
-/// What an engine begins with.
+/// Inputs of a new engine.
 pub(crate) struct Beginning {
     pub(crate) scene: SceneValues,
     pub(crate) panes: Vec<PaneChoice>,
@@ -256,7 +256,7 @@ impl Engine {
         }
     }
 
-    /// How long nothing is to be done, unless something comes.
+    /// Time for which there is nothing to do, unless a command arrives.
     fn patience(&self, shared: &Shared) -> Duration {
         let until_step = match (self.ahead, self.paused) {
             (Some(_), _) => Duration::ZERO,
@@ -376,7 +376,7 @@ impl Engine {
         });
     }
 
-    /// When the next picture is to be made, where there is something new and somebody to see it.
+    /// Time at which the next picture is to be made, if there is something new and a client to see it.
     fn next_picture(&self, shared: &Shared) -> Option<Instant> {
         let due = shared.clients.next_picture(self.changes)?;
         let due = match due <= self.newest_until() {
@@ -396,7 +396,7 @@ impl Engine {
         Instant::now() + left
     }
 
-    /// How long until the next span is due.
+    /// Time until the next span is due.
     fn until_next_step(&self) -> Duration {
         self.pace.until(self.next_span().until)
     }

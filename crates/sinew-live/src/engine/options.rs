@@ -97,7 +97,7 @@ fn known(entry: &Entry) -> Vec<OptionHelp> {
     options
 }
 
-/// What can be chosen.
+/// Values that can be chosen.
 #[derive(Default)]
 struct Choices {
     words: Vec<&'static str>,

@@ -12,7 +12,7 @@ const MEAN_OVER: f64 = 1.0;
 /// grows instead.
 #[derive(Debug)]
 pub(crate) struct Pace {
-    /// When simulated time was `t`.
+    /// Instant at which simulated time was `t`.
     since: Instant,
     t: f64,
     /// Beginning of the mean.
@@ -36,7 +36,7 @@ impl Pace {
         self.t + self.since.elapsed().as_secs_f64()
     }
 
-    /// How long until it should be `t` (s).
+    /// Time until simulated time should be `t` (s).
     pub(crate) fn until(&self, t: f64) -> Duration {
         Duration::try_from_secs_f64(t - self.target()).unwrap_or_default()
     }

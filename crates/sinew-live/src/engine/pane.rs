@@ -49,7 +49,7 @@ pub(crate) struct Pane {
     shown: Option<Shown>,
     measured: Budget,
     looked: Budget,
-    /// Whether parts or surfaces of the body were in each other at the last look.
+    /// True if parts or surfaces of the body overlapped at the last check.
     overlaps: bool,
     /// Displacement (m) before the last step, behind a cut at its beginning, and half way through it.
     before: Vec<f64>,
@@ -80,7 +80,7 @@ struct Energies {
     elastic: f64,
     loads: f64,
     tools: f64,
-    /// What cuts brought in.
+    /// Energy added by cuts.
     cuts: f64,
     /// Energy at the beginning.
     first: f64,
@@ -103,7 +103,7 @@ impl Pane {
         Self::new(session, scene)
     }
 
-    /// That of a session of this scene which took no command yet.
+    /// A pane with a session of this scene that has taken no command yet.
     pub(crate) fn new(session: World, scene: &SceneValues) -> Result<Self, LiveError> {
         let body = body(&session).ok_or(LiveError::NoBody)?;
         let tools = body.tools.as_ref().map_or(0, |tools| tools.tools().len());
@@ -156,7 +156,7 @@ impl Pane {
         Ok(pane)
     }
 
-    /// What pages are told of its tools.
+    /// Facts about its tools, for pages.
     pub(crate) fn tool_facts(&self) -> Vec<ToolFacts> {
         let simulation = self.session.simulation();
         body(&self.session).map_or_else(Vec::new, |body| tools_of(body, simulation))
@@ -362,7 +362,7 @@ impl Pane {
         self.session.command(command).map(|()| true)
     }
 
-    /// Whether it has stepped up to a simulated time (s), or takes no more steps.
+    /// True if it has stepped up to a simulated time (s), or takes no more steps.
     pub(crate) fn is_at(&self, until: f64) -> bool {
         let (t, dt) = (self.session.t(), self.session.dt());
         self.stopped.is_some() || t + dt > until + SLACK * dt
@@ -447,7 +447,7 @@ impl Pane {
         }
     }
 
-    /// What is summed up step by step.
+    /// Adds a step to impulses, work and other sums.
     fn look(&mut self, dt: f64) {
         let simulation = self.session.simulation();
         let (system, state) = (simulation.system(), self.session.state());
@@ -521,7 +521,7 @@ impl Pane {
         true
     }
 
-    /// Whether its body was cut.
+    /// True if its body was cut.
     pub(crate) fn is_cut(&self) -> bool {
         body(&self.session).is_some_and(|body| body.cut.is_some())
     }
@@ -608,7 +608,7 @@ impl Pane {
         frame.points(shown.places(), shown.values());
     }
 
-    /// What was cut.
+    /// Totals of all cuts.
     fn cuts(&self) -> CutHead {
         let (Some(totals), Some(shown)) = (self.session.cuts(), &self.shown) else {
             return CutHead {

@@ -35,7 +35,7 @@ impl Budget {
         Self { share, last: None }
     }
 
-    /// That of looks for overlap.
+    /// Time budget of overlap checks.
     pub(super) fn of_overlap() -> Self {
         Self::of(SHARE_OF_OVERLAP)
     }
@@ -76,7 +76,7 @@ impl Shown {
         }
     }
 
-    /// Whether it shows this body.
+    /// True if it shows this body.
     pub(super) fn is_of(&self, body: &BodyModel) -> bool {
         Arc::ptr_eq(&self.mesh, &body.mesh)
     }
@@ -120,7 +120,7 @@ impl Shown {
         self.colours.inverted
     }
 
-    /// Where the points of the surface are (m).
+    /// Positions of the points of the surface (m).
     pub(super) fn places(&self) -> impl Iterator<Item = [f32; 3]> {
         let points = self.surface.nodes.iter().zip(&self.surface.points);
         points.map(|(node, point)| {

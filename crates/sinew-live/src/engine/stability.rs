@@ -1,4 +1,4 @@
-//! What is known of the stability of steps.
+//! Facts about the stability of steps.
 
 use sinew_core::{EnergyBehaviour, Options, StableStep};
 use sinew_integrators::Stepper;
@@ -7,7 +7,8 @@ use sinew_scene::Simulation;
 
 use crate::protocol::{Stability, StepFacts};
 
-/// What is known of the steps of an integrator on a scene, from the options that it was built with.
+/// Stability of the steps of an integrator on a scene, as far as it is known; `options` are those that it was built
+/// with.
 pub(super) fn facts(
     integrator: &dyn Stepper,
     options: &Options,

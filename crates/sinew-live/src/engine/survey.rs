@@ -1,4 +1,4 @@
-//! What each integrator can do on a scene.
+//! Capabilities of each integrator on a scene.
 
 use std::io;
 use std::sync::Arc;
@@ -28,7 +28,7 @@ impl Survey {
         Ok(Self(thread?))
     }
 
-    /// Whether all were told.
+    /// True if the survey has ended.
     pub(crate) fn is_finished(&self) -> bool {
         self.0.is_finished()
     }

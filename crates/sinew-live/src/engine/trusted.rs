@@ -50,7 +50,7 @@ struct Look {
     scene: Arc<Simulation>,
 }
 
-/// What is known so far.
+/// Results so far.
 #[derive(Debug, Default)]
 struct Known {
     errors: Vec<f64>,
@@ -66,7 +66,7 @@ pub(crate) struct Trusted {
     commands: Due,
     /// Room for displacements, which comes back when they have been compared.
     spare: Receiver<Vec<f64>>,
-    /// Whether nobody asks for it any more.
+    /// True if the run is no longer needed.
     is_over: Arc<AtomicBool>,
 }
 
@@ -202,9 +202,9 @@ struct Follower {
     /// The largest displacement (m) so far.
     largest: f64,
     stable_step: f64,
-    /// What the body of each pane has in common with its own.
+    /// Cells that the body of each pane has in common with its own body.
     common: Vec<Option<Common>>,
-    /// Where displacements go that have been compared.
+    /// Channel that returns displacements after the comparison.
     compared: SyncSender<Vec<f64>>,
 }
 

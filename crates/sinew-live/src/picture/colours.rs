@@ -1,4 +1,4 @@
-//! What colours show at the points of the surface.
+//! Fields shown as colours at the points of the surface.
 
 use sinew_core::{Contact, State};
 use sinew_fem::stress::von_mises;
@@ -30,7 +30,7 @@ pub(crate) struct Colours {
 /// Share of a limit at which a velocity counts as clamped, which leaves it there but for rounding.
 const AT_LIMIT: f64 = 1.0 - 1e-9;
 
-/// What a field is taken from.
+/// Data from which a field is computed.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Seen<'a> {
     /// The body.

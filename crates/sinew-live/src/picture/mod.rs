@@ -1,4 +1,4 @@
-//! What a page is shown of a body: its surface, with colours.
+//! Pictures of a body: its surface, with colours.
 
 mod colours;
 mod surface;

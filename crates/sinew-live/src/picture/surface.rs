@@ -14,7 +14,7 @@ use crate::protocol::NONE;
 #[derive(Debug)]
 pub(crate) struct Surface {
     boundary: BoundarySurface,
-    /// How many triangles, the first, are of the body before all cuts.
+    /// Number of triangles, the first ones, that belong to the body before all cuts.
     pub(crate) outer: usize,
     /// The point of each node of the mesh, or [`NONE`].
     point_of: Vec<u32>,
@@ -29,7 +29,7 @@ impl Deref for Surface {
 }
 
 impl Surface {
-    /// That of a whole body.
+    /// The surface of a body without cuts.
     pub(crate) fn of(mesh: &TetMesh) -> Self {
         let boundary = mesh.boundary_surface();
         let outer = boundary.triangles.len();
@@ -52,7 +52,7 @@ impl Surface {
             .map(|point| *point as usize)
     }
 
-    /// That of a body, of which this was the surface before all cuts.
+    /// The surface of a body after cuts; `self` was its surface before all cuts.
     pub(crate) fn after_cuts(&self, body: &BodyModel) -> Self {
         let mut after = Self::of(&body.mesh);
         let Some(from) = &body.cut else {
@@ -76,9 +76,10 @@ impl Surface {
         after
     }
 
-    /// How deep (m) a tool stands in the body at rest, negative before it: the depth of an indentation.
+    /// Depth (m) of a tool in the body at rest, negative before it touches: the depth of an indentation.
     ///
-    /// A ball's is measured to the triangles, so that it does not depend on where nodes lie; that of other shapes to the nodes.
+    /// The depth of a ball is measured to the triangles, so that it does not depend on the positions of nodes; that of
+    /// other shapes to the nodes.
     pub(crate) fn depth(&self, shape: &Shape, pose: &Pose) -> f64 {
         let parts = shape.parts().iter();
         let depths = parts.map(|part| match part.convex {

@@ -73,7 +73,7 @@ pub(crate) enum Order {
     },
     /// Time stops or goes on.
     Pause {
-        /// Whether it stops.
+        /// True if it stops.
         on: bool,
     },
     /// One step while time stops.
@@ -82,17 +82,17 @@ pub(crate) enum Order {
     Reset,
     /// One pane or two.
     Panes {
-        /// How many.
+        /// Number of panes.
         count: usize,
     },
-    /// What colours show.
+    /// Field shown as colours.
     Field {
         /// The field.
         name: Field,
     },
     /// A trusted run beside, by which the error is known, or none.
     Trusted {
-        /// Whether there is one.
+        /// True if there is one.
         on: bool,
     },
     /// A folder with the scene, the state and all commands so far.
@@ -138,7 +138,7 @@ impl Shape {
     }
 }
 
-/// What colours show.
+/// Fields that can be shown as colours.
 #[derive(Clone, Copy, Debug, Deserialize, serde::Serialize, PartialEq, Eq)]
 #[serde(rename_all = "snake_case")]
 #[repr(u32)]

@@ -1,4 +1,4 @@
-//! What pages are told in words.
+//! Messages to pages in text form.
 
 use serde::Serialize;
 
@@ -8,22 +8,22 @@ use super::command::Field;
 #[derive(Debug, Serialize)]
 #[serde(tag = "event", rename_all = "snake_case")]
 pub(crate) enum Event {
-    /// What there is to see; first of all.
+    /// The scenery; first of all events.
     Scenery(Box<Scenery>),
     /// The settings as they are now.
     Settings {
         /// Each pane.
         panes: Vec<PaneFacts>,
-        /// Whether time stops.
+        /// True if time stops.
         paused: bool,
-        /// What colours show.
+        /// Field shown as colours.
         field: Field,
         /// Factors of the loads, in the order of the scenery.
         factors: Vec<f64>,
-        /// Whether a trusted run goes beside.
+        /// True if a trusted run is computed next to the panes.
         trusted: bool,
     },
-    /// What the integrators can do on this scene.
+    /// Capabilities of the integrators on this scene.
     Integrators {
         /// Each of them.
         list: Vec<IntegratorFacts>,
@@ -67,7 +67,7 @@ impl Event {
     }
 }
 
-/// What there is to see.
+/// Facts about the scene and the body that a page shows.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct Scenery {
     /// The scene's title.
@@ -78,7 +78,7 @@ pub(crate) struct Scenery {
     pub(crate) nodes: usize,
     /// Its tetrahedra.
     pub(crate) tets: usize,
-    /// Whether the body may be cut.
+    /// True if the body may be cut.
     pub(crate) cuts: bool,
     /// Fields that this body has.
     pub(crate) fields: Vec<Field>,
@@ -90,7 +90,7 @@ pub(crate) struct Scenery {
     pub(crate) loads: Vec<LoadFacts>,
     /// Three loads by which a hand pulls.
     pub(crate) hand: Option<HandFacts>,
-    /// What Hertz's formula takes, where the body is of one isotropic material.
+    /// Material parameters for Hertz's formula, if the body is of one isotropic material.
     pub(crate) hertz: Option<Hertz>,
 }
 
@@ -123,7 +123,7 @@ pub(crate) struct PartFacts {
 pub(crate) struct LoadFacts {
     /// Its name.
     pub(crate) name: String,
-    /// What it is, in words.
+    /// Description of it.
     pub(crate) what: String,
 }
 
@@ -140,7 +140,7 @@ pub(crate) struct HandFacts {
     pub(crate) note: String,
 }
 
-/// What Hertz's formula takes.
+/// Material parameters for Hertz's formula.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub(crate) struct Hertz {
     /// Young's modulus (Pa).
@@ -156,7 +156,7 @@ pub(crate) struct PaneFacts {
     pub(crate) integrator: String,
     /// Its step (s).
     pub(crate) dt: f64,
-    /// What is known of its stability.
+    /// Stability of its steps, as far as it is known.
     #[serde(flatten)]
     pub(crate) step: StepFacts,
     /// The options of its integrator that can be set.
@@ -165,7 +165,7 @@ pub(crate) struct PaneFacts {
     pub(crate) stopped: Option<String>,
 }
 
-/// What an integrator can do on this scene.
+/// Capabilities of an integrator on this scene.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct IntegratorFacts {
     /// Its name.
@@ -174,21 +174,21 @@ pub(crate) struct IntegratorFacts {
     pub(crate) summary: String,
     /// Why it cannot run here.
     pub(crate) refused: Option<String>,
-    /// What is known of its stability.
+    /// Stability of its steps, as far as it is known.
     #[serde(flatten)]
     pub(crate) step: StepFacts,
 }
 
-/// What is known of the stability of steps.
+/// Stability of steps, as far as it is known.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub(crate) struct StepFacts {
-    /// What holds.
+    /// Kind of stability.
     pub(crate) stability: Stability,
     /// The largest stable step (s), where there is one: 0 for none at all.
     pub(crate) stable_step: Option<f64>,
 }
 
-/// Which steps are stable.
+/// Kinds of stability, by the set of stable steps.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Stability {
@@ -218,7 +218,7 @@ pub(crate) struct OptionFacts {
     pub(crate) words: Vec<&'static str>,
     /// The numbers that it takes.
     pub(crate) number: Option<NumberFacts>,
-    /// Whether it is a word and a number at once.
+    /// True if it takes a word and a number at once.
     pub(crate) has_both: bool,
     /// The word that holds.
     pub(crate) word: Option<String>,
@@ -233,8 +233,8 @@ pub(crate) struct NumberFacts {
     pub(crate) low: f64,
     /// The largest of them.
     pub(crate) high: f64,
-    /// Whether they are whole.
+    /// True if the numbers are integers.
     pub(crate) is_whole: bool,
-    /// Whether equal ways of a slider are equal ratios.
+    /// True if equal distances on a slider are equal ratios.
     pub(crate) is_logarithmic: bool,
 }

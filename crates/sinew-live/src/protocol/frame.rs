@@ -9,7 +9,7 @@ const TOPOLOGY: u32 = 0;
 /// Kind of a picture.
 const PICTURE: u32 = 1;
 
-/// Whether a message is a picture.
+/// True if a message is a picture.
 pub(crate) fn is_frame(message: &[u8]) -> bool {
     message.starts_with(&PICTURE.to_le_bytes())
 }
@@ -33,7 +33,7 @@ pub(crate) struct SurfaceShape<'a> {
     pub(crate) points: &'a [[f64; 3]],
     /// Outward triangles between points.
     pub(crate) triangles: &'a [[u32; 3]],
-    /// How many of them, the first, are of the body before all cuts.
+    /// Number of triangles, the first ones, that belong to the body before all cuts.
     pub(crate) outer: usize,
     /// The point of the other pane's surface that is each point, or [`NONE`].
     pub(crate) twins: &'a [u32],
@@ -82,7 +82,7 @@ pub(crate) struct FrameHead {
     pub(crate) epoch: u32,
     /// Panes in it.
     pub(crate) panes: u32,
-    /// What colours show.
+    /// Field shown as colours.
     pub(crate) field: u32,
     /// Simulated time over the time on the wall.
     pub(crate) pace: f64,
@@ -128,11 +128,11 @@ pub(crate) struct PaneHead {
     /// Nodes and tetrahedra of the body as it is.
     pub(crate) nodes: u32,
     pub(crate) tets: u32,
-    /// What was cut.
+    /// Totals of all cuts.
     pub(crate) cuts: CutHead,
 }
 
-/// What was cut of a body since the beginning.
+/// Totals of all cuts of a body since the beginning.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct CutHead {
     /// Area (m2) at rest.
@@ -162,7 +162,7 @@ pub(crate) struct ToolHead {
     pub(crate) depth: f64,
     /// Distance (m) of the surface's nearest point, negative inside.
     pub(crate) gap: f64,
-    /// Where it is led: position (m), then rotation vector (rad).
+    /// Steered pose: position (m), then rotation vector (rad).
     pub(crate) hand: [f64; 6],
 }
 
@@ -235,7 +235,7 @@ impl FrameWriter {
         self.numbers(&tool.hand);
     }
 
-    /// Where the points are (m), and their colours.
+    /// Writes the positions of the points (m), and their colours.
     pub(crate) fn points(&mut self, places: impl Iterator<Item = [f32; 3]>, colours: &[f32]) {
         for coordinate in places.flatten() {
             self.0.extend(coordinate.to_le_bytes());

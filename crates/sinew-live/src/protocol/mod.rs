@@ -1,4 +1,4 @@
-//! What a page and the simulation say to each other.
+//! Messages between a page and the simulation.
 //!
 //! A page sends text, a JSON object for each command, and four bytes of credit for each picture that it has drawn: the microseconds
 //! until it draws again, little-endian. It gets text, a JSON object for each event, and binary pictures, with the surfaces that they

@@ -1,4 +1,4 @@
-//! Who may talk to the server.
+//! Checks of requests: only pages of this server may talk to it.
 //!
 //! It listens to this computer alone. A page of a stranger that runs in the browser here reaches it, too, either directly, and then its
 //! `Origin` is the stranger's, or under a name of the stranger's that was bent to this computer (DNS rebinding), and then `Host` is
@@ -11,12 +11,12 @@ use axum::http::header::{HOST, ORIGIN};
 /// Names of this computer. With a dot at its end a name is the same one, written out; letters are of any size (RFC 9110, section 4.2.3).
 const NAMES: [&str; 4] = ["localhost", "localhost.", "127.0.0.1", "[::1]"];
 
-/// Whether a request names this computer.
+/// True if a request names this computer.
 pub(crate) fn is_for_this_computer(headers: &HeaderMap) -> bool {
     single(headers, HOST.as_str()).is_some_and(is_local)
 }
 
-/// Whether a request comes from a page that this server gave out.
+/// True if a request comes from a page that this server sent.
 pub(crate) fn is_from_own_page(headers: &HeaderMap) -> bool {
     let (host, origin) = (
         single(headers, HOST.as_str()),

@@ -33,7 +33,7 @@ const PATIENCE_WITH_STRANGERS: Duration = Duration::from_secs(3);
 pub(crate) struct Guests {
     listener: TcpListener,
     open: Arc<AtomicUsize>,
-    /// Those that have not named the secret, the oldest first.
+    /// Connections that have not named the secret, the oldest first.
     strangers: VecDeque<Standing>,
     limits: Limits,
 }
@@ -160,7 +160,7 @@ impl Standing {
         self.0.rank.load(Ordering::Acquire)
     }
 
-    /// Whether it lives and has not named the secret.
+    /// True if the connection is open and has not named the secret.
     fn is_stranger(&self) -> bool {
         // Its connection has the other half.
         Arc::strong_count(&self.0) > 1 && self.rank() == STRANGER

@@ -22,7 +22,7 @@ const LONGEST_MESSAGE: usize = 16 * 1024;
 /// Most bytes that wait for a page which does not read: a picture of a large body and its topology, and not the answers to pings without an end.
 const MOST_UNREAD: usize = 64 << 20;
 
-/// What the page may load, and nobody may frame it.
+/// Content security policy: sources that the page may load; nobody may frame it.
 const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; img-src 'self' data:; \
                       base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 

@@ -1,4 +1,4 @@
-//! What the server and the simulation have in common.
+//! Data shared by the server and the simulation.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -6,7 +6,7 @@ use crate::clients::Clients;
 use crate::inbox::Inbox;
 use crate::protocol::{Event, Scenery, ToolFacts};
 
-/// What connections share with the simulation.
+/// Data that connections share with the simulation.
 #[derive(Debug)]
 pub(crate) struct Shared {
     /// Commands go there.
@@ -28,13 +28,13 @@ impl Shared {
         }
     }
 
-    /// What a page is told first.
+    /// The scenery, which a page receives first.
     pub(crate) fn scenery(&self) -> Scenery {
         let scenery = self.scenery.lock();
         scenery.unwrap_or_else(PoisonError::into_inner).clone()
     }
 
-    /// Whether there is a tool of this number.
+    /// True if there is a tool of this number.
     pub(crate) fn has_tool(&self, tool: usize) -> bool {
         let scenery = self.scenery.lock();
         tool < scenery.unwrap_or_else(PoisonError::into_inner).tools.len()
@@ -47,7 +47,7 @@ impl Shared {
         self.clients.tell_all(&Event::Tools { tools });
     }
 
-    /// What a page is told of the integrators, once that is known.
+    /// The event about the integrators, once they are known.
     pub(crate) fn integrators(&self) -> Option<Arc<Event>> {
         let known = self.integrators.lock();
         known.unwrap_or_else(PoisonError::into_inner).clone()

@@ -22,7 +22,7 @@ impl Token {
         Ok(Self(text))
     }
 
-    /// Whether a text is this token, in a time that tells nothing of where they differ.
+    /// True if a text is this token. The time taken does not depend on where they differ.
     pub(crate) fn is(&self, text: &str) -> bool {
         if text.len() != self.0.len() {
             return false;

@@ -137,7 +137,7 @@ pub(crate) struct Connection {
     pub(crate) topology: Vec<u8>,
 }
 
-/// What a server says.
+/// A message from a server.
 pub(crate) enum Heard {
     Event(Value),
     Topology,

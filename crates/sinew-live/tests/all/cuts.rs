@@ -21,7 +21,7 @@ toughness = 100.0
 /// Along the cells' faces at a third of the cube, two thirds down.
 const CUT: &str = r#""do":"cut","from":[[0.03333333333333333,-0.05,0.12],[0.03333333333333333,0.15,0.12]],"to":[[0.03333333333333333,-0.05,0.03],[0.03333333333333333,0.15,0.03]]"#;
 
-/// What it cuts (m2): two cells deep, three long.
+/// Area of that cut (m2): two cells deep, three long.
 const AREA: f64 = 0.1 * 0.2 / 3.0;
 
 fn scene() -> String {
@@ -74,7 +74,7 @@ fn surfaces(topology: &[u8]) -> Vec<Surface> {
     surfaces
 }
 
-/// Where panes without tools begin in a picture.
+/// Offsets of panes without tools in a picture.
 fn panes(picture: &[u8]) -> Vec<usize> {
     let mut at = PANE;
     let begins = (0..u32_at(picture, 16)).map(|_| {
@@ -87,7 +87,8 @@ fn panes(picture: &[u8]) -> Vec<usize> {
     begins
 }
 
-/// What was cut in a pane: area (m2), energy (J) and work of the blade (J); new nodes, pieces, tetrahedra taken away, changes.
+/// Totals of the cuts of a pane: area (m2), energy (J) and work of the blade (J); new nodes, pieces, removed
+/// tetrahedra, changes.
 fn cuts(picture: &[u8], pane: usize) -> ([f64; 3], [u32; 4]) {
     let area = [128, 136, 144].map(|place| f64_at(picture, pane + place));
     (

@@ -1,4 +1,4 @@
-//! What is asked for while time stops.
+//! Commands that arrive while time stops.
 
 use crate::common::{CUBE, Page, applied, settings, time};
 

@@ -30,17 +30,17 @@ pub(crate) struct Crew<'a> {
     chunks: AtomicUsize,
     /// Chunks that are taken at a time.
     block: AtomicUsize,
-    /// What is left of each thread's share.
+    /// Remaining chunks of each thread's share.
     left: Vec<Left>,
     /// Chunks that are done.
     done: AtomicUsize,
     /// Number of the sweep.
     turn: AtomicUsize,
     closed: AtomicBool,
-    /// Whether each worker sleeps.
+    /// One flag per worker: true while it sleeps.
     asleep: Vec<AtomicBool>,
     host: Thread,
-    /// Whether the host sleeps until all chunks are done.
+    /// True while the host sleeps until all chunks are done.
     host_asleep: AtomicBool,
     saturated: AtomicU64,
     exceeded: AtomicBool,
@@ -161,8 +161,8 @@ impl<'a> Crew<'a> {
     }
 }
 
-/// What is left of a share: the next chunk, and the end in the upper half of the same word, so that a thread that comes late from the
-/// sweep before never takes the beginning of one share for that of another.
+/// Remaining chunks of a share: the next chunk, and the end in the upper half of the same word, so that a thread that
+/// comes late from the sweep before never takes the beginning of one share for that of another.
 struct Left(AtomicU64);
 
 impl Left {

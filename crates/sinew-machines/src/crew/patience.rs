@@ -1,4 +1,4 @@
-//! Whether others are worth waiting for.
+//! Rule that decides if sweeps are shared with other threads.
 
 /// Kinds of sweeps whose times are told apart; further ones share these.
 const KINDS: usize = 8;
@@ -12,11 +12,12 @@ const AGAIN: u32 = 1024;
 /// Part of the time that may be lost by sharing sweeps where that does not pay.
 const PRICE: f64 = 0.03;
 
-/// What others may lose before the host goes on alone, and what they may have gained before to make up for it, in sweeps alone.
+/// Largest time that others may lose before the host continues alone, and largest gain that is counted against a loss,
+/// both in times of one sweep alone.
 const MOST_LOST: f64 = 4.0;
 const MOST_GAINED: f64 = 32.0;
 
-/// What they may lose or have gained beside that (s): a few slices of a scheduler, which may be many sweeps.
+/// Time (s) added to both limits: a few time slices of a scheduler, which may be as long as many sweeps.
 const SLICES: f64 = 0.01;
 
 /// The host's experience with the other threads of a crew, kept from batch to batch: on a machine that others use, or that gives
@@ -57,12 +58,12 @@ impl Patience {
         }
     }
 
-    /// Whether so many sweeps are made alone anyway.
+    /// True if the next `sweeps` sweeps are made alone in any case.
     pub(crate) fn is_alone_for(&self, sweeps: usize) -> bool {
         self.alone as usize >= sweeps
     }
 
-    /// Whether the next sweep is made alone, if it is of this kind.
+    /// True if the next sweep, if it is of this kind, is made alone.
     pub(super) fn is_alone(&self, kind: usize) -> bool {
         self.alone > 0 || self.alone_times[kind % KINDS].1 == 0
     }

@@ -207,7 +207,7 @@ fn steps_allocate_nothing() {
     }
 }
 
-/// By the same words for every number of threads, at the same time, with the motion until then.
+/// The error text, the time and the motion until then are the same for every number of threads.
 #[test]
 fn a_motion_that_the_law_refuses_ends_there() {
     let mesh = cube(9, 0.1, Split::Kuhn).unwrap();

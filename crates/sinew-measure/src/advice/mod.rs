@@ -77,7 +77,8 @@ pub struct Advice {
     pub whole: Span,
     /// The part of it, from t = 0 on, over which errors were measured.
     pub measured: Span,
-    /// Whether the stiffness changes with the deformation, so that a step that was stable over that part need not be so later.
+    /// True if the stiffness changes with the deformation, so that a step that was stable over that part may be
+    /// unstable later.
     pub stiffness_changes: bool,
     /// Instants (s) after that part at which loads jump or have kinks, increasing; no run saw what
     /// follows.
@@ -98,9 +99,9 @@ pub struct Advice {
     pub pilots: usize,
     /// CPU time (s) of it all, the reference included.
     pub spent_s: f64,
-    /// Whether the time for pilots ran out before every candidate for the answer was followed.
+    /// True if the time for pilots ran out before every candidate for the answer was followed.
     pub choice_cut_short: bool,
-    /// Whether it ran out before the others were taken to their own best.
+    /// True if it ran out before the other candidates were taken to their own best.
     pub others_cut_short: bool,
 }
 
@@ -422,7 +423,7 @@ fn most_accurate<'a>(search: &'a Search<CasePilots<'_>>, budget: f64) -> Option<
 }
 
 impl Advice {
-    /// Whether errors were measured over the whole scene.
+    /// True if errors were measured over the whole scene.
     #[must_use]
     pub fn covers_the_scene(&self) -> bool {
         self.measured.duration >= self.whole.duration

@@ -14,7 +14,7 @@ pub struct Question {
     pub budget: Option<f64>,
     /// CPU time (s) after which no pilot is begun.
     pub pilot_seconds: f64,
-    /// What the cost of a run is taken from.
+    /// Measure of the cost of a run.
     pub cost: Cost,
 }
 
@@ -72,7 +72,7 @@ impl Question {
     }
 }
 
-/// Whether a tolerance can be asked for.
+/// Checks that a tolerance can be asked for.
 ///
 /// # Errors
 /// [`QuestionError::Tolerance`].
@@ -83,7 +83,7 @@ pub fn check_tolerance(tolerance: f64) -> Result<(), QuestionError> {
     Err(QuestionError::Tolerance(tolerance))
 }
 
-/// Whether a budget (CPU s per simulated s) can be kept to.
+/// Checks that a budget (CPU s per simulated s) can be kept.
 ///
 /// # Errors
 /// [`QuestionError::Budget`].
@@ -94,7 +94,7 @@ pub fn check_budget(budget: f64) -> Result<(), QuestionError> {
     Err(QuestionError::Budget(budget))
 }
 
-/// Whether a time (CPU s) can be given to pilots.
+/// Checks that a time (CPU s) can be given to pilots.
 ///
 /// # Errors
 /// [`QuestionError::PilotSeconds`].

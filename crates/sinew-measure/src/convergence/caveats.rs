@@ -1,4 +1,4 @@
-//! What an estimate of the error in space does not cover.
+//! Errors that an estimate of the error in space does not cover.
 
 use sinew_scene::{MeshSource, Simulation, Subject as SceneSubject, WarningKind};
 
@@ -81,7 +81,7 @@ pub enum Caveat {
         from: f64,
         /// The same on a refined one.
         to: f64,
-        /// Whether it is a volume.
+        /// True if it is a volume.
         is_volume: bool,
     },
     /// A place of single nodes.

@@ -39,7 +39,7 @@ pub struct Level {
 /// The solutions on one mesh.
 pub(super) struct Solved {
     pub(super) level: Level,
-    /// By the scene's method in its step; none where that diverged.
+    /// Motion by the scene's method in its step; `None` if that diverged.
     pub(super) run: Option<Observed>,
     /// With little or no error in time.
     pub(super) compared: Observed,
@@ -48,7 +48,7 @@ pub(super) struct Solved {
     pub(super) halving: Halving,
 }
 
-/// What the difference of two runs, one with half the step, says about errors in time.
+/// Ratios of errors in time to the difference of two runs, one with half the step.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Halving {
     /// Error of the longer steps over the difference.
@@ -251,7 +251,7 @@ fn rest(simulation: &Simulation, places: &Places) -> Result<Option<Observed>, Co
     Ok(Some(eye.seen))
 }
 
-/// Whether a run ends near its rest.
+/// True if a run ends near its equilibrium.
 fn is_near(run: &Observed, rest: &Observed, nodes: usize) -> bool {
     let (end, rest) = (run.last(nodes), rest.nodes());
     let size = sinew_core::vectors::norm(rest);

@@ -37,11 +37,11 @@ pub const LEVELS: std::ops::RangeInclusive<usize> = 2..=4;
 pub struct Convergence {
     /// The meshes, the scene's first, and what the runs on them took.
     pub levels: Vec<Level>,
-    /// How errors in time were found.
+    /// Method by which errors in time were found.
     pub time_check: TimeCheck,
     /// Displacements, probes, forces on tools and energies.
     pub quantities: Vec<Quantity>,
-    /// What the estimates do not cover.
+    /// Errors that the estimates do not cover.
     pub caveats: Vec<Caveat>,
 }
 

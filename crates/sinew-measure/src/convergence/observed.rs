@@ -1,4 +1,4 @@
-//! What is compared between meshes: displacements at places that all have, forces on tools, and energies.
+//! Quantities compared between meshes: displacements at places that all meshes have, forces on tools, and energies.
 
 use sinew_scene::{BodyModel, ProbeAt, ProbePoint, Simulation, Subject as SceneSubject};
 
@@ -9,7 +9,7 @@ use super::quantity::{Subject, is_estimated};
 /// Displacements, forces and energies of a motion, instant after instant.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Observed {
-    /// Of the nodes of the scene's mesh, which are the first of every refined one (m).
+    /// Displacements of the nodes of the scene's mesh, which are the first of every refined one (m).
     nodes: Vec<f64>,
     /// At the points of probes (m).
     probes: Vec<Vec<f64>>,
@@ -236,7 +236,7 @@ impl<'a> Eye<'a> {
 }
 
 impl Observed {
-    /// What was seen last.
+    /// Displacements of the nodes at the last instant.
     pub(super) fn last(&self, nodes: usize) -> &[f64] {
         &self.nodes[self.nodes.len().saturating_sub(3 * nodes)..]
     }
@@ -246,7 +246,7 @@ impl Observed {
         &self.nodes
     }
 
-    /// Whether any node was displaced.
+    /// True if any node was displaced.
     pub(super) fn moves(&self) -> bool {
         self.nodes.iter().any(|u| *u != 0.0)
     }

@@ -1,4 +1,4 @@
-//! What an estimate of the error in space will take, before it begins.
+//! Prediction of the cost of an estimate of the error in space, before it begins.
 
 use std::time::Instant;
 
@@ -10,7 +10,7 @@ use super::sizes::Sizes;
 use super::step::{parts, stable_step};
 use crate::forecast::Forecast;
 
-/// How errors in time are found.
+/// Methods to find errors in time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TimeCheck {
     /// Against a reference solution, whose own error is below 1e-6.
@@ -24,7 +24,7 @@ pub enum TimeCheck {
 pub struct Prediction {
     /// The meshes, the scene's first.
     pub levels: Vec<LevelPrediction>,
-    /// How errors in time will be found.
+    /// Method by which errors in time will be found.
     pub time_check: TimeCheck,
     /// Time (s) by this computer's clock, from a few steps and products on the scene's mesh.
     pub seconds: f64,
@@ -66,8 +66,8 @@ const REFERENCE_BLOCKS: f64 = 5e9;
 /// Time of a sweep of the reference over that of a product.
 const SERIES: f64 = 2.0;
 
-/// By how much a factor's entries, and its operations, grow where a mesh has half the edges: as the 4/3rd power and the square
-/// of the unknowns (George, SIAM J. Numer. Anal. 10, 1973, for bodies).
+/// Growth factors of a factor's entries, and of its operations, when the edges of a mesh are halved: the 4/3rd power
+/// and the square of the number of unknowns (George, SIAM J. Numer. Anal. 10, 1973, for bodies).
 const FACTOR_ENTRIES: f64 = 16.0;
 const FACTOR_OPERATIONS: f64 = 64.0;
 

@@ -38,11 +38,11 @@ pub struct Quantity {
     pub errors_in_time: Vec<Option<f64>>,
     /// The error in time, over the size, of the solutions that are compared between meshes (fraction); 0 for references.
     pub left_in_time: f64,
-    /// What the meshes say about its error in space.
+    /// Estimate of its error in space from the meshes.
     pub estimate: Estimate,
 }
 
-/// Whether an error in space is estimated of what a probe writes down.
+/// True if an error in space is estimated for the values of a probe.
 pub(super) fn is_estimated(probe: &sinew_scene::Probe) -> bool {
     probe.quantity == sinew_scene::Quantity::Displacement
 }

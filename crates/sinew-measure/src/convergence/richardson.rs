@@ -12,7 +12,7 @@ const LEAST: f64 = 0.25;
 /// Differences (fraction) up to which solutions are the same: their own errors may be as large.
 const SAME: f64 = 1e-6;
 
-/// What a quantity on several meshes says about its error.
+/// Error estimate for a quantity from its values on several meshes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Estimate {
     /// The differences between neighbouring meshes, the scene's first, over the size of the quantity (fraction).

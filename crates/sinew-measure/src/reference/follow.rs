@@ -39,11 +39,11 @@ impl Pace {
 /// A method with its steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Course {
-    /// By the Taylor series.
+    /// Taylor series.
     Taylor(Pace),
-    /// By Faber series.
+    /// Faber series.
     Faber,
-    /// By extrapolation, for force laws and bodies that tools touch.
+    /// Extrapolation, for force laws and bodies that tools touch.
     Extrapolated,
 }
 
@@ -56,8 +56,8 @@ pub fn follow(system: &dyn System, start: &State, times: &[f64]) -> Result<Track
     follow_by(Course::Taylor(Pace::Short), system, start, times)
 }
 
-/// As [`follow`], in a twentieth of the products: by Faber series in long steps, a fifth of them checked
-/// by the Taylor series. The largest displacement is looked for at fewer instants.
+/// Like [`follow`], with a twentieth of the products: by Faber series in long steps, a fifth of them checked by the
+/// Taylor series. The largest displacement is looked for at fewer instants.
 ///
 /// # Errors
 /// [`ReferenceError`] when the system is not linear or the error to expect is above 1e-6.
@@ -69,7 +69,7 @@ pub fn follow_affordably(
     follow_by(Course::Faber, system, start, times)
 }
 
-/// As [`follow`], by a method and its steps.
+/// Like [`follow`], by a given method and its steps.
 pub(crate) fn follow_by(
     course: Course,
     system: &dyn System,

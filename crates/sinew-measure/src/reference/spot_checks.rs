@@ -107,7 +107,7 @@ mod tests {
 
     use super::*;
 
-    /// What checks say of steps that are off by a share of the largest displacement and velocity.
+    /// Error reported by the checks for steps that are wrong by a share of the largest displacement and velocity.
     fn said(off: f64) -> f64 {
         let operators = LinearOperators::oscillator(1.0, 400.0, 0.5).unwrap();
         let exact = DampedOscillator {

@@ -48,7 +48,7 @@ impl<'a> Taylor<'a> {
         Self::within(operators, &Spectrum::of(operators), refinement)
     }
 
-    /// As [`Taylor::new`], where the spectrum of the matrices is known.
+    /// Like [`Taylor::new`], with a known spectrum of the matrices.
     #[must_use]
     pub fn within(operators: &'a LinearOperators, spectrum: &Spectrum, refinement: f64) -> Self {
         let series = Self::with(operators, spectrum, REACH, [TERMS; 2]);

@@ -161,7 +161,7 @@ pub(super) fn null_is_nan<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::
     Ok(Option::deserialize(from)?.unwrap_or(f64::NAN))
 }
 
-/// As [`null_is_nan`], for numbers with names.
+/// Like [`null_is_nan`], for numbers with names.
 pub(super) fn nulls_are_nan<'de, D>(from: D) -> Result<BTreeMap<String, f64>, D::Error>
 where
     D: Deserializer<'de>,

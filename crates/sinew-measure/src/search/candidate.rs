@@ -13,11 +13,11 @@ pub struct Candidate {
     /// The largest step (s) at which it is stable; infinite where it always is or cannot say, 0
     /// where it never is.
     pub stable_step: f64,
-    /// Whether it can say so.
+    /// True if the method can tell that step.
     pub stable_step_is_known: bool,
     /// The highest order it declares; none where it is exact at any step.
     pub order: Option<u8>,
-    /// Whether its set-up factorises a matrix, which on a large mesh costs more than many runs.
+    /// True if its set-up factorises a matrix, which on a large mesh costs more than many runs.
     pub factorises: bool,
 }
 
@@ -46,7 +46,7 @@ impl Candidate {
         })
     }
 
-    /// Whether a step (s) is no longer than the longest stable one.
+    /// True if a step (s) is no longer than the longest stable one.
     pub(crate) fn allows(&self, dt: f64) -> bool {
         // As much more as steps of a search may be.
         dt <= self.stable_step * (1.0 + 1e-9)

@@ -22,7 +22,7 @@ impl Goal {
         }
     }
 
-    /// Whether a run keeps to it.
+    /// True if a run meets the goal.
     #[must_use]
     pub fn is_met_by(self, row: &Row) -> bool {
         row.cpu_s_per_s <= self.budget

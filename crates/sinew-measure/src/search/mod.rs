@@ -178,7 +178,7 @@ impl<P: Pilots> Search<P> {
         }
     }
 
-    /// Whether there is time for a run like this one again, timed for `least` (s) or more.
+    /// True if there is time to repeat a run like this one, timed for `least` (s) or more.
     fn can_repeat(&mut self, row: &Row, least: f64) -> bool {
         let run = row.cpu_s_per_s * self.span.duration;
         let can = row.setup_cpu_s + (2.0 * run).max(least) <= self.pilots.left();
@@ -266,7 +266,7 @@ impl<P: Pilots> Search<P> {
         self.count
     }
 
-    /// Whether a candidate was given up because the time for pilots had run out.
+    /// True if a candidate was given up because the time for pilots had run out.
     #[must_use]
     pub fn cut_short(&self) -> bool {
         self.cut_short
@@ -289,8 +289,8 @@ impl<P: Pilots> Search<P> {
             .fold(f64::INFINITY, f64::min)
     }
 
-    /// Whether the set-up alone of a candidate that factorises costs more than the best run, as
-    /// that of one that has run shows.
+    /// True if the set-up of a candidate that factorises costs more than the best run, judged by another candidate that
+    /// factorised and has run.
     fn begins_too_costly(&self, trail: &Trail, best: f64) -> bool {
         let costly =
             |pilot: &Pilot| pilot.row.work.factorizations > 0 && pilot.row.setup_cpu_s > best;

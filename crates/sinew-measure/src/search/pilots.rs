@@ -98,7 +98,7 @@ pub struct CasePilots<'a> {
 }
 
 impl<'a> CasePilots<'a> {
-    /// As many as are asked for.
+    /// Unlimited pilots on a case.
     pub fn new(case: &'a mut Case) -> Self {
         Self {
             case,

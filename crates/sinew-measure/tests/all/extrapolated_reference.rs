@@ -35,7 +35,7 @@ fn a_push_goes_where_another_program_sees_it() {
     assert!(case.samples().error < 1e-6, "{}", case.samples().error);
 }
 
-/// As far as a step of its own, which a longer run would take a minute for.
+/// The motion is followed over .1 s with a step of its own; a longer run would take a minute.
 #[test]
 fn a_release_swings_as_another_program_sees_it() {
     let case = case("release.toml", &["run.duration=0.1", "run.samples=10"]);

@@ -2,10 +2,10 @@
 
 use crate::cell_type::CellType;
 
-/// How names of types begin, and the kinds of cells by the number that follows.
+/// Prefixes of type names, and the cell types by the number that follows the prefix.
 type Family = (&'static [&'static str], &'static [(u32, CellType)]);
 
-/// What becomes of elements of a type.
+/// Treatment of elements of a type.
 pub(super) enum Kind {
     Read(CellType),
     /// Elements without extent, and so without a place in a mesh.

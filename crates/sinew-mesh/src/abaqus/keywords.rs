@@ -12,7 +12,7 @@ use crate::reading::remarks::Remarks;
 /// All that a file says of meshes.
 #[derive(Default)]
 pub(super) struct Model {
-    /// What stands outside of parts.
+    /// Nodes, elements and sets outside of parts.
     pub(super) outside: Part,
     pub(super) parts: Vec<Part>,
     pub(super) instances: Vec<Instance>,
@@ -22,7 +22,7 @@ pub(super) struct Model {
     pub(super) nothing: Part,
     /// Keywords that say nothing of a mesh.
     pub(super) skipped: Vec<String>,
-    /// Whether the nodes of the assembly have been warned of.
+    /// True if the warning about nodes of the assembly has been given.
     has_told_nodes: bool,
 }
 
@@ -35,7 +35,7 @@ enum Place {
     Instance,
 }
 
-/// What the data lines behind a keyword are.
+/// Meaning of the data lines after a keyword.
 enum Block {
     Skipped,
     Nodes {

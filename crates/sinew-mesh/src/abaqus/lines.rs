@@ -74,7 +74,7 @@ impl<'a> Data<'a> {
         })
     }
 
-    /// Whether a comma ends the line, so that it goes on with the next one.
+    /// True if a comma ends the line, so that it continues on the next one.
     pub(super) fn goes_on(self) -> bool {
         self.text.ends_with(b",")
     }

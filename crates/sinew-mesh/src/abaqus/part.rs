@@ -30,7 +30,7 @@ pub(super) struct Elements {
 #[derive(Default)]
 pub(super) struct Set {
     pub(super) name: String,
-    /// Whether it is made for a surface alone, by every keyword of its name.
+    /// True if the set only serves a surface: every keyword with its name marks it as internal.
     pub(super) is_internal: bool,
     pub(super) members: Vec<Member>,
 }
@@ -77,7 +77,7 @@ impl Part {
         add(&mut self.node_sets, name, is_internal, members);
     }
 
-    /// Whether there are nodes or elements.
+    /// True if there are nodes or elements.
     pub(super) fn has_mesh(&self) -> bool {
         !self.points.is_empty() || !self.blocks.is_empty()
     }

@@ -56,7 +56,7 @@ impl Finding {
         }
     }
 
-    /// Whether the problem does not occur.
+    /// True if the problem does not occur.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.total == 0
@@ -164,7 +164,7 @@ pub struct MeshCheck {
     pub non_manifold_faces: usize,
     /// The first ten of these faces.
     pub first_non_manifold: Vec<SharedFace>,
-    /// Where the tetrahedra hang together, and where they only seem to. [`Mesh::merge_nodes`] joins parts that touch.
+    /// Connections between the tetrahedra, real and apparent. [`Mesh::merge_nodes`] joins parts that touch.
     pub joints: Joints,
     /// Named groups without cells: dimension, tag, name.
     pub empty_groups: Vec<(u8, i32, String)>,
@@ -222,13 +222,13 @@ impl Mesh {
 }
 
 impl MeshCheck {
-    /// Whether nothing needs attention.
+    /// True if nothing needs attention.
     #[must_use]
     pub fn is_clean(&self) -> bool {
         self.problems().is_empty()
     }
 
-    /// What is the matter with tetrahedra numbered the wrong way round.
+    /// Description of the tetrahedra that are numbered the wrong way round, if there are any.
     fn winding(&self) -> Option<String> {
         const FIX: &str = "`sinew mesh check --fix orient` turns them";
         match (self.inverted.total, self.tets) {

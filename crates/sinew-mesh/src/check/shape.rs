@@ -39,7 +39,7 @@ impl TetShape {
         self.edges.iter().copied().fold(0.0, f64::max)
     }
 
-    /// Whether the volume is at most a share of the cube of the longest edge.
+    /// True if the volume is at most `share` times the cube of the longest edge.
     pub(crate) fn is_flat(&self, share: f64) -> bool {
         // A NaN counts as flat as well.
         let limit = share * self.longest_edge().powi(3);

@@ -73,7 +73,7 @@ pub(crate) fn for_each_face(
     }
 }
 
-/// Whether a tetrahedron has four different nodes, all of them below `nodes`.
+/// True if a tetrahedron has four different nodes, all of them below `nodes`.
 pub(crate) fn is_sound(tet: &[u32; 4], nodes: usize) -> bool {
     let differ = (0..4).all(|i| (0..i).all(|j| tet[i] != tet[j]));
     differ && tet.iter().all(|node| (*node as usize) < nodes)

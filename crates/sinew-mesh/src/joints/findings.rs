@@ -1,4 +1,4 @@
-//! What is said of joints.
+//! Messages about joints.
 
 use super::Joints;
 use super::places::Places;
@@ -18,13 +18,13 @@ pub enum JointFinding {
 }
 
 impl Joints {
-    /// Whether tetrahedra hang together as they seem to.
+    /// True if tetrahedra are connected wherever they seem to be.
     #[must_use]
     pub fn is_clean(&self) -> bool {
         self.findings().is_empty()
     }
 
-    /// What needs attention, a sentence each, with places and what to do.
+    /// Findings that need attention, one sentence each, with places and a remedy.
     #[must_use]
     pub fn findings(&self) -> Vec<(JointFinding, String)> {
         let mut findings = Vec::new();

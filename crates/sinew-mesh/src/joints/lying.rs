@@ -60,7 +60,7 @@ pub(super) fn pairs(faces: &[Corners]) -> Vec<[usize; 2]> {
     pairs
 }
 
-/// Whether a point of a face lies on another that turns its outside to it.
+/// True if a point of a face lies on another face that turns its outside to it.
 fn lies_on(face: &Corners, point: [f64; 3], reach: f64, other: &Corners) -> bool {
     let (Some(own), Some(normal)) = (normal(face), normal(other)) else {
         return false;
@@ -73,7 +73,7 @@ fn lies_on(face: &Corners, point: [f64; 3], reach: f64, other: &Corners) -> bool
     (-reach * INSIDE / OUTSIDE..=reach).contains(&height) && is_within(point, other)
 }
 
-/// Whether the foot of a point on the plane of a face is in that face.
+/// True if the foot of a point on the plane of a face is in that face.
 pub(super) fn is_within(point: [f64; 3], face: &Corners) -> bool {
     let [a, b, c] = *face;
     let normal = cross(sub(b, a), sub(c, a));

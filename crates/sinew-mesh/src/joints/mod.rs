@@ -1,4 +1,4 @@
-//! Where the tetrahedra of a mesh hang together, and where they only seem to.
+//! Connections between the tetrahedra of a mesh, real and apparent.
 
 mod faces;
 mod findings;
@@ -23,7 +23,7 @@ use faces::is_sound;
 use lying::is_within;
 use surfaces::{middle, parts};
 
-/// Where the tetrahedra of a mesh hang together, and where they only seem to. Parts share no node with each other.
+/// Connections between the tetrahedra of a mesh, real and apparent. Parts share no node with each other.
 #[derive(Debug, Clone, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Joints {

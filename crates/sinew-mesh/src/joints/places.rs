@@ -22,7 +22,7 @@ impl Places {
         }
     }
 
-    /// Whether there is none.
+    /// True if there are no places.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.total == 0

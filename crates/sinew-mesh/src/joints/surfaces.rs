@@ -32,7 +32,7 @@ pub(crate) struct Surfaces<'a> {
     pub(super) same: Vec<u32>,
 }
 
-/// How faces of the boundary lie on each other.
+/// Pairs of boundary faces that lie on each other.
 pub(crate) struct Contacts {
     /// Pairs of faces with the same places and other nodes.
     pub(super) matched: Vec<[usize; 2]>,

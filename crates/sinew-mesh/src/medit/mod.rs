@@ -306,7 +306,7 @@ impl Reader<'_> {
     }
 }
 
-/// What a keyword says of the cells behind it.
+/// Cells that a keyword announces.
 enum Cells {
     Read(CellType),
     HigherOrder,

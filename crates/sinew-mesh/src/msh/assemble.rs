@@ -502,7 +502,8 @@ fn remark_repeated_element_tags(blocks: &[CellBlock], tables: Tables, remarks: &
     }
 }
 
-/// Whether the tags ascend within each block and no two blocks overlap. Then no tag is repeated; most files are like that.
+/// True if the tags ascend within each block and the ranges of no two blocks overlap. Then no tag is repeated; most
+/// files are like that.
 fn have_ascending_tags_apart(blocks: &[CellBlock]) -> bool {
     let mut ranges = Vec::with_capacity(blocks.len());
     for block in blocks {

@@ -128,7 +128,7 @@ impl RawData {
         format!("{}: \"{}\"", self.section(), self.name.escape_debug())
     }
 
-    /// Whether the rows are numbered 1, 2 and so on.
+    /// True if the rows are numbered 1, 2 and so on.
     fn counts_from_1(&self) -> bool {
         (1u64..)
             .zip(&self.tags)
@@ -280,7 +280,7 @@ impl ElementIndex {
         }
     }
 
-    /// Whether the elements are numbered 0, 1 and so on.
+    /// True if the elements are numbered 0, 1 and so on.
     fn counts_from_0(&self) -> bool {
         self.first.is_complete() && self.first.range() == (0, self.cells.saturating_sub(1) as u64)
     }

@@ -76,7 +76,7 @@ pub(super) fn read_partitioned(
 
 struct Rows {
     version: Version,
-    /// Whether rows also give the parent and the partitions.
+    /// True if rows also give the parent and the partitions.
     are_parts: bool,
 }
 

@@ -25,7 +25,7 @@ pub(super) fn end_section(
     end_line(cursor, &format!("$End{name}"), after, remarks)
 }
 
-/// As [`end_section`], with the line spelled out.
+/// Like [`end_section`], with the whole line given in `end`.
 pub(super) fn end_line(
     cursor: &mut Cursor<'_>,
     end: &str,

@@ -11,7 +11,8 @@ use crate::reading::cursor::Cursor;
 use crate::reading::fault::Fault;
 use crate::reading::remarks::Remarks;
 
-/// Whether a section belongs to version 1. `NOE` is another spelling of `NOD`, which gmsh reads and some programs write.
+/// True if a section belongs to version 1. `NOE` is another spelling of `NOD`, which gmsh reads and some programs
+/// write.
 pub(super) fn is_section(name: &str) -> bool {
     matches!(name, "NOD" | "NOE" | "ELM")
 }

@@ -96,7 +96,7 @@ fn read_row(
     Ok(())
 }
 
-/// Whether a name follows the first number of this row, rather than a second number.
+/// True if a name follows the first number of this row, rather than a second number.
 fn is_tag_and_name(cursor: &Cursor<'_>) -> bool {
     let mut ahead = cursor.clone();
     let is_number = number_before_name(&mut ahead, "the tag").is_ok();

@@ -18,9 +18,9 @@ use crate::reading::remarks::Remarks;
 #[derive(Clone, Copy)]
 enum Kind {
     Unknown,
-    /// By a section of version 1.
+    /// Version 1, recognized by one of its sections.
     Version1,
-    /// By `$MeshFormat`.
+    /// Format stated in `$MeshFormat`.
     Stated(Format),
 }
 

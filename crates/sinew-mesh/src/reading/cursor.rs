@@ -57,7 +57,7 @@ impl<'a> Cursor<'a> {
         self.bytes.len()
     }
 
-    /// Whether a line break was passed since an earlier offset.
+    /// True if a line break was passed since an earlier offset.
     pub(crate) fn has_passed_line_break_since(&self, offset: usize) -> bool {
         self.line_start > offset
     }
@@ -98,7 +98,7 @@ impl<'a> Cursor<'a> {
         found
     }
 
-    /// Whether nothing but blanks is left on this line.
+    /// True if nothing but blanks is left on this line.
     pub(crate) fn is_at_line_end(&self) -> bool {
         let next = self
             .rest()

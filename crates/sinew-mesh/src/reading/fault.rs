@@ -98,7 +98,7 @@ impl Fault {
     }
 }
 
-/// Whether places in a file are given by line.
+/// Use of line numbers for places in a file.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(crate) enum Lines {
     #[default]

@@ -21,7 +21,7 @@ impl Remarks {
         self.lines = Lines::DoNot;
     }
 
-    /// Whether places are given by line, as far as the file has been read.
+    /// Use of line numbers for places, as far as the file has been read.
     pub(crate) fn lines(&self) -> Lines {
         self.lines
     }

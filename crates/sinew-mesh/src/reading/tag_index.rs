@@ -42,7 +42,7 @@ impl TagIndex {
         }
     }
 
-    /// Whether the index is complete.
+    /// True if the tags are consecutive, so that every tag in the range exists.
     pub(crate) fn is_complete(&self) -> bool {
         matches!(self.lookup, Lookup::Consecutive)
     }

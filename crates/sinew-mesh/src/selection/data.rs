@@ -13,11 +13,11 @@ pub(super) enum First {
     Tets,
 }
 
-/// Those that meet a condition.
+/// Nodes or tetrahedra that meet a condition.
 pub(super) enum Met {
-    /// Whether each node does.
+    /// One flag per node: true if it meets the condition.
     Nodes(Vec<bool>),
-    /// Whether each tetrahedron does.
+    /// One flag per tetrahedron: true if it meets the condition.
     Tets(Vec<bool>),
 }
 

@@ -71,7 +71,7 @@ pub enum SelectionError {
     /// No value of the data is one of those that are asked for.
     #[error("no {holder} is {}; of the values {known}", WithData(name, values))]
     NoValue {
-        /// What has values: node or tetrahedron.
+        /// Holder of the values: node or tetrahedron.
         holder: &'static str,
         /// Name of the data.
         name: String,

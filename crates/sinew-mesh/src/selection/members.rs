@@ -106,7 +106,7 @@ impl Selection {
         }
     }
 
-    /// Whether each node meets all conditions but those on data of tetrahedra.
+    /// One flag per node: true if it meets all conditions except those on data of tetrahedra.
     fn met_by(
         &self,
         mesh: &TetMesh,
@@ -134,7 +134,8 @@ impl Selection {
         Ok(met)
     }
 
-    /// Whether each tetrahedron meets all conditions on data of tetrahedra, if there are any.
+    /// One flag per tetrahedron: true if it meets all conditions on data of tetrahedra; `None` if there are no such
+    /// conditions.
     fn met_tets(&self, mesh: &TetMesh, first: First) -> Result<Option<Vec<bool>>, SelectionError> {
         let mut all: Option<Vec<bool>> = None;
         for condition in self.conditions() {
@@ -173,7 +174,7 @@ impl Selection {
     }
 }
 
-/// Whether a condition holds at each node.
+/// One flag per node: true if a condition holds there.
 fn holds_at(
     condition: &Condition,
     mesh: &TetMesh,
@@ -242,7 +243,7 @@ fn sorted(mut triangle: [u32; 3]) -> [u32; 3] {
     triangle
 }
 
-/// Whether the normal of a triangle, which is turned outward, is within an angle (degrees) of a direction.
+/// True if the outward normal of a triangle is within an angle (degrees) of a direction.
 fn looks_along(mesh: &TetMesh, triangle: &[u32; 3], direction: [f64; 3], angle: f64) -> bool {
     let [a, b, c] = triangle.map(|node| mesh.points[node as usize]);
     let normal = cross(sub(b, a), sub(c, a));

@@ -41,7 +41,7 @@ pub struct CutBody<'a> {
     pub origins: &'a [u32],
     /// The nodes of each tetrahedron of the mesh.
     pub tets: &'a [[u32; 4]],
-    /// Whether each tetrahedron was removed.
+    /// One flag per tetrahedron: true if it was removed.
     pub is_removed: &'a [bool],
 }
 

@@ -47,7 +47,7 @@ impl CutMesh {
         cut
     }
 
-    /// Whether each node is one of several that cuts made of one.
+    /// One flag per node: true if cuts duplicated it, so that other nodes have the same origin.
     #[must_use]
     pub fn is_copied(&self) -> Vec<bool> {
         let count = self.origins.iter().max();

@@ -14,7 +14,7 @@ pub enum TetMeshError {
     NoTetrahedra {
         /// The cells that there are, as text.
         found: String,
-        /// Whether there are cells of a surface.
+        /// True if there are surface cells.
         is_surface: bool,
     },
     /// There are cells of a type that cannot be simulated yet.

@@ -38,7 +38,7 @@ impl GroupMembers {
         }
     }
 
-    /// Whether there are no members.
+    /// True if there are no members.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0

@@ -32,7 +32,7 @@ const CHILDREN: [[usize; 4]; 8] = [
     [5, 7, 8, 9],
 ];
 
-/// Whether each of [`CHILDREN`] is oriented against its parent.
+/// One flag per tetrahedron of [`CHILDREN`]: true if it is oriented against its parent.
 const IS_TURNED: [bool; 8] = [false, false, false, false, false, true, false, true];
 
 /// The edges with midpoints 4 to 9.

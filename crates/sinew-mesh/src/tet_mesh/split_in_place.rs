@@ -24,7 +24,7 @@ struct FollowedPart {
     corners: [u8; 3],
 }
 
-/// What a split of a body of which no tetrahedron was removed changed.
+/// Changes that a split made to a body of which no tetrahedron was removed.
 #[derive(Clone, Copy, Debug)]
 pub struct Split<'a> {
     /// The body as it is.

@@ -19,7 +19,7 @@ impl TetData {
         self.values.chunks_exact(self.components.max(1))
     }
 
-    /// Whether some tetrahedron has values.
+    /// True if some tetrahedron has values.
     pub(super) fn has_any(&self) -> bool {
         self.values.iter().any(|value| !value.is_nan())
     }

@@ -11,7 +11,7 @@ pub(crate) struct Field {
     pub(crate) name: String,
     /// Numbers for each point or cell, at least 1.
     pub(crate) components: usize,
-    /// Whether the file has whole numbers.
+    /// True if the file stores integers.
     pub(crate) is_integer: bool,
     pub(crate) values: Vec<f64>,
 }

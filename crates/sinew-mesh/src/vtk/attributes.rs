@@ -15,7 +15,7 @@ pub(super) enum Holder {
     Cells,
 }
 
-/// Whether a keyword in capitals begins data.
+/// True if a keyword in capitals begins data.
 pub(super) fn is_one(keyword: &[u8]) -> bool {
     matches!(
         keyword,

@@ -147,7 +147,7 @@ fn cells(
     once(&mut grid.cells, rows, offset)
 }
 
-/// Whether a word follows, on this line or a later one.
+/// True if a word follows, on this line or a later one.
 fn is_next(cursor: &Cursor<'_>, word: &[u8]) -> bool {
     let mut ahead = cursor.clone();
     ahead.skip_blanks();

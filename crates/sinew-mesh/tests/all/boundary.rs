@@ -24,7 +24,7 @@ fn area(mesh: &TetMesh, triangles: &[[u32; 3]]) -> f64 {
     areas.sum()
 }
 
-/// By the divergence theorem, a third of the flux of the position through the triangles.
+/// Volume by the divergence theorem: a third of the flux of the position through the triangles.
 fn enclosed_volume(mesh: &TetMesh, triangles: &[[u32; 3]]) -> f64 {
     let fluxes = triangles.iter().map(|&triangle| {
         let vector = area_vector(mesh, triangle);

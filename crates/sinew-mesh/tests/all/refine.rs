@@ -48,7 +48,7 @@ fn measure(mesh: &TetMesh, members: &GroupMembers) -> f64 {
     }
 }
 
-/// How many tetrahedra share each face.
+/// Number of tetrahedra that share each face.
 fn faces(mesh: &TetMesh) -> BTreeMap<[u32; 3], usize> {
     let mut faces = BTreeMap::new();
     for &[a, b, c, d] in &mesh.tets {

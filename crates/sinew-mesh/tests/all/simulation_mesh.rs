@@ -271,7 +271,7 @@ fn data_of_tetrahedra_stay_by_name() {
     insta::assert_snapshot!(error, @r#"no data of tetrahedra are named "surface"; there are "E" (a number), "along" (3 numbers)"#);
 }
 
-/// As gmsh writes its views.
+/// Views written by gmsh begin with such schemes.
 #[test]
 fn schemes_of_interpolation_before_data_are_nothing_to_warn_of() {
     let text = format!(

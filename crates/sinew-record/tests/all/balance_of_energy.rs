@@ -287,7 +287,7 @@ fn told(simulation: &sinew_scene::Simulation) -> Option<String> {
     // The same is said where no table is written.
     let mut integrator = simulation.integrator().unwrap();
     simulation.set_up(&mut *integrator).unwrap();
-    let mut loss = EnergyLoss::new(simulation, &*integrator);
+    let mut loss = EnergyLoss::new(&std::sync::Arc::new(simulation.clone()), &*integrator);
     let mut state = simulation.initial_state().clone();
     let run = simulation.run();
     simulate(
@@ -492,7 +492,7 @@ fn said_both_ways(text: &str) -> [Vec<String>; 2] {
     let end = run(&place.path().join("out"), &simulation, &mut ());
     let mut integrator = simulation.integrator().unwrap();
     simulation.set_up(&mut *integrator).unwrap();
-    let mut loss = EnergyLoss::new(&simulation, &*integrator);
+    let mut loss = EnergyLoss::new(&std::sync::Arc::new(simulation.clone()), &*integrator);
     let mut state = simulation.initial_state().clone();
     // A run that ends early says what was seen.
     let _ = simulate(

@@ -6,7 +6,7 @@ use std::path::Path;
 use serde_json::{Value, json};
 use sinew_mesh::structured::{Split, block};
 use sinew_mesh::{Group, GroupMembers, TetMesh, write_msh41_ascii};
-use sinew_record::{Companion, Ended, FrameLooks, Looked};
+use sinew_record::{Companion, Ended, FrameLooks};
 use sinew_scene::{Scene, Simulation};
 
 use crate::common::run;
@@ -143,7 +143,7 @@ fn a_cube_that_fell_through_is_told_by_the_frames_between_and_one_still_above_is
         "{overlap} {deepest}"
     );
     // A run without a folder looks at the same instants.
-    let mut looks = FrameLooks::new(&through, Looked::default());
+    let mut looks = FrameLooks::new(&through);
     let mut state = through.initial_state().clone();
     let mut integrator = through.integrator().unwrap();
     let (system, steps) = (through.system(), through.run());

@@ -3,15 +3,15 @@
 /// A condition that must hold where a key is given.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Condition {
-    /// What must hold.
+    /// Requirement for the other keys.
     pub(crate) goes: Goes,
     /// The end of the sentence, begun by the key, that refuses it otherwise.
     pub(crate) reason: &'static str,
-    /// What to do then, if anything.
+    /// Remedy, if there is one.
     pub(crate) help: Option<&'static str>,
 }
 
-/// What must hold of the other keys of a table.
+/// Requirement for the other keys of a table.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Goes {
     /// This key is given.
@@ -57,7 +57,7 @@ impl Condition {
         Self::new(Goes::Never, reason)
     }
 
-    /// What to do where the condition does not hold.
+    /// Adds a remedy for a condition that does not hold.
     pub(crate) const fn help(self, help: &'static str) -> Self {
         Self {
             help: Some(help),

@@ -9,7 +9,7 @@ use super::condition::Condition;
 pub(crate) struct TableDescription {
     /// Its name among the definitions of the schema.
     pub(crate) name: &'static str,
-    /// What it is for, in sentences.
+    /// Its purpose, in sentences.
     pub(crate) meaning: &'static str,
     /// Its keys, in the order in which messages list them.
     pub(crate) keys: &'static [&'static dyn Described],
@@ -53,7 +53,7 @@ impl std::fmt::Debug for dyn Described {
 pub(crate) struct KeyDescription {
     /// Its name.
     pub(crate) name: &'static str,
-    /// What it means, in sentences.
+    /// Its meaning, in sentences.
     pub(crate) meaning: &'static str,
     /// Its unit; empty where it has none.
     pub(crate) unit: &'static str,
@@ -61,13 +61,13 @@ pub(crate) struct KeyDescription {
     pub(crate) expected: String,
     /// The values that fit, as data.
     pub(crate) shape: Shape,
-    /// What holds where it is not given.
+    /// Behaviour if it is not given.
     pub(crate) otherwise: Stated,
     /// The conditions under which it may be given, and must where it is required.
     pub(crate) conditions: &'static [Condition],
 }
 
-/// What holds where a key is not given.
+/// Behaviour if a key is not given.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Stated {
     /// It must be given.

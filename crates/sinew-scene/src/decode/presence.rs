@@ -1,4 +1,4 @@
-//! What holds where a key is not given.
+//! Behaviour if a key is not given.
 
 use crate::error::SceneError;
 
@@ -18,7 +18,7 @@ pub(crate) struct Or<T>(pub(crate) T);
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Usual(pub(crate) &'static str);
 
-/// What a reader gets of a key whose value is a `T`.
+/// Result of reading a key whose value is a `T` and which may be absent.
 pub(crate) trait Presence<T> {
     /// The value, or perhaps none.
     type Read;

@@ -158,7 +158,7 @@ pub(crate) struct Text {
     pub(crate) pattern: Option<&'static str>,
     /// The one string that does not fit.
     pub(crate) except: Option<&'static str>,
-    /// Whether a string that is not blank fits.
+    /// True for a string that fits, among those that are not blank.
     pub(crate) fits: fn(&str) -> bool,
 }
 
@@ -281,7 +281,7 @@ pub(crate) struct Pairs {
     pub(crate) expected: &'static str,
     /// Each number of a pair.
     pub(crate) of: Number,
-    /// Whether pairs that fit by themselves fit together.
+    /// True for pairs that fit together, after each of them fits on its own.
     pub(crate) fits: fn(&Vec<[f64; 2]>) -> bool,
 }
 
@@ -323,7 +323,7 @@ pub(crate) struct Vector<V = Number, T = f64> {
     pub(crate) expected: &'static str,
     /// Each value.
     pub(crate) of: V,
-    /// Whether three values that fit by themselves fit together.
+    /// True for three values that fit together, after each of them fits on its own.
     pub(crate) fits: fn(&[T; 3]) -> bool,
 }
 
@@ -371,11 +371,11 @@ impl<V: Written<Read = T>, T: Copy> Written for Vector<V, T> {
 /// A table, or the tables of a list, of one description.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Inner {
-    /// Where it is missing: the tables that fit, in words.
+    /// The tables that fit, for a message about a missing one.
     pub(crate) expected: &'static str,
     /// The table.
     pub(crate) table: &'static TableDescription,
-    /// Whether there may be several, each under its own `[[..]]`.
+    /// True if there may be several, each under its own `[[..]]`.
     pub(crate) several: bool,
 }
 

@@ -117,7 +117,7 @@ pub enum Fault {
     /// A formula that gives no finite number somewhere on the body.
     #[error("a formula gives {value} at ({}, {}, {}) m: expected a finite number everywhere on the part", place[0], place[1], place[2])]
     NotFinite {
-        /// What it gives.
+        /// Its value there.
         value: f64,
         /// The place (m).
         place: [f64; 3],

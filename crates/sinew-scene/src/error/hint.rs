@@ -49,7 +49,7 @@ pub(super) fn following_from(fault: &Fault) -> Option<String> {
     }
 }
 
-/// Whether cells of a linear kind can be simulated.
+/// True if cells of a linear kind can be simulated.
 fn is_supported(linear: CellType) -> bool {
     matches!(
         linear,
@@ -57,7 +57,7 @@ fn is_supported(linear: CellType) -> bool {
     )
 }
 
-/// Whether a key belongs at the top of the file and was found in a table.
+/// True if a key belongs at the top of the file and was found in a table.
 fn stands_on_top(key: &str, known: &[&str]) -> bool {
     AT_THE_TOP.contains(&key) && !known.contains(&key)
 }

@@ -45,9 +45,9 @@ pub enum OverrideError {
         path: String,
         /// The part at fault.
         part: String,
-        /// What it is.
+        /// Its kind.
         found: &'static str,
-        /// What it should be.
+        /// The expected kind.
         expected: &'static str,
     },
 }

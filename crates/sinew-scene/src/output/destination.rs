@@ -69,20 +69,20 @@ impl Destination {
         &self.path
     }
 
-    /// Whether the output goes to standard output, which should then hold nothing else.
+    /// True if the output goes to standard output, which should then contain nothing else.
     #[must_use]
     pub fn is_standard_output(&self) -> bool {
         self.target == Target::StandardOutput
     }
 
-    /// Whether the output goes to a device, a pipe, an open file or standard output, which are
-    /// written to and not replaced.
+    /// True if the output goes to a device, a pipe, an open file or standard output, which are written to and not
+    /// replaced.
     #[must_use]
     pub fn is_stream(&self) -> bool {
         !matches!(self.target, Target::File(_))
     }
 
-    /// Whether what is written stays in a file, and does not pass through a pipe or a device.
+    /// True if the output stays in a file, and does not pass through a pipe or a device.
     #[must_use]
     pub fn is_kept(&self) -> bool {
         match &self.target {
@@ -92,7 +92,7 @@ impl Destination {
         }
     }
 
-    /// Whether both outputs go to the same file, so that the second would replace the first.
+    /// True if both outputs go to the same file, so that the second would replace the first.
     pub(super) fn is_same_file(&self, other: &Self) -> bool {
         self.target.is_same_file(&other.target)
     }
@@ -156,7 +156,7 @@ impl Sink {
 }
 
 impl Output {
-    /// Whether the reader of a pipe closed it, so that nobody reads further output.
+    /// True if the reader of a pipe closed it, so that nobody reads further output.
     #[must_use]
     pub fn reader_left(&self) -> bool {
         match &self.sink {

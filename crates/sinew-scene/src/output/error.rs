@@ -166,7 +166,7 @@ pub enum OutputError {
 }
 
 impl OutputError {
-    /// Whether the path was refused, so that another path helps; otherwise writing failed.
+    /// True if the path was refused, so that another path helps; otherwise writing failed.
     #[must_use]
     pub fn is_refusal(&self) -> bool {
         !matches!(self, Self::Failed { .. } | Self::Gone { .. })

@@ -61,7 +61,7 @@ fn standard_output() -> Option<File> {
     descriptor.ok().map(File::from)
 }
 
-/// Whether standard output goes to a file, as far as the system tells.
+/// True if standard output goes to a file, as far as the system tells.
 #[cfg(unix)]
 pub(super) fn standard_output_is_file() -> bool {
     let metadata = standard_output().and_then(|file| file.metadata().ok());

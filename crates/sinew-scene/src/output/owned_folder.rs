@@ -34,7 +34,7 @@ pub struct OwnedFolder {
     _lock: File,
 }
 
-/// What a folder holds before a result is written into it.
+/// Content of a folder before a result is written into it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Tenant {
     /// Nothing.
@@ -45,7 +45,7 @@ pub enum Tenant {
     Unfinished,
 }
 
-/// What became of the result that was kept while a new one was written.
+/// Fate of the result that was kept while a new one was written.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Replaced {
     /// There was none, or it is gone.
@@ -77,7 +77,7 @@ impl OwnedFolder {
         Ok(tenant)
     }
 
-    /// As [`OwnedFolder::check`], also for the process that writes into the folder.
+    /// Like [`OwnedFolder::check`], also for the process that writes into the folder.
     fn check_content(
         path: &Path,
         kind: &'static str,
@@ -224,7 +224,7 @@ impl OwnedFolder {
         }
     }
 
-    /// Whether it is not known to hold a complete result.
+    /// True if the folder is not known to hold a complete result.
     ///
     /// # Errors
     /// [`OutputError`].
@@ -357,7 +357,7 @@ fn kept_path(path: &Path) -> PathBuf {
     real.with_file_name(name)
 }
 
-/// That path, where nothing stands that is not ours.
+/// The path of [`kept_path`], if nothing of others is there.
 fn kept_beside(path: &Path, kind: &str) -> Result<PathBuf, OutputError> {
     let kept = kept_path(path);
     let (here, real) = (std::env::current_dir(), path.canonicalize());
@@ -372,7 +372,7 @@ fn kept_beside(path: &Path, kind: &str) -> Result<PathBuf, OutputError> {
     Ok(kept)
 }
 
-/// Whether a folder holds a result that was set aside.
+/// True if a folder holds a result that was set aside.
 fn is_set_aside(folder: &Path, kind: &str) -> Result<bool, OutputError> {
     let is_folder = folder.symlink_metadata().is_ok_and(|found| found.is_dir());
     if !is_folder {

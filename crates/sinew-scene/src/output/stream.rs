@@ -36,7 +36,7 @@ impl Stream {
         }
     }
 
-    /// Whether the reader of a pipe closed it.
+    /// True if the reader of a pipe closed it.
     pub(super) fn reader_left(&self) -> bool {
         self.reader_left
     }

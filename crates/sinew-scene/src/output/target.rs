@@ -108,7 +108,7 @@ impl Target {
         Ok(Self::File(target))
     }
 
-    /// Whether both are the same file, whether or not it exists.
+    /// True if both are the same file, which need not exist.
     pub(super) fn is_same_file(&self, other: &Self) -> bool {
         let (Self::File(one), Self::File(other)) = (self, other) else {
             return false;
@@ -118,7 +118,7 @@ impl Target {
     }
 }
 
-/// Whether a path can only name a folder, judged by its end.
+/// True if a path can only name a folder, judged by its end.
 fn names_folder(path: &Path) -> bool {
     let text = path.to_string_lossy();
     let before_dot = text.strip_suffix('.').unwrap_or(&text);

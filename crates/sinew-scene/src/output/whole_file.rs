@@ -38,7 +38,7 @@ impl WholeFile {
         sync_folder(&folder)
     }
 
-    /// As [`WholeFile::finish`], but the disk gets the name when the system pleases.
+    /// Like [`WholeFile::finish`], without waiting until the name is on the disk.
     pub(super) fn finish_lightly(self) -> io::Result<()> {
         self.complete()
     }
@@ -111,12 +111,13 @@ fn process_of(name: &str) -> Option<u32> {
     numbers.split_once('-')?.0.parse().ok()
 }
 
-/// Whether a name is that of a temporary file: one left behind, or that another process is about to rename or remove.
+/// True if a name is that of a temporary file: one left behind, or one that another process is about to rename or
+/// remove.
 pub(super) fn is_temporary(name: &str) -> bool {
     process_of(name).is_some()
 }
 
-/// Whether a name is that of a temporary file whose process is gone.
+/// True if a name is that of a temporary file whose process has ended.
 pub(super) fn is_left_behind(name: &str) -> bool {
     let process = process_of(name);
     // Where the system lists no processes, none is taken to be gone.

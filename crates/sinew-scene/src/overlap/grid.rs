@@ -28,7 +28,7 @@ pub(super) fn include([low, high]: &mut Bounds, point: &Vector) {
     }
 }
 
-/// Whether two boxes have a point in common.
+/// True if two boxes have a point in common.
 pub(super) fn meet(one: &Bounds, other: &Bounds) -> bool {
     (0..3).all(|axis| one[0][axis] <= other[1][axis] && other[0][axis] <= one[1][axis])
 }

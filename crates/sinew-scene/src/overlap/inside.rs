@@ -29,7 +29,7 @@ impl SurfacePoint {
         }
     }
 
-    /// Whether any of its nodes is one of these.
+    /// True if any of its nodes is one of these.
     pub(super) fn is_at(&self, nodes: &[u32]) -> bool {
         self.between.iter().any(|node| nodes.contains(node))
     }
@@ -41,7 +41,7 @@ pub(super) struct Placed<'a> {
     places: &'a [Vector],
     /// The tetrahedra looked at.
     tets: Vec<u32>,
-    /// Whether each node has a tetrahedron that is turned inside out.
+    /// One flag per node: true if it has an inverted tetrahedron.
     is_crushed: Vec<bool>,
     /// Their mean size (m).
     size: f64,

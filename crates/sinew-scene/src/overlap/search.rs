@@ -30,7 +30,7 @@ pub(super) struct Inside {
     pub(super) tet: u32,
 }
 
-/// What is looked at in each state of a body.
+/// Topology and buffers for the overlap check of a body in one state after another.
 pub(super) struct OverlapSearch {
     mesh: Arc<TetMesh>,
     triangles: Vec<[u32; 3]>,
@@ -53,7 +53,7 @@ pub(super) struct OverlapSearch {
 
 /// Lips of cuts that keep each other apart, node by node.
 pub(super) struct Lips {
-    /// Whether each node is one of several that cuts made of one.
+    /// One flag per node: true if cuts duplicated it, so that other nodes have the same origin.
     pub(super) is_copied: Vec<bool>,
     /// Share of an edge by which surfaces between their nodes may overlap.
     pub(super) share: f64,
@@ -149,7 +149,7 @@ impl OverlapSearch {
         [own, inside.tet].map(|tet| (tet, self.part_of[tets[tet as usize][0] as usize]))
     }
 
-    /// Whether a face is one of the surface.
+    /// True if a face belongs to the surface.
     fn is_outer(&self, face: [u32; 3]) -> bool {
         let mut face = face;
         face.sort_unstable();
@@ -185,7 +185,8 @@ impl OverlapSearch {
         Some(near)
     }
 
-    /// Whether each part may be in another one, or in itself: its surface is near another one, or the box of one of two parts is within the other's.
+    /// One flag per part: true if the part may overlap another one, or itself: its surface is near another one, or the
+    /// box of one of two parts is within the other's.
     fn concerned(&self, places: &[Vector], near: &[[u32; 2]]) -> Vec<bool> {
         let mut is_concerned = vec![false; self.parts];
         for [edge, triangle] in near {

@@ -2,7 +2,8 @@
 
 use sinew_tools::vector::{Vector, cross, dot, sub};
 
-/// Whether a segment and a triangle are certain to be farther apart than a distance (m): an axis separates them (Gottschalk, Lin and Manocha 1996).
+/// True if a segment and a triangle are certain to be farther apart than a distance (m): an axis separates them
+/// (Gottschalk, Lin and Manocha 1996).
 pub(super) fn are_apart([p, q]: [Vector; 2], triangle: [Vector; 3], distance: f64) -> bool {
     let way = sub(q, p);
     let [a, b, c] = triangle.map(|corner| sub(corner, p));

@@ -40,7 +40,7 @@ pub(super) fn sections(body: &Body, built: &BodyModel, probes: &[Probe]) -> Vec<
     ]
 }
 
-/// What nothing keeps apart: parts of the mesh, and pieces that cuts may take off.
+/// Parts that no contact keeps apart: parts of the mesh, and pieces that cuts may separate.
 fn apart(body: &Body, parts: usize) -> Vec<String> {
     const TOLD: &str = "where they are in each other a run warns";
     let falls = |cutting: &Cutting| cutting.pieces == LoosePieces::Fall;
@@ -126,7 +126,7 @@ fn groups(built: &BodyModel) -> String {
     }
 }
 
-/// What a place that was chosen by where it lies hits.
+/// Nodes and size of a part that was selected by its position.
 fn selected(part: &SelectedPart) -> String {
     let size = match part.tets {
         Some((tets, volume)) => {
@@ -203,7 +203,7 @@ fn between([least, largest]: [String; 2]) -> String {
     }
 }
 
-/// What relaxes, and the moduli before and after.
+/// Relaxation of a region, and the moduli before and after.
 fn memory(region: &Region, facts: &RegionFacts) -> Vec<String> {
     let (Some(memory), Law::Hyperelastic { parameters, .. }) = (&region.tissue.memory, region.law)
     else {

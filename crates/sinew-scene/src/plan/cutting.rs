@@ -10,7 +10,7 @@ use crate::number::short;
 use crate::scene::{Blade, Body, Cutting, LoosePieces};
 use crate::simulation::BodyModel;
 
-/// What cuts, and by what steps are bounded; none for a body that stays whole.
+/// Cutting tools, and the bound of stable steps under cuts; empty for a body that is not cut.
 pub(super) fn lines(body: &Body, built: &BodyModel) -> Vec<String> {
     let Some(cutting) = &body.cutting else {
         return Vec::new();

@@ -60,7 +60,7 @@ fn way(path: &ToolPath) -> String {
     }
 }
 
-/// What few tools have.
+/// Rare properties of a tool.
 fn rest(tool: &Tool) -> String {
     let mut text = String::new();
     if tool.friction > 0.0 {

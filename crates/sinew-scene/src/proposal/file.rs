@@ -10,6 +10,6 @@ pub(super) struct MeshFile<'a> {
     pub(super) path: &'a Path,
     /// Its unit of length.
     pub(super) unit: Unit,
-    /// Whether its cells have no nodes but corners.
+    /// True if its cells have no nodes but corners.
     pub(super) is_linear: bool,
 }

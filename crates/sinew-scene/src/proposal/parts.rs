@@ -31,12 +31,12 @@ pub(super) enum Part {
     Above(f64),
 }
 
-/// What a first scene says of the parts of a body.
+/// Parts of a body in a first scene.
 #[derive(Debug)]
 pub(super) struct Parts {
     /// The groups of the regions; `None` where the whole body is one.
     pub(super) regions: Option<Vec<String>>,
-    /// Whether some tetrahedra are in none of these groups.
+    /// True if some tetrahedra are in none of these groups.
     pub(super) rest: bool,
     /// The part that is held.
     pub(super) held: Part,

@@ -69,7 +69,7 @@ fn push_table(text: &mut String, table: &TableDescription, sections: &[Section])
     }
 }
 
-/// How many keys must be given, in a sentence.
+/// Sentence about the number of keys that must be given.
 fn needs(table: &TableDescription) -> String {
     match table.needs {
         Needs::Any => String::new(),
@@ -108,7 +108,7 @@ fn anchor(heading: &str) -> String {
     kept.map(|c| if c == ' ' { '-' } else { c }).collect()
 }
 
-/// What holds where a key is not given, and the keys it goes with.
+/// Behaviour if a key is not given, and the keys it goes with.
 fn otherwise(key: &KeyDescription, table: &TableDescription) -> String {
     let stated = match &key.otherwise {
         Stated::Required => match table.needs {

@@ -1,4 +1,4 @@
-//! What a scene may hold, for people and for editors, written from the descriptions that the decoder reads by.
+//! Reference of scenes for people, and schema for editors, both written from the descriptions that the decoder uses.
 
 mod examples;
 mod markdown;

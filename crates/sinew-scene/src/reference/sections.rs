@@ -10,7 +10,7 @@ pub(super) struct Section {
     pub(super) holders: Vec<(String, &'static str)>,
     /// The name by which texts call it: `[mesh]`, `[[load]]`, or the keys of an inner table.
     pub(super) heading: String,
-    /// Whether it is a table of the document.
+    /// True if it is a table of the document.
     pub(super) is_of_the_document: bool,
 }
 
@@ -53,7 +53,7 @@ fn collect(table: &'static TableDescription, name: Option<&str>, sections: &mut 
     }
 }
 
-/// Whether a key is known only to be refused.
+/// True if a key is known only to be refused.
 pub(super) fn is_refused(key: &dyn Described) -> bool {
     let mut conditions = key.conditions().iter();
     conditions.any(|condition| matches!(condition.goes, Goes::Never))

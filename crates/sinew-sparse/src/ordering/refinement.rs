@@ -37,7 +37,8 @@ impl Division {
         Self { places, weights }
     }
 
-    /// What a separator costs: its weight, and of equal ones the weight of the larger side. Sides that are too large come last.
+    /// Cost of a separator: its weight, and among equal ones the weight of the larger side. Separators with a side that
+    /// is too large come last.
     pub(super) fn cost(&self) -> (u64, u64, u64) {
         let larger = self.weights[0].max(self.weights[1]);
         let excess = larger.saturating_sub(largest_side(&self.weights));
@@ -91,7 +92,7 @@ impl<'a> Pass<'a> {
         pass
     }
 
-    /// Whether the division has become better.
+    /// Runs the pass; returns true if the division has become better.
     fn run(mut self) -> bool {
         let before = self.division.cost();
         let (mut best, mut kept, mut idle) = (before, 0, 0);
@@ -119,7 +120,7 @@ impl<'a> Pass<'a> {
         self.division.places[vertex as usize]
     }
 
-    /// By how much the separator becomes lighter when a vertex of it goes to a side.
+    /// Gain in separator weight when a vertex of it moves to a side.
     fn gain(&self, vertex: u32, side: usize) -> i64 {
         i64::from(self.graph.weight(vertex)) - self.beside[vertex as usize][1 - side]
     }

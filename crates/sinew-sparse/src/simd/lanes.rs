@@ -1,4 +1,4 @@
-//! What kernels need of vectors.
+//! Vector operations that kernels need.
 
 use super::real::Real;
 

@@ -71,13 +71,13 @@ pub trait Number:
     /// The lanes in which `a <= b`, one bit each, the lowest first; not those in which one of them is not a number.
     fn lanes_le(a: Self, b: Self) -> u32;
 
-    /// Whether `a <= b` in every lane; not so where one of them is not a number.
+    /// True if `a <= b` in every lane; false if one of the values is NaN.
     #[inline(always)]
     fn all_le(a: Self, b: Self) -> bool {
         Self::lanes_le(a, b) == (1 << Self::LANES) - 1
     }
 
-    /// Whether `a <= b` in any lane.
+    /// True if `a <= b` in any lane.
     #[inline(always)]
     fn any_le(a: Self, b: Self) -> bool {
         Self::lanes_le(a, b) != 0

@@ -8,8 +8,7 @@ use super::lanes::Lanes;
 #[derive(Clone, Copy)]
 pub(crate) struct Array<T, const N: usize>([T; N]);
 
-/// Whether the build itself has an instruction that multiplies and adds at once; without one the call
-/// would go to a library.
+/// True if the build itself has a fused multiply-add instruction; without one the call would go to a library.
 pub(super) const FUSES: bool = cfg!(any(target_feature = "fma", target_arch = "aarch64"));
 
 macro_rules! array {

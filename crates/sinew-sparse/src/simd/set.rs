@@ -3,7 +3,7 @@
 /// Instructions that kernels are compiled for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum InstructionSet {
-    /// Those that the build names: SSE2 or NEON, unless told otherwise.
+    /// Instructions that the build names: SSE2 or NEON by default.
     Portable,
     /// 256 bits with fused multiply-add (AVX2, FMA).
     Avx2,
@@ -26,7 +26,7 @@ impl InstructionSet {
         all.into_iter().filter(|set| set.is_available()).collect()
     }
 
-    /// Whether this machine has it.
+    /// True if this machine has the instruction set.
     #[must_use]
     pub fn is_available(self) -> bool {
         match self {

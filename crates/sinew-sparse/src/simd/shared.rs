@@ -32,7 +32,7 @@ impl<T: Copy> Shared<T> {
         }
     }
 
-    /// Where they are.
+    /// View of the numbers, through which threads read and write them.
     #[inline(always)]
     #[must_use]
     pub fn slice(&self) -> SharedSlice<'_, T> {
@@ -52,7 +52,7 @@ impl<T> std::fmt::Debug for Shared<T> {
     }
 }
 
-/// Where numbers are that threads write in different places at the same time.
+/// View of numbers that threads write in different places at the same time.
 #[derive(Debug)]
 pub struct SharedSlice<'a, T> {
     first: *mut T,

@@ -16,7 +16,7 @@ use super::{avx2::Avx2, avx512::Avx512};
 
 /// Work that is written over any [`Number`], and compiled for each instruction set.
 pub trait WithNumber {
-    /// What comes of it.
+    /// Result of the work.
     type Output;
 
     /// Does the work. `#[inline(always)]`, as all that it calls in its loops, or it is compiled without the instructions that it
@@ -26,7 +26,7 @@ pub trait WithNumber {
 
 /// Work in one precision that is written over any [`Number`] of it.
 pub trait WithReal<T: Real> {
-    /// What comes of it.
+    /// Result of the work.
     type Output;
 
     /// Does the work, as [`WithNumber::run`] does.

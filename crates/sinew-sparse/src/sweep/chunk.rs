@@ -13,13 +13,13 @@ use crate::simd::{At, InstructionSet, Lanes, Real, WithReal};
 /// A sweep over the vectors of all cells.
 #[derive(Clone, Copy, Debug)]
 pub struct Sweep<'a, T> {
-    /// What it computes.
+    /// The computation, as coefficients.
     pub map: &'a CellMap<T>,
     /// The matrices of its products.
     pub matrices: &'a [&'a Rows<T>],
     /// The vectors.
     pub fields: &'a Fields<T>,
-    /// Whether forces act in each chunk; where this is shorter, they may.
+    /// One flag per chunk: true if forces may act there. Chunks beyond the end of the list count as true.
     pub loaded: &'a [bool],
     /// Size that values of watched updates may have.
     pub limit: T,
@@ -55,12 +55,12 @@ pub trait Precision: Real {
     unsafe fn read_all(set: InstructionSet, values: &[Self]) -> Self;
 }
 
-/// What the cells of some chunks reached.
+/// Clamps and limits that the cells of some chunks reached.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Outcome {
     /// Values that a clamp bounded.
     pub saturated: u64,
-    /// Whether a watched value was larger than the limit, or not a number.
+    /// True if a watched value was larger than the limit, or NaN.
     pub exceeded: bool,
 }
 
@@ -113,7 +113,7 @@ impl<T: Precision> Sweep<'_, T> {
     }
 }
 
-/// Where the vectors of a chunk are.
+/// Vectors of a chunk in memory.
 struct Place<'a, T, const L: usize> {
     fields: &'a Fields<T>,
     /// First position.
@@ -515,7 +515,7 @@ unsafe fn bound_vectors<T: Precision, V: Lanes<T>, const L: usize>(
     }
 }
 
-/// Whether a value is larger than the limit, or not a number.
+/// True if a value is larger than the limit, or NaN.
 #[inline(always)]
 unsafe fn exceeds<T: Precision, V: Lanes<T>, const L: usize>(
     target: Field,

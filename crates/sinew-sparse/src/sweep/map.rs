@@ -1,4 +1,4 @@
-//! What a sweep computes, as plain coefficients.
+//! Computation of a sweep, as plain coefficients.
 
 /// A vector of [`super::Fields`] by its number.
 pub type Field = u32;
@@ -27,7 +27,7 @@ pub struct CellMap<T> {
 /// `factor A source`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Product<T> {
-    /// Which of the sweep's matrices A is.
+    /// Number of A among the sweep's matrices.
     pub matrix: usize,
     /// The factor.
     pub factor: T,
@@ -81,7 +81,7 @@ pub struct Update<T> {
     pub of_q: T,
     /// The bound.
     pub clamp: Option<Clamp<T>>,
-    /// Whether sizes of the result are compared with the sweep's limit.
+    /// True if sizes of the result are compared with the sweep's limit.
     pub watched: bool,
 }
 
@@ -93,7 +93,7 @@ pub enum Clamp<T> {
     /// Bounds a position's vector, measured from another or from 0, to `factor` times the limit in layer
     /// 0 of `limits`.
     Vector {
-        /// Where it is measured from.
+        /// Vector from which it is measured; 0 if `None`.
         from: Option<Field>,
         /// The factor.
         factor: T,

@@ -27,7 +27,7 @@ impl<T: Real> Rows<T> {
         }
     }
 
-    /// Whether a chunk has no rows at all.
+    /// True if a chunk has no rows at all.
     pub(super) fn is_empty(&self, chunk: usize) -> bool {
         match self {
             Self::General(_) => false,
@@ -35,7 +35,7 @@ impl<T: Real> Rows<T> {
         }
     }
 
-    /// Whether it is a matrix on the positions of these vectors, none of which it reads beyond their room.
+    /// True if the matrix has the positions of these vectors and reads no vector beyond its padding.
     pub(super) fn fits(&self, fields: &Fields<T>) -> bool {
         match self {
             Self::General(sell) => sell.is_on(fields.positions(), fields.layers()),

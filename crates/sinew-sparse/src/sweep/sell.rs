@@ -103,7 +103,8 @@ impl<T: Real> Sell<T> {
         true
     }
 
-    /// Whether the row of a cell, and where digits are few those of its neighbours, fit the slices.
+    /// True if the row of a cell fits its slice. In a precision of few digits the rows of its neighbours must fit
+    /// theirs, too.
     fn has_room(&self, matrix: &BlockMatrix, numbering: &Numbering, cell: u32) -> bool {
         let pattern = matrix.pattern();
         if cell as usize >= pattern.cells() {

@@ -20,7 +20,7 @@ const MASS: Field = 4;
 const INVERSE: Field = 5;
 const LIMITS: Field = 6;
 const LIVE: Field = 7;
-/// As many rows as there are layers.
+/// The first of as many rows as there are layers.
 const ROWS: Field = 8;
 
 fn product<T: Real>(matrix: usize, factor: f64, source: Field) -> Product<T> {

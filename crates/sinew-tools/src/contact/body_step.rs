@@ -45,7 +45,7 @@ pub(super) struct BodyStep {
     offset: Twist,
     /// Velocity after the step without contact.
     free: Twist,
-    /// What contact moves it by within the step.
+    /// Displacement by contact within the step.
     pub(super) pushed: Twist,
     /// The displacement (m) by a force (N): `dt^2 / P`.
     along: f64,
@@ -188,7 +188,7 @@ impl BodyStep {
         self.free.plus(self.pushed.times(1.0 / self.dt))
     }
 
-    /// What it moves by under a force (N) at an arm (m) within the step.
+    /// Motion within the step under a force (N) at an arm (m).
     pub(super) fn response(&self, arm: Vector, force: Vector) -> Twist {
         let torque = self.before.turned_back(cross(arm, force));
         let own = [0, 1, 2].map(|axis| self.about[axis] * torque[axis]);
@@ -265,7 +265,8 @@ impl Spring {
         }
     }
 
-    /// What a step of `dt` (s), with a time `kick` (s) between the velocities before and after, divides impulses by.
+    /// Effective mass that impulses are divided by, in a step of `dt` (s) with a time `kick` (s) between the velocities
+    /// before and after.
     fn metric(&self, [dt, kick]: [f64; 2], is_staggered: bool) -> f64 {
         let Self {
             mass,

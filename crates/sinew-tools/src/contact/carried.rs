@@ -1,4 +1,4 @@
-//! What tools keep, carried to other cells.
+//! Transfer of the contact history of tools to other cells.
 
 use std::collections::HashMap;
 
@@ -11,9 +11,9 @@ use super::tools::Tools;
 use crate::vector::sub;
 
 impl Tools {
-    /// What these tools keep ([`sinew_core::State::contact`]), where `before` are the same tools on the cells that there were before a cut, and `contact` is what
-    /// they kept. `of` tells for a touched cell which one of those it is, by its place, or a copy of; `None` for a cell that
-    /// could not be touched.
+    /// Contact history ([`sinew_core::State::contact`]) of these tools after a cut. `before` are the same tools on the
+    /// cells before the cut, and `contact` is their history. For a touched cell, `of` gives the place among the old
+    /// cells of the cell that it is or is a copy of; `None` for a cell that could not be touched.
     ///
     /// Forces of the last step stay with the first of several copies, and a tool that holds a cell holds all of its copies.
     #[must_use]

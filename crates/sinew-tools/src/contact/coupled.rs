@@ -119,7 +119,7 @@ impl Ways<'_> {
         (sub(to, back), to)
     }
 
-    /// Where a cell is at a share of the step (m), without contact.
+    /// Position (m) of a cell at a share of the step, without contact.
     fn stood(&self, place: usize, share: f64) -> Vector {
         let (from, to) = self.whole(place);
         if share == 1.0 {
@@ -154,12 +154,12 @@ struct Search<'a> {
     held: &'a [[f64; OF_HELD]],
     /// Velocities (m/s) before the step, where they are known.
     velocities: &'a [[f64; OF_VELOCITY]],
-    /// What is kept of each pair of lips.
+    /// History of each pair of cut-face nodes.
     pairs: &'a [[f64; OF_PAIR]],
 }
 
 impl Search<'_> {
-    /// What friction works along of a cell (m), without contact.
+    /// Displacement (m) of a cell over which friction does work, without contact.
     fn swing(&self, place: usize) -> Vector {
         let (from, to) = self.ways.whole(place);
         let kept = self.velocities.get(place);

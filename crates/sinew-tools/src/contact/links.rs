@@ -23,7 +23,7 @@ pub(super) struct LinkedNode {
     pub(super) compliance: Compliance,
 }
 
-/// What a contact is held to.
+/// Constraint of a contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Rule {
     /// It does not pass the tool's surface, with this outward normal in the tool's frame.
@@ -45,7 +45,7 @@ pub(super) struct Link {
     pub(super) triangle: Option<u32>,
     /// The place (m) of the contact in the tool's frame.
     own: Vector,
-    /// How deep (m) in the tool that lies.
+    /// Depth (m) of that place inside the tool.
     below: f64,
     rule: Rule,
     /// The surface as it is seen from where the step led, without any force.
@@ -56,7 +56,7 @@ pub(super) struct Link {
     response: Compliance,
     /// The force (N) on the tissue.
     pub(super) force: Vector,
-    /// Of each node, and of the triangle, the contact before this one.
+    /// The previous contact of each node; `before_on` is that of the triangle. They form linked lists.
     before: [Option<u32>; NODES],
     before_on: Option<u32>,
 }
@@ -71,9 +71,9 @@ pub(super) struct Links {
     pub(super) moved: Vec<Vector>,
     /// The same before the pass.
     pub(super) before: Vec<Vector>,
-    /// Where each touched cell comes from, and where it has been moved to (m), while triangles are looked for.
+    /// Start and current position (m) of each touched cell, during the search for triangles.
     pub(super) ways: Vec<Way>,
-    /// Of each touched cell, and of each triangle, the last contact that it is part of.
+    /// The last contact of each touched cell; `last_on` is that of each triangle.
     last: Vec<Option<u32>>,
     last_on: Vec<Option<u32>>,
     is_linked: Vec<bool>,
@@ -81,9 +81,9 @@ pub(super) struct Links {
     pub(super) lips: Vec<LipLink>,
     /// The normals of cut faces as the step begins, times twice their area (m^2).
     pub(super) normals: Vec<[Vector; 2]>,
-    /// Whether each pair of lips meets.
+    /// One flag per pair of cut-face nodes: true if the pair is in contact.
     meets: Vec<bool>,
-    /// What the iteration left of pairs of lips.
+    /// Residual of the iteration for pairs of cut-face nodes.
     pub(super) lip_residual: f64,
 }
 
@@ -131,12 +131,12 @@ impl Links {
         }
     }
 
-    /// Whether there is anything to solve for.
+    /// True if there is no contact to solve for.
     pub(super) fn is_empty(&self) -> bool {
         self.all.is_empty() && self.lips.is_empty()
     }
 
-    /// Whether a pair of lips meets.
+    /// True if a pair of cut-face nodes is in contact.
     pub(super) fn knows_lips(&self, pair: u32) -> bool {
         self.meets[pair as usize]
     }
@@ -158,14 +158,14 @@ impl Links {
         }
     }
 
-    /// Whether the cell at a place is part of any.
+    /// True if the cell at a place is part of any contact.
     pub(super) fn is_linked(&self, place: usize) -> bool {
         self.is_linked
             .get(place)
             .is_some_and(|is_linked| *is_linked)
     }
 
-    /// Whether there is a contact of the cell at a place alone with a part of a tool.
+    /// True if the cell at a place has a contact of its own, without a triangle, with a part of a tool.
     pub(super) fn knows(&self, place: usize, (tool, part): (usize, usize)) -> bool {
         let mut of_cell = self.of_cell(place as u32);
         of_cell.any(|link| link.triangle.is_none() && (link.tool, link.part) == (tool, part))
@@ -191,7 +191,7 @@ impl Links {
         on_triangle.filter(is_it).count()
     }
 
-    /// Whether a node of a contact is part of another one with the same place of a tool, from the same side.
+    /// True if a node of a contact is part of another contact at the same place of a tool and with the same normal.
     pub(super) fn knows_alike(&self, link: &Link) -> bool {
         let Rule::Outside(normal) = link.rule else {
             return false;
@@ -379,7 +379,7 @@ impl Link {
         tool.now.to_world(self.own)
     }
 
-    /// How deep (m) tissue at a point (m) is left in the tool.
+    /// Depth (m) in the tool at which tissue at a point (m) is left.
     pub(super) fn depth(&self, tool: &ToolStep, at: Vector) -> f64 {
         match self.rule {
             Rule::Outside(normal) => {

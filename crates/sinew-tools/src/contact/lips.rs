@@ -24,7 +24,8 @@ pub(super) struct Pair {
     pub(super) nodes: [Corner; 2],
     /// The faces around them, by their places, and whether the one belongs to the first face.
     faces: Vec<(u32, bool)>,
-    /// How far (m) one may be along the lips from the other to act on it: the longest edge of these faces at rest.
+    /// Largest offset (m) along the faces at which the two nodes still act on each other: the longest edge of these
+    /// faces at rest.
     reach: f64,
 }
 
@@ -49,7 +50,7 @@ pub(super) struct LipLink {
     floor: f64,
     /// The distance (m) along the normal to which the step led them.
     gap: f64,
-    /// What closes that distance by a unit force (m/N).
+    /// Closing of that distance per unit force (m/N).
     response: f64,
     /// The force (N) that pushes them apart.
     pub(super) force: f64,
@@ -208,7 +209,7 @@ impl LipLink {
         (change * self.response).abs()
     }
 
-    /// By how much (m) its force moves its nodes apart.
+    /// Distance (m) by which the force moves the two nodes apart.
     pub(super) fn push(&self) -> f64 {
         self.force * self.response
     }

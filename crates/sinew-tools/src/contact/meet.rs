@@ -1,4 +1,4 @@
-//! What tools do to the cells that they meet in a step.
+//! Contact of tools with the cells that they meet in a step.
 
 use std::sync::PoisonError;
 
@@ -121,7 +121,7 @@ impl Contact for Tools {
     }
 }
 
-/// How far (m) the velocity of a cell moved it in the step that led to a state.
+/// Displacement (m) of a cell by its velocity in the step that led to a state.
 pub(super) fn way_of(meeting: &Meeting<'_>, state: &State, cell: u32) -> Vector {
     along_axes(&state.v, cell).map(|velocity| meeting.way(velocity))
 }

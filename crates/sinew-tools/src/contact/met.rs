@@ -1,21 +1,21 @@
-//! What a node meets in a step, alone.
+//! Contacts of a single node in a step.
 
 use super::node::{Compliance, Constraint, MOST};
 use super::tool_step::{ToolStep, Way};
 use crate::vector::{Vector, add, dot, sub};
 
-/// What a node met in a step; the same room is used for the next.
+/// Surfaces that a node met in a step; the buffer is reused for the next node.
 #[derive(Debug)]
 pub(super) struct Met {
     count: usize,
     /// Tool and part of each surface.
     parts: [(usize, usize); MOST],
     constraints: [Constraint; MOST],
-    /// How deep (m) in its tool each of them lies.
+    /// Depth (m) of each surface below that of its tool.
     below: [f64; MOST],
     /// The forces (N) on the node.
     forces: [Vector; MOST],
-    /// What an iteration for them left.
+    /// Residual of the iteration for these forces.
     pub(super) residual: f64,
 }
 
@@ -102,7 +102,7 @@ impl Met {
         pushing.map(|((tool, _), force)| (*tool, *force))
     }
 
-    /// How deep (m) the node is left in each surface by a displacement (m).
+    /// Depth (m) of the node in the tool at each surface, after a displacement (m).
     pub(super) fn depths(&self, moved: Vector) -> impl Iterator<Item = (usize, f64)> {
         let met = self.parts[..self.count].iter();
         let met = met.zip(self.constraints.iter().zip(&self.below));

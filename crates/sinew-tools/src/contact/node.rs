@@ -15,13 +15,13 @@ pub(super) const MOST_SWEEPS: usize = 500;
 /// Change of a displacement in a sweep, as a share of the largest that any force causes, below which an iteration has come to its end.
 pub(super) const CONVERGED: f64 = 1e-13;
 
-/// What is left of an iteration that goes nowhere.
+/// Residual above which an iteration has failed.
 const WEDGED: f64 = 1e-3;
 
 /// Violation of constraints, as a share of that without forces, up to which a node has room between them.
 const MEANT_TO_FIT: f64 = 1e-9;
 
-/// What a node would move by under forces within a step.
+/// Nodal compliance: displacement per unit force over one step.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Compliance {
     /// `dt^2 P^-1` (m/N), zero in the directions in which the node is held.
@@ -40,7 +40,8 @@ pub(super) struct Constraint {
     pub(super) stick: Vector,
     /// Coefficient of Coulomb's friction.
     pub(super) friction: f64,
-    /// What friction works along: the displacement (m) of the node against the tool in the step, in staggered steps together with that in the step before.
+    /// Displacement (m) over which friction does work: that of the node relative to the tool in the step, in
+    /// staggered steps together with that in the step before.
     pub(super) swing: Vector,
 }
 
@@ -57,7 +58,7 @@ impl Constraint {
 }
 
 impl Compliance {
-    /// By the block of `P^-1` (1/kg) and the step (s).
+    /// Compliance from the block of `P^-1` (1/kg) and the step (s).
     pub(super) fn new(inverse: [Vector; 3], free: [bool; 3], dt: f64) -> Self {
         let mut block = inverse.map(|row| scaled(row, dt * dt));
         for (row, own) in block.iter_mut().zip(free) {
@@ -70,7 +71,7 @@ impl Compliance {
         Self { block, free }
     }
 
-    /// What yields in all directions, by a symmetric block (m/N).
+    /// Compliance that is free in all directions, with a symmetric block (m/N).
     pub(super) fn yielding(block: [Vector; 3]) -> Self {
         let free = [true; 3];
         Self { block, free }
@@ -170,7 +171,7 @@ impl Compliance {
         }
     }
 
-    /// Whether a node with this response (m/N) to a unit force moves in the direction of that force.
+    /// True if a node with this response (m/N) to a unit force moves in the direction of that force.
     fn moves(&self, response: f64) -> bool {
         response > HELD * self.largest()
     }

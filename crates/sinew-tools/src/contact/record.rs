@@ -1,4 +1,4 @@
-//! What tools keep from step to step, as numbers in a state.
+//! History variables of tools, as numbers in a state.
 
 use std::ops::Range;
 
@@ -50,8 +50,9 @@ pub(super) const LIP_CONTACTS: usize = 0;
 pub(super) const LIP_RESIDUAL: usize = 1;
 pub(super) const LARGEST_LIP_RESIDUAL: usize = 2;
 
-/// What friction works along of a cell that a step moves by `way` (m), with its velocity (m/s) before where it was kept: in staggered steps contact works at the mean of the
-/// velocities before and after, elsewhere at the latter.
+/// Displacement (m) of a cell over which friction does work, in a step that moves it by `way` (m). `velocity` (m/s)
+/// is the velocity before the step, if it was kept: in staggered steps contact works at the mean of the velocities
+/// before and after, otherwise at the velocity after.
 pub(super) fn swing(
     meeting: &Meeting<'_>,
     velocity: Option<&[f64; OF_VELOCITY]>,
@@ -66,35 +67,37 @@ pub(super) fn swing(
     }
 }
 
-/// What contact did in the last step, and what it holds, by rows of numbers.
+/// Contact forces of the last step and history variables, as rows of numbers.
 pub(super) struct Record<'a> {
-    /// Of each tool.
+    /// One row per tool.
     pub(super) tools: &'a mut [[f64; OF_TOOL]],
-    /// Of each tool that is a body of its own.
+    /// One row per tool that is a body of its own.
     pub(super) bodies: &'a mut [[f64; OF_BODY]],
-    /// Of each cell the force (N) on it.
+    /// Force (N) on each cell.
     pub(super) cells: &'a mut [[f64; OF_CELL]],
-    /// Of each cell that was near a tool its velocity (m/s) after the step, zeros of others; empty where nothing rubs.
+    /// Velocity (m/s) after the step of each cell that was near a tool, zeros for the others; empty if there is no
+    /// friction.
     pub(super) velocities: &'a mut [[f64; OF_VELOCITY]],
-    /// Of each cell the tool that holds it, from 1 on, or 0, and the place (m) in that tool's frame; empty where no tool holds.
+    /// Tool that holds each cell, from 1 on, or 0, and the place (m) in that tool's frame; empty if no tool ever holds.
     pub(super) held: &'a mut [[f64; OF_HELD]],
-    /// Of the lips of cuts, once; empty where there are none.
+    /// One row for all cut faces together; empty if there are none.
     pub(super) lips: &'a mut [[f64; OF_LIPS]],
-    /// Of each pair of lips from the one to the other (m), as the last step began.
+    /// Vector (m) between the two nodes of each pair at cut faces, at the beginning of the last step.
     pub(super) pairs: &'a mut [[f64; OF_PAIR]],
-    /// How many cells were near a tool in the last step or linked to others, and their places: of no others there are forces or velocities.
+    /// Number of cells that were near a tool in the last step or linked to others, followed by their places. No other
+    /// cells have forces or velocities.
     listed: &'a mut [f64],
 }
 
-/// How many there are of what a record tells of.
+/// Numbers of items in a record.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Counts {
     pub(super) tools: usize,
     pub(super) bodies: usize,
     pub(super) cells: usize,
-    /// Whether any tool has friction.
+    /// True if any tool has friction.
     pub(super) rubs: bool,
-    /// Whether any tool ever holds.
+    /// True if any tool ever holds.
     pub(super) holds: bool,
     /// Pairs of nodes at the lips of cuts.
     pub(super) pairs: usize,
@@ -224,7 +227,7 @@ fn places(listed: &[f64]) -> impl Iterator<Item = usize> + '_ {
     listed.map(|place| *place as usize)
 }
 
-/// What a tool that is a body of its own keeps.
+/// History variables of a tool that is a body of its own.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Body {
     pub(super) pose: Pose,
@@ -239,7 +242,7 @@ pub(super) struct Body {
 }
 
 impl Body {
-    /// What the numbers tell; `None` before the first step.
+    /// Decodes the numbers; `None` before the first step.
     pub(super) fn read(numbers: &[f64; OF_BODY]) -> Option<Self> {
         let (vectors, [energy, hand_work, has_begun]) = numbers.split_last_chunk::<3>()?;
         let vectors = vectors.as_chunks::<3>().0;

@@ -1,4 +1,4 @@
-//! What tools tell of the last step.
+//! Reports of tools about the last step.
 
 use sinew_core::{Inputs, State};
 
@@ -24,7 +24,8 @@ pub struct ToolReport {
     pub angular_impulse: [f64; 3],
     /// The work (J) that it did on the body since the motion began.
     pub work: f64,
-    /// How deep (m) it had to leave a node in it since the motion began: one that is held in the direction of the contact, or has no room between surfaces.
+    /// Largest depth (m) at which it had to leave a node since the motion began: a node that is fixed in the direction
+    /// of the contact, or has no space between surfaces.
     pub depth: f64,
     /// Contacts in which it pushed: nodes at each of its surfaces, and triangles.
     pub contacts: usize,
@@ -32,7 +33,8 @@ pub struct ToolReport {
     pub passes: u32,
     /// The most passes that a step since the motion began would have needed so that no triangle gets round it, where more than are made; 0 elsewhere.
     pub needed_passes: f64,
-    /// What the iteration left of its contacts, where they act on each other: the largest change of a displacement in the last sweep, as a share of the largest displacement by a contact.
+    /// Residual of the iteration for contacts that act on each other: the largest change of a displacement in the last
+    /// sweep, relative to the largest displacement by a contact.
     pub residual: f64,
     /// The largest such residual since the motion began.
     pub largest_residual: f64,
@@ -62,13 +64,13 @@ pub struct BodyReport {
 pub struct LipsReport {
     /// Pairs of nodes that pushed each other.
     pub contacts: usize,
-    /// What the iteration left of their contacts: see [`ToolReport::residual`].
+    /// Residual of the iteration for their contacts: see [`ToolReport::residual`].
     pub residual: f64,
     /// The largest such residual since the body was cut.
     pub largest_residual: f64,
 }
 
-/// How deep a cell is in a tool.
+/// Signed distance between a cell and a tool.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Depth {
     /// The distance (m) to the tool's surface, negative inside.
@@ -78,7 +80,7 @@ pub struct Depth {
 }
 
 impl Tools {
-    /// Where a tool is in a state, under inputs from outside.
+    /// Pose of a tool in a state, under inputs from outside.
     #[must_use]
     pub fn pose(&self, state: &State, inputs: &Inputs, tool: usize) -> Pose {
         match self.body(state, tool) {
@@ -151,7 +153,7 @@ impl Tools {
         })
     }
 
-    /// What a tool keeps that is a body of its own; `None` before its first step.
+    /// History variables of a tool that is a body of its own; `None` before its first step.
     fn body(&self, state: &State, tool: usize) -> Option<Body> {
         let numbers = state.contact.get(self.counts.of_bodies())?;
         let numbers = numbers.as_chunks::<OF_BODY>().0;

@@ -17,7 +17,7 @@ const LONGEST_WAY: f64 = 0.5;
 /// Most passes of a step.
 const MOST_PASSES: u32 = 100;
 
-/// What a step of contact works on: the tools' own steps, the cells that may meet them, and what they meet.
+/// Scratch space of a contact step: the tools' own steps, the cells that may meet them, and the contacts found.
 #[derive(Debug)]
 pub(super) struct Room {
     pub(super) steps: Vec<ToolStep>,
@@ -28,7 +28,7 @@ pub(super) struct Room {
     /// Places of the cells that are shown, where these are not all.
     shown: Vec<u32>,
     are_all_shown: bool,
-    /// What one node meets.
+    /// Contacts of a single node.
     pub(super) met: Met,
     /// Contacts that act on each other.
     pub(super) links: Links,
@@ -186,7 +186,7 @@ fn size(cells: &[TouchedCell]) -> f64 {
     edges.fold(0.0, f64::max)
 }
 
-/// Whether the way of a cell in a step that led to a state meets a box (m).
+/// True if the path of a cell, in a step that led to a state, meets a box (m).
 #[inline]
 fn is_near(
     TouchedCell { cell, rest, .. }: &TouchedCell,

@@ -12,9 +12,9 @@ pub struct Tool {
     pub name: String,
     /// Its shape.
     pub shape: Shape,
-    /// Where it is at any time, or where its coupling draws it to.
+    /// Prescribed motion, or the path to which the coupling draws the tool.
     pub motion: Motion,
-    /// What it is where it is a body of its own; `None` for a tool that is where its motion says.
+    /// Mass and coupling of a tool that is a body of its own; `None` for a tool that follows its motion exactly.
     pub body: Option<ToolBody>,
     /// Coefficient of Coulomb's friction.
     pub friction: f64,
@@ -22,7 +22,7 @@ pub struct Tool {
     pub cells: Vec<u32>,
     /// The triangles that it may touch besides, by their places among those of [`crate::Tools`]: for a tip that would pass between nodes.
     pub triangles: Vec<u32>,
-    /// When it holds what it touches; `None` where it never does.
+    /// Time during which it holds what it touches; `None` if it never does.
     pub grasp: Option<Grasp>,
 }
 
@@ -42,12 +42,12 @@ pub struct TouchedCell {
     pub cell: u32,
     /// Its position at rest (m).
     pub rest: [f64; 3],
-    /// Whether it moves in x, y and z.
+    /// Flags for x, y and z: true if the cell can move in that direction.
     pub free: [bool; 3],
 }
 
 impl TouchedCell {
-    /// Where it is (m), by the displacements of all cells.
+    /// Current position (m), with the displacements of all cells.
     pub(super) fn at(&self, u: &[f64]) -> [f64; 3] {
         add(self.rest, along_axes(u, self.cell))
     }
@@ -76,7 +76,7 @@ pub enum Corner {
 }
 
 impl Corner {
-    /// Where it is (m), by where the cell at a place is.
+    /// Current position (m); `cell` gives that of the cell at a place.
     pub(super) fn at(self, cell: impl Fn(u32) -> [f64; 3]) -> [f64; 3] {
         match self {
             Self::Cell(place) => cell(place),
@@ -150,7 +150,7 @@ pub enum ToolsError {
     Body {
         /// The tool.
         name: String,
-        /// What is wrong with it.
+        /// Reason why its body is refused.
         source: ToolBodyError,
     },
     /// A place beyond the triangles.

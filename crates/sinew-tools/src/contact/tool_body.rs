@@ -17,7 +17,7 @@ pub struct ToolBody {
     pub damping: f64,
 }
 
-/// What is wrong with the body of a tool.
+/// Reasons for which the body of a tool is refused.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ToolBodyError {
@@ -46,7 +46,7 @@ pub enum ToolBodyError {
 const ROUNDING: f64 = 1e-9;
 
 impl ToolBody {
-    /// Whether a body can have these moments of inertia, up to rounding: none is larger than the sum of the other two.
+    /// True if a body can have these moments of inertia, up to rounding: none is larger than the sum of the other two.
     #[must_use]
     pub fn has(inertia: [f64; 3]) -> bool {
         let sum: f64 = inertia.iter().sum();

@@ -11,8 +11,9 @@ use crate::vector::{Vector, add, between, dot, length, scaled, sub};
 /// The way (m) of a cell in a step, straight from one place to another.
 pub(super) type Way = (Vector, Vector);
 
-/// How deep a node may be in a part as a step begins, as a share of the part's half width or of the tissue, to be pushed out: contact leaves none so deep where nodes have room between
-/// surfaces, in single precision neither.
+/// Largest depth of a node in a part, at the beginning of a step, from which it is pushed out, as a share of the part's
+/// half width or of the tissue's size. Contact leaves no node so deep if there is space between the surfaces, even in
+/// single precision.
 const LEFT: f64 = 1e-4;
 
 /// The surface that a node meets, in the frame of a part of a tool.
@@ -21,7 +22,7 @@ pub(super) struct Surface {
     /// A point of it (m), and its normal there.
     pub(super) point: Vector,
     pub(super) normal: Vector,
-    /// How deep (m) in the part it lies: above 0 where what began the step there is left there.
+    /// Depth (m) of it in the part: above 0 if tissue that began the step there is left there.
     pub(super) below: f64,
 }
 
@@ -40,16 +41,16 @@ pub(super) struct ToolStep {
     /// The step of a tool that is a body of its own.
     pub(super) body: Option<BodyStep>,
     pub(super) friction: f64,
-    /// Whether the motion begins with this step.
+    /// True if the motion begins with this step.
     is_first: bool,
     /// The size (m) of the tissue that it may touch, at rest.
     tissue: f64,
-    /// What is left of contacts that act on each other.
+    /// Residual of the iteration for contacts that act on each other.
     pub(super) residual: f64,
     strokes: Vec<(Stroke, Near)>,
 }
 
-/// Where nodes can meet a part.
+/// Region in which nodes can meet a part.
 #[derive(Clone, Copy, Debug)]
 enum Near {
     /// Ways that meet a box (m).
@@ -87,7 +88,7 @@ impl Near {
     }
 }
 
-/// Whether a way (m) may meet any of some tools, one bit each.
+/// True if a path (m) may meet any of some tools, one bit each.
 #[inline]
 pub(super) fn is_near(steps: &[ToolStep], tools: u64, way: Way) -> bool {
     let mut steps = steps.iter().enumerate();
@@ -165,7 +166,7 @@ impl ToolStep {
         self.stroke(tool);
     }
 
-    /// How far (m) any point of the tool goes, at most, but for its planes.
+    /// Upper bound of the displacement (m) of any point of the tool, planes excepted.
     pub(super) fn way(&self, tool: &Tool) -> f64 {
         let way = length(sub(self.after.position(), self.before.position()));
         let turn = length(self.before.turn_to(&self.after));
@@ -195,13 +196,13 @@ impl ToolStep {
         self.strokes.extend(strokes);
     }
 
-    /// Where a way (m) meets its parts, by their numbers.
+    /// Contacts of a path (m) with the tool's parts, by their numbers.
     pub(super) fn touches(&self, way: Way) -> impl Iterator<Item = (usize, Surface)> {
         self.near_strokes(way)
             .filter_map(move |(part, stroke)| Some((part, self.touch(stroke, way)?)))
     }
 
-    /// Where a way (m) meets the part of a stroke.
+    /// Contact of a path (m) with the part of a stroke.
     pub(super) fn touch(&self, stroke: &Stroke, way: Way) -> Option<Surface> {
         let Touch {
             share,
@@ -248,7 +249,8 @@ impl ToolStep {
         f64::from(pieces.max().unwrap_or(1))
     }
 
-    /// Where a triangle meets its parts, by their numbers, on its way from one place to another (m), and how deep (m) in them it is left.
+    /// Contacts of a triangle with the tool's parts as it moves from `from` to `to` (m): number of the part, contact,
+    /// and the depth (m) at which the triangle is left in it.
     pub(super) fn triangle_touches(
         &self,
         from: &Triangle,
@@ -265,7 +267,8 @@ impl ToolStep {
         })
     }
 
-    /// Where a triangle (m), which began the pass elsewhere, is in its parts, by their numbers, after the step, and how deep (m) in them it is left.
+    /// Overlaps after the step of a triangle at `corners` (m), which began the pass at `from`, with the tool's parts:
+    /// number of the part, contact, and the depth (m) at which the triangle is left in it.
     pub(super) fn triangle_overlaps(
         &self,
         from: &Triangle,
@@ -329,8 +332,8 @@ impl ToolStep {
         }
     }
 
-    /// What friction works along of the tool (m) in a step of `dt` (s), at a place (m) after it and without what contact pushes a body by: its displacement, in staggered steps together with
-    /// that in the step before.
+    /// Displacement (m) of the tool over which friction does work, in a step of `dt` (s), at a place (m) after the
+    /// step and without the push of contact on a body. In staggered steps the displacement in the step before is added.
     pub(super) fn swing(&self, place: Vector, dt: f64) -> Vector {
         match &self.body {
             Some(body) => body.swing(sub(place, self.now.position())),
@@ -372,7 +375,8 @@ mod tests {
         step
     }
 
-    /// How far from its middle (m) a ball of 10 mm leaves a node, and the middle of a triangle, which a step takes from one height above it to another.
+    /// Distances (m) from the centre of a ball of 10 mm at which it leaves a node, and the middle of a triangle, that a
+    /// step takes from one height above the centre to another.
     fn left_at(is_first: bool, from: f64, to: f64) -> [Option<f64>; 2] {
         let step = step(Convex::Sphere { radius: 0.01 }, is_first);
         let node = step.touches(([0.0, 0.0, from], [0.0, 0.0, to])).next();

@@ -30,7 +30,7 @@ pub struct Tools {
     pub(super) linking: u64,
     /// The lips of cuts.
     pub(super) lips: Lips,
-    /// Whether each cell is part of a pair of lips.
+    /// One flag per cell: true if it is part of a pair of cut-face nodes.
     pub(super) is_lip: Vec<bool>,
     pub(super) room: Mutex<Room>,
 }
@@ -219,13 +219,13 @@ impl Tools {
         &self.cells
     }
 
-    /// Whether contacts of a tool act on each other within a step, so that they are found by an iteration.
+    /// True if contacts of a tool act on each other within a step, so that they are found by an iteration.
     #[must_use]
     pub fn links(&self, tool: usize) -> bool {
         self.linking >> tool & 1 == 1
     }
 
-    /// Whether a tool holds what it touches in a step that ends at `end` (s).
+    /// True if a tool holds what it touches in a step that ends at `end` (s).
     pub(super) fn holds(&self, tool: usize, end: f64) -> bool {
         let grasp = self.tools[tool].grasp;
         grasp.is_some_and(|grasp| (grasp.from..=grasp.to).contains(&end))

@@ -37,7 +37,7 @@ impl Twist {
         self.plus(other.times(-1.0))
     }
 
-    /// What it is at a point at an arm (m) from the origin.
+    /// Velocity or displacement of a point at an arm (m) from the origin.
     pub(super) fn at(&self, arm: Vector) -> Vector {
         add(self.along, cross(self.about, arm))
     }

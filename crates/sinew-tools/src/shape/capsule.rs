@@ -16,7 +16,7 @@ pub(super) fn nearest(point: [f64; 3], radius: f64, half_length: f64) -> Nearest
     }
 }
 
-/// Where a point outside enters.
+/// Contact at which a point outside enters.
 pub(super) fn first_contact(
     from: [f64; 3],
     motion: [f64; 3],

@@ -43,9 +43,9 @@ pub enum Convex {
     },
 }
 
-/// How near to the surface a point is on it, as a share of the shape's size.
+/// Distance up to which a point counts as on the surface, as a share of the shape's size.
 ///
-/// That is far above the rounding of a point that a contact has put there, and far below anything to be seen.
+/// That is far above the rounding of a point that a contact has put there, and far below anything visible.
 const ON_SURFACE: f64 = 1e-12;
 
 impl Convex {

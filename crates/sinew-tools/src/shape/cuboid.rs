@@ -27,10 +27,10 @@ pub(super) fn nearest(point: [f64; 3], half: [f64; 3]) -> Nearest {
     }
 }
 
-/// Where a point outside or on the surface enters, by slabs (Kay and Kajiya 1986): it is inside while it is between all three
-/// pairs of faces. A gap up to `tolerance` (m) counts as none.
+/// Contact at which a point outside or on the surface enters, by slabs (Kay and Kajiya 1986): a point is inside while
+/// it is between all three pairs of faces. A gap up to `tolerance` (m) counts as zero.
 ///
-/// Between open faces, so that a point that slides along a face or an edge does not enter.
+/// The slabs are open, so that a point that slides along a face or an edge does not enter.
 pub(super) fn first_contact(
     from: [f64; 3],
     motion: [f64; 3],

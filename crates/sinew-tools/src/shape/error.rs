@@ -1,4 +1,4 @@
-//! What is wrong with a shape.
+//! Errors in a shape.
 
 /// Reasons for which a shape is refused.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

@@ -231,7 +231,7 @@ fn nearest_of_segments([a, b]: [Vector; 2], [c, d]: [Vector; 2]) -> (f64, f64) {
     }
 }
 
-/// Where a segment passes through a triangle.
+/// Intersection of a segment with a triangle.
 fn crossing(triangle: &Triangle, [from, to]: [Vector; 2]) -> Option<Vector> {
     let normal = doubled_area(triangle);
     let heights = [from, to].map(|end| dot(normal, sub(end, triangle[0])));

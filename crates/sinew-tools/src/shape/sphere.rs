@@ -13,7 +13,7 @@ pub(super) fn nearest(point: [f64; 3], radius: f64, otherwise: [f64; 3]) -> Near
     }
 }
 
-/// Where a point outside enters.
+/// Contact at which a point outside enters.
 pub(super) fn first_contact(from: [f64; 3], motion: [f64; 3], radius: f64) -> Option<Touch> {
     let share = entry(from, motion, radius)?;
     let (_, normal) = length_and_direction(add(from, scaled(motion, share)), [0.0, 0.0, 1.0]);

@@ -1,4 +1,4 @@
-//! Where points stand to a surface.
+//! Relations between points and a surface: nearest points and contacts.
 
 /// The point of a surface that is nearest to some point.
 #[derive(Clone, Copy, Debug, PartialEq)]

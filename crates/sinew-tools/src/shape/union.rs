@@ -11,7 +11,7 @@ use crate::vector::length;
 pub struct Part {
     /// The shape.
     pub convex: Convex,
-    /// Where its own frame stands in that of the tool.
+    /// Pose of its own frame in that of the tool.
     pub pose: Pose,
 }
 

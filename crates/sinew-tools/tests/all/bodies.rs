@@ -36,8 +36,8 @@ fn pose(pressed: &Pressed, state: &State, tool: usize) -> Pose {
     pressed.tools.pose(state, Inputs::none(), tool)
 }
 
-/// How far a tool of 50 g on its coupling is from `v/w e^(-z q t) sin(w t)` after its path stopped at the speed v, of the largest offset; along and about, by a method in steps
-/// of `dt` (s).
+/// Deviation of a tool of 50 g on its coupling from `v/w e^(-z q t) sin(w t)`, after its path stopped at the speed v,
+/// relative to the largest offset; along and about, by a method in steps of `dt` (s).
 fn off_the_closed_form((id, options): (&str, &Options), dt: f64) -> [f64; 2] {
     let (stop, end, damping) = (0.05, 0.1, 0.1);
     let body = ToolBody { damping, ..BODY };

@@ -69,7 +69,7 @@ fn a_plate_that_pushes_tissue_inside_out_within_a_step_is_refused_by_the_law() {
     assert!(matches!(refused, StepError::Refused { .. }), "{refused}");
 }
 
-/// What other methods find in short steps, friction included: sweeps end with forces that fit them.
+/// Sweeps end with forces that fit the result of other methods in short steps, friction included.
 #[test]
 fn the_settled_force_of_a_ball_is_that_of_central_difference() {
     let mut cube = Block::of([0.06; 3], [5; 3]).with_mass_damping(40.0);

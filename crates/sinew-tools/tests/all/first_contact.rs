@@ -34,14 +34,14 @@ fn at(from: [f64; 3], to: [f64; 3], share: f64) -> [f64; 3] {
     add(from, scaled(sub(to, from), share))
 }
 
-/// What a march in equal steps finds: the first share at which the point is more than `margin` inside.
+/// First share at which the point is more than `margin` inside, by a march in equal steps.
 fn march(convex: &Convex, from: [f64; 3], to: [f64; 3], margin: f64) -> Option<f64> {
     let shares = (0..=2000).map(|step| f64::from(step) / 2000.0);
     let mut shares = shares.into_iter();
     shares.find(|share| is_inside(convex, at(from, to, *share), margin))
 }
 
-/// What holds of any contact of a point that begins outside.
+/// Checks properties of any contact of a point that begins outside.
 fn is_an_entry(
     convex: &Convex,
     from: [f64; 3],

@@ -54,7 +54,7 @@ impl Cut {
         }
     }
 
-    /// By how much (m) the upper lip of any pair is below the lower one at most.
+    /// Largest depth (m) of the upper node of any pair below the lower one.
     fn overlap(&self, state: &State) -> f64 {
         let height = |cell: u32| state.u[3 * cell as usize + 2];
         let pairs = self.lips.iter();
@@ -62,7 +62,7 @@ impl Cut {
         overlaps.fold(0.0, f64::max)
     }
 
-    /// Whether each cell is above the cut.
+    /// One flag per cell: true if it is above the cut.
     fn is_above(&self) -> Vec<bool> {
         let rests = self.pressed.tools.touched_cells().iter();
         let mut above: Vec<bool> = rests.map(|cell| cell.rest[2] > 0.5 * HEIGHT).collect();

@@ -17,7 +17,7 @@ const SIZES: f64 = 20.0;
 pub(crate) struct Planned {
     pub(crate) method: MethodChoice,
     pub(crate) dt: f64,
-    /// Whether it has to come to the end, as others may that are refused by name.
+    /// True if the run has to reach its end; other runs may be refused by name.
     pub(crate) must_end: bool,
 }
 
@@ -51,7 +51,7 @@ pub(crate) struct Followed {
     pub(crate) track: Vec<Vec<f64>>,
     /// Why it ended before its time.
     pub(crate) refusal: Option<String>,
-    /// Whether the method itself says that the energy grew.
+    /// True if the method itself reports that the energy grew.
     pub(crate) tells_growth: bool,
     /// Elements that are inside out at the end.
     pub(crate) inverted: usize,
@@ -64,7 +64,7 @@ pub(crate) struct Followed {
 }
 
 impl Followed {
-    /// What the run says of itself where it is not right.
+    /// Warning of the run itself about its result, if there is one.
     pub(crate) fn admits(&self) -> Option<String> {
         if self.tells_growth {
             return Some("tells that its energy grew".into());

@@ -20,7 +20,7 @@ use crate::results::Mark;
 /// A hard case of tissue.
 pub(crate) struct LargeCase {
     pub(crate) asked: Asked,
-    /// Whether a quick run leaves it out.
+    /// True if a quick run leaves it out.
     pub(crate) slow: bool,
     pub(crate) check: fn(Asked) -> Result<Mark, HardError>,
 }

@@ -12,7 +12,7 @@ pub(super) const ROUNDING: f64 = 1e-12;
 /// methods tell from on.
 pub(super) const LITTLE: f64 = 0.05;
 
-/// What is asked of a run that comes to its end.
+/// Requirement for a run that reaches its end.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Demand {
     /// The figure in words.
@@ -41,7 +41,7 @@ pub(crate) struct Tally {
     right: usize,
     /// Ends that are told, in words.
     told: Vec<String>,
-    /// What must not be, in words.
+    /// Descriptions of errors that must not occur.
     faults: Vec<String>,
 }
 
@@ -93,7 +93,7 @@ impl Tally {
     }
 }
 
-/// Whether a refusal says where or by what: an element, a node or a method.
+/// True if a refusal names the cause or its place: an element, a node or a method.
 fn is_named(reason: &str) -> bool {
     let names = ["element", "node", "`"];
     names.iter().any(|name| reason.contains(name))

@@ -9,7 +9,7 @@ use crate::report::three;
 /// A ratio of two times with its limit.
 #[derive(Clone, Debug, Serialize)]
 pub struct Guard {
-    /// What is compared.
+    /// Name of the comparison.
     pub name: String,
     /// The ratio, a median of laps in turn.
     pub ratio: f64,
@@ -28,7 +28,7 @@ pub enum Limit {
 }
 
 impl Guard {
-    /// Whether the ratio keeps its limit.
+    /// True if the ratio keeps its limit.
     #[must_use]
     pub fn holds(&self) -> bool {
         match self.limit {

@@ -12,7 +12,7 @@ use crate::kernels::bodies::{KernelBenchError, cube_body};
 use crate::kernels::laps::central_difference;
 use crate::median::median;
 
-/// By how much the best set is faster at least; less, and a kernel was compiled without it.
+/// Smallest speed-up by the best set; if it is less, a kernel was compiled without the set.
 const LEAST: f64 = 1.2;
 
 pub(super) fn guards(quick: bool) -> Result<Vec<Guard>, KernelBenchError> {

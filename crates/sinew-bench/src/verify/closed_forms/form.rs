@@ -12,15 +12,15 @@ pub struct ClosedForm {
     pub case: String,
     /// The law's id, or what else it is about.
     pub law: &'static str,
-    /// What is asked.
+    /// Expected value.
     pub asked: f64,
-    /// What the code gives.
+    /// Computed value.
     pub got: f64,
     /// The error that is allowed, relative to `scale`.
     pub tolerance: f64,
     /// The size of what is asked, or what it is small against where that is 0.
     pub scale: f64,
-    /// Where what is asked comes from.
+    /// Source of the expected value.
     pub source: &'static str,
 }
 
@@ -42,7 +42,7 @@ impl ClosedForm {
         (self.got - self.asked).abs() / self.scale
     }
 
-    /// Whether the error is within its tolerance.
+    /// True if the error is within its tolerance.
     #[must_use]
     pub fn holds(&self) -> bool {
         self.error() <= self.tolerance

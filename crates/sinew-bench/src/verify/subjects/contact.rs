@@ -234,7 +234,8 @@ fn settled_forces() -> Result<Vec<f64>, VerifyError> {
     Ok(vec![worst, expected])
 }
 
-/// How far the change of momentum is from the impulse, that over the momentum before, and the kinetic energy after over that before.
+/// Three ratios for a cube that falls on a plate: error of the change of momentum relative to the impulse, impulse over
+/// the momentum before, and kinetic energy after over that before.
 fn bounce() -> Result<Vec<f64>, VerifyError> {
     let below = Pose::new([0.0, 0.0, -0.003], [0.0; 3]);
     let plate = tool(Convex::Plane, Motion::Held(below), 0.0);
@@ -348,7 +349,8 @@ fn on_an_incline(angle: f64) -> Result<f64, VerifyError> {
     })
 }
 
-/// How deep (m) the deepest node of a slab of one cell is in a ball that passes through where it was, after any step.
+/// Depth (m) of the deepest node of a slab of one cell in a ball that passes through the slab: the largest after any
+/// step.
 fn depth_in_a_fast_ball(speed: f64) -> Result<f64, VerifyError> {
     let ball = Convex::sphere(0.005)?;
     let start = Pose::new([0.0413, 0.0529, 0.02], [0.0; 3]);

@@ -84,7 +84,7 @@ impl Blade {
     }
 }
 
-/// What is left of a body after a full stroke: whether that is two pieces, and the area (m^2) that is told to be uncut.
+/// Result of a full stroke: true if the body is in two pieces, and the area (m^2) reported as uncut.
 fn after_stroke(
     cut: &mut CutModel,
     state: &mut State,

@@ -1,4 +1,4 @@
-//! What a device with force feedback feels of a simulation.
+//! Forces that a device with force feedback receives from a simulation.
 
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -150,7 +150,7 @@ fn cube(
     Ok(ToolSimulation::new(body, method(id, &Options::new())?, dt))
 }
 
-/// What a hand felt.
+/// Forces on a hand.
 #[derive(Default)]
 struct Felt {
     taken_out: f64,

@@ -42,7 +42,7 @@ fn checks() -> Vec<Check> {
     checks
 }
 
-/// What every law has to keep.
+/// Check of the identities that every law must fulfil.
 fn laws_of(id: &'static str) -> Check {
     let figures = [
         ("P beside the slope of psi", Asked::at_most(1e-8)),

@@ -1,4 +1,4 @@
-//! What is guaranteed about the energy of a run, and what was counted.
+//! Guarantees for the energy of a run, and counts of its steps.
 
 use sinew_core::{Fact, StepReport};
 

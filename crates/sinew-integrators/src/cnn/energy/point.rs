@@ -69,7 +69,7 @@ impl Point {
 #[derive(Clone, Copy)]
 pub(super) struct Law<'a> {
     pub(super) law: &'a dyn ElasticLaw,
-    /// Whether it is that of matrices.
+    /// True if the law is that of matrices, so that its energy is quadratic.
     pub(super) is_quadratic: bool,
     pub(super) load: LoadTime<'a>,
     /// Time since the last accepted state (s).
@@ -111,12 +111,12 @@ impl Law<'_> {
         Trial { load, ..self.at(u) }
     }
 
-    /// Whether there is stiffness damping.
+    /// True if there is stiffness damping.
     pub(super) fn is_viscous(&self) -> bool {
         self.law.damping().stiffness != 0.0
     }
 
-    /// Whether anything but the mass-proportional rate damps.
+    /// True if there is damping other than the mass-proportional one.
     pub(super) fn is_damped(&self) -> bool {
         self.is_viscous() || self.law.damping().extra.is_some()
     }

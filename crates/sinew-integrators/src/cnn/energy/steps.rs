@@ -53,7 +53,7 @@ struct Attempt {
 }
 
 impl Attempt {
-    /// Whether its displacement may be taken; not so where what is left is not a number.
+    /// True if its displacement may be accepted; false if the remaining energy is not a number.
     fn has_room(&self) -> bool {
         self.room >= 0.0
     }

@@ -18,7 +18,7 @@ const MOST_DEFLATED: f64 = 64.0;
 /// Displacement over a step from which sweeps set out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum SetOut {
-    /// That of the velocity at its beginning, or none where the law refuses it.
+    /// Displacement by the velocity at the beginning of the step, or zero if the law refuses it.
     Carried,
     /// None.
     Still,
@@ -59,10 +59,10 @@ pub(super) struct Touched {
     inverse: Vec<f64>,
     /// Present where parts may move as rigid bodies.
     coupled: Option<CoupledContact>,
-    /// Whether the metric leaves rigid motions their inertia.
+    /// True if the metric leaves rigid motions their inertia.
     is_deflated: bool,
     pushed: Vec<u32>,
-    /// What contact kept in the last sweep that was taken, or before the step.
+    /// History variables of contact in the last accepted sweep, or before the step.
     kept: Vec<f64>,
     /// Why the law refused the last trial, if it did.
     refused: Option<EvaluationError>,
@@ -323,7 +323,8 @@ impl Touched {
         }
     }
 
-    /// By how much (J) the metric is less than its blocks, for the way from z to a trial and another one.
+    /// Amount (J) by which the metric is less than its blocks, for the displacement from z to the trial and another
+    /// one.
     fn taken_out(&self, descent: &Descent, other: &[f64]) -> f64 {
         match &descent.rigid {
             Some(rigid) if self.is_deflated => rigid.deflation.taken_out(&self.change, other),
@@ -360,7 +361,7 @@ impl Touched {
         }
     }
 
-    /// Whether the potential at the trial is not above the bound there.
+    /// True if the potential at the trial is not above the bound there.
     fn is_below(
         &mut self,
         taken: Taken<'_>,

@@ -20,7 +20,7 @@ impl Memory {
         Self(Some(bytes))
     }
 
-    /// What was set by [`Memory::set_left`]; any amount where nothing was.
+    /// Limit set by [`Memory::set_left`]; unlimited if none was set.
     #[must_use]
     pub fn left() -> Self {
         let set = SET.load(Ordering::Relaxed);
@@ -33,7 +33,7 @@ impl Memory {
         SET.store(bytes.unwrap_or(NOT_SET), Ordering::Relaxed);
     }
 
-    /// Whether a factor of so many bytes may be taken.
+    /// True if a factor of `bytes` bytes may be made.
     #[must_use]
     pub fn holds(self, bytes: u64) -> bool {
         self.check(bytes).is_ok()

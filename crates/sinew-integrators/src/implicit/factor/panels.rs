@@ -2,10 +2,11 @@
 
 use faer::sparse::linalg::cholesky::{SymbolicCholesky, SymbolicCholeskyRaw};
 
-/// Where the columns of a factor L are: adjacent columns with the same rows below them form a panel, a dense matrix, column by column.
+/// Layout of the columns of a factor L: adjacent columns with the same rows below them form a panel, a dense matrix,
+/// column by column.
 ///
-/// A solution reads each number of the factor twice and does two operations with it, so that memory sets its pace: four columns
-/// are read in one pass over the right-hand side.
+/// A solution reads each number of the factor twice and does two operations with it, so that memory bandwidth limits
+/// its speed: four columns are read in one pass over the right-hand side.
 #[derive(Debug)]
 pub(super) struct Panels {
     panels: Vec<Panel>,

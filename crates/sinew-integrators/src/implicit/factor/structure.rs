@@ -1,4 +1,4 @@
-//! What faer is given: structures of matrices, and memory.
+//! Inputs of faer: structures of matrices, and memory.
 
 use faer::dyn_stack::{MemBuffer, StackReq};
 use faer::sparse::FaerError;

@@ -38,7 +38,7 @@ pub(super) struct Basis {
     pub(super) shapes: Vec<f64>,
     /// For each load case, its force on each mode.
     pub(super) forces: Vec<Vec<f64>>,
-    /// Whether they are all the modes there are.
+    /// True if these are all modes of the system.
     pub(super) complete: bool,
     /// Estimated share of the response to the loads that is lost; none for a fixed number of modes.
     pub(super) estimate: Option<f64>,

@@ -1,4 +1,4 @@
-//! What supports in motion do to a body outside the modes.
+//! Response of a body to moving supports outside the modes.
 
 use sinew_cnn::equilibrium;
 use sinew_core::vectors::{add_scaled, dot};
@@ -7,7 +7,7 @@ use sinew_core::{Clock, LinearOperators, Ramp};
 use super::basis::Basis;
 use crate::load_case::LoadCase;
 
-/// What is left of forces, as a share of them, at which a displacement is found.
+/// Relative residual of forces at which a displacement counts as found.
 const FOUND: f64 = 1e-12;
 
 /// Share of a displacement, squared and by mass, that counts as none.
@@ -29,9 +29,9 @@ pub(super) struct Carried {
 #[derive(Debug)]
 struct Course {
     ramp: Ramp,
-    /// What modes lack of g (m), for a factor of 1.
+    /// Part of g outside the modes (m), for a factor of 1.
     by_place: Vec<f64>,
-    /// What they lack of h (m s^2).
+    /// Part of h outside the modes (m s^2).
     by_acceleration: Vec<f64>,
 }
 

@@ -73,7 +73,7 @@ impl LanczosBasis {
         self.image.len()
     }
 
-    /// Whether the basis spans all that the starts can reach.
+    /// True if the basis spans all that the start vectors can reach.
     pub(super) fn exhausted(&self) -> bool {
         self.size() == self.len()
     }

@@ -1,4 +1,4 @@
-//! How far and how long Newton's method goes.
+//! Tolerance and iteration limit of Newton's method.
 
 use sinew_core::{OptionError, OptionValue, Options};
 
@@ -7,7 +7,7 @@ use crate::{OptionDefault, OptionHelp, OptionKind};
 /// Most iterations that can be asked for.
 const MOST: u32 = 1000;
 
-/// How far and how long Newton's method goes on nonlinear systems; linear ones take one solution.
+/// Tolerance and iteration limit of Newton's method on nonlinear systems; linear ones take one solution.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NewtonSettings {
     /// The acceleration that what is left unbalanced would cause, over the largest of those that balance each other: elastic

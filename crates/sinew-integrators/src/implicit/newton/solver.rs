@@ -64,7 +64,7 @@ pub(super) trait Equations {
     /// Size of the forces that balance each other at a point, in the norm by these weights.
     fn forces(&self, point: &Point, weights: &[f64]) -> f64;
 
-    /// Whether a change of x at a point is lost in the rounding of positions.
+    /// True if a change of x at a point is lost in the rounding of positions.
     fn is_rounding(&self, point: &Point, change: &[f64]) -> bool;
 }
 
@@ -111,7 +111,7 @@ fn change(from: &Point, to: &Point, along: &[f64], share: f64) -> (f64, f64) {
     (to.energy - from.energy + others, size)
 }
 
-/// What became of an iteration.
+/// Outcome of an iteration.
 enum Iterated {
     Moved,
     /// The next change is lost in rounding.

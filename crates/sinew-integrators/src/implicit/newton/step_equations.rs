@@ -34,14 +34,14 @@ pub(in crate::implicit) struct Unknown<'e> {
     pub(in crate::implicit) of_old_forces: f64,
     /// Times of the loads at both ends of the step.
     pub(in crate::implicit) loads: [LoadTime<'e>; 2],
-    /// Where stiffness damping acts.
+    /// Displacement at which stiffness damping acts.
     pub(in crate::implicit) viscosity: ViscousPlace<'e>,
 }
 
 /// The displacement at which stiffness damping acts on the velocity of a step's end.
 #[derive(Clone, Copy)]
 pub(in crate::implicit) struct ViscousPlace<'e> {
-    /// Where supports are, and how fast they move.
+    /// Position and velocity of supports.
     pub(in crate::implicit) load: LoadTime<'e>,
     /// The time (s) by which the displacement lies before the end, at that velocity. A velocity that is the way of a step over its time belongs to the middle:
     /// there `sym(F'dF)` is the change of Green's strain, whatever the body turns in a step.

@@ -1,4 +1,4 @@
-//! How far two-step forms and exact motions swing.
+//! Largest amplitudes of two-step recurrences and exact motions.
 
 /// Angle (rad) of the roots below which both count as one.
 const DOUBLE_ROOT: f64 = 1e-9;

@@ -78,9 +78,9 @@ impl Deviations {
 /// Bounds of a polynomial.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Bounds {
-    /// Of `G/dt^2`, from below.
+    /// Lower bound of `G/dt^2`.
     pub(super) least: f64,
-    /// Of `lambda G`, from above.
+    /// Upper bound of `lambda G`.
     pub(super) most: f64,
 }
 

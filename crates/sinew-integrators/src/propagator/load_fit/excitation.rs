@@ -29,7 +29,7 @@ const LOST_PHASE: f64 = 60.0;
 #[derive(Clone, Debug)]
 pub(super) struct Excitation {
     pub(super) modes: Vec<ExcitedMode>,
-    /// Whether loads carry the body away.
+    /// True if loads excite a rigid motion, so that the body drifts away.
     pub(super) drifts: bool,
     /// Products with K that it took to find them.
     pub(super) products: usize,

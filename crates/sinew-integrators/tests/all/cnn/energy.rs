@@ -74,7 +74,7 @@ fn chains() -> impl Strategy<Value = Drawn> {
 }
 
 impl Drawn {
-    /// Of this mass (kg) and stiffness (N/m), where everything is drawn as a share.
+    /// The same chain with this mass (kg) and stiffness (N/m), where all values were drawn as shares.
     fn scaled(mut self, mass: f64, k: f64) -> Self {
         let rate = (k / mass).sqrt();
         self.masses.iter_mut().for_each(|share| *share *= mass);

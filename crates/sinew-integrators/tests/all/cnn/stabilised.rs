@@ -131,7 +131,7 @@ impl Form {
         }
     }
 
-    /// Of a step that has just been taken from the displacement `before`.
+    /// Energy (J) of a step that has just been taken from the displacement `before`.
     fn energy(&self, before: &[f64], after: &State) -> f64 {
         let mean = |(a, b): (&f64, &f64)| 0.5 * (a + b);
         let middle = before.iter().zip(&after.u).map(mean);
@@ -344,8 +344,8 @@ fn just_beyond_the_limit_the_first_step_is_nearly_that_of_central_difference() {
     }
 }
 
-/// Where inertia is not needed for stability none is added: the error is that of central
-/// difference, and smaller where more sweeps centre the damping.
+/// No inertia is added if stability does not need it: the error is that of central difference, and smaller if more
+/// sweeps centre the damping.
 #[test]
 fn within_the_stable_step_of_central_difference_its_error_is_no_larger() {
     let soft = Law::Linear {

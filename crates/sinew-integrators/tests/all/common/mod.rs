@@ -1,4 +1,4 @@
-//! What the tests of the integrators share.
+//! Helpers shared by the tests of the integrators.
 
 #![allow(
     clippy::unwrap_used,
@@ -92,7 +92,7 @@ pub(crate) fn watch(
     (state, report)
 }
 
-/// Whether a run ended because displacements grew without bound.
+/// True if a run ended because displacements grew without bound.
 pub(crate) fn diverged(report: &RunReport) -> bool {
     matches!(report.outcome, Outcome::Diverged { .. })
 }

@@ -86,7 +86,7 @@ fn a_sliver_costs_neither_step_nor_accuracy() {
     }
 }
 
-/// What would forbid the step through stiffness-proportional damping is in the patch too.
+/// The patch also contains the part whose stiffness-proportional damping would limit the step.
 #[test]
 fn a_sliver_under_stiffness_damping() {
     let damping = Rayleigh {

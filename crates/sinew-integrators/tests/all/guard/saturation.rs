@@ -269,7 +269,7 @@ fn paper_cube_under(pressure: f64) -> Model {
     Model::build(&mesh, &problem(springs(0.0), mass_damping(80.0), traction)).unwrap()
 }
 
-/// How a second went.
+/// Result of a run of one second.
 #[derive(Debug)]
 struct Second {
     /// The largest displacement (m); infinite where it passed a hundred times the size of the body.
@@ -688,8 +688,8 @@ fn cube_and_turned(r: &[[f64; 3]; 3]) -> (Model, Model) {
     (model(&mesh, traction), model(&other, turned(r, traction)))
 }
 
-/// How far the motion of a turned copy of the cube is from the turned motion, over its size, and
-/// the share of saturated pairs.
+/// Relative difference between the motion of a turned copy of the cube and the turned motion, and the share of
+/// saturated pairs.
 fn difference_when_turned(id: &str, options: &Options, dt: f64, r: &[[f64; 3]; 3]) -> (f64, f64) {
     let (model, other) = cube_and_turned(r);
     let motion = |model: &Model| {

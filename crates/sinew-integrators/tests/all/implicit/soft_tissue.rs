@@ -56,7 +56,7 @@ fn release(mesh: &TetMesh) -> (Model, State) {
     (model, state)
 }
 
-/// How near the motion is to the exact one is in the verification.
+/// The accuracy of this motion is tested in the verification; this test counts iterations.
 #[test]
 fn a_push_by_a_quarter_takes_two_iterations_a_step() {
     let model = push(&cube());

@@ -85,7 +85,7 @@ fn compliance(t: f64) -> f64 {
     (1.0 - SHARE * f64::exp(-left * t / TIME)) / (YOUNGS_MODULUS * left)
 }
 
-/// What still swings and what mass damping holds back is less than a per cent, as is the square of the strain.
+/// Remaining vibration, the effect of mass damping and the square of the strain are each below one per cent.
 #[test]
 fn a_bar_under_a_constant_load_creeps_as_the_standard_linear_solid() {
     let mesh = bar();

@@ -1,4 +1,4 @@
-//! What single precision is refused for.
+//! Systems and options for which single precision is refused.
 
 use crate::common::cube::{cube, mass_damping, scene};
 use crate::common::{build, plain, sliver};

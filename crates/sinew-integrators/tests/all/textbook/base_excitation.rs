@@ -16,7 +16,7 @@ use sinew_mesh::TetMesh;
 const EDGE: f64 = 0.1;
 const DURATION: f64 = 0.4;
 
-/// How far the base moves in all (m).
+/// Total displacement of the base (m).
 const WAY: f64 = 0.003;
 
 /// One tetrahedron whose base moves along z and whose tip is free along z: one degree of freedom.

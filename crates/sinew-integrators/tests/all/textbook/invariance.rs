@@ -1,5 +1,5 @@
-//! What must not matter, and what must by a known factor: units, numbering, the order of a
-//! tetrahedron's vertices, modulus and density.
+//! Invariance of results under changes of units, numbering and the order of a tetrahedron's vertices, and their scaling
+//! with modulus and density.
 
 use proptest::prelude::*;
 use sinew_cnn::{Saturation, Templates};
@@ -18,7 +18,7 @@ fn flat(rows: &Dense) -> Vec<f64> {
     rows.concat()
 }
 
-/// How a body is set in motion and followed.
+/// Initial motion of a body, and the steps in which it is followed.
 #[derive(Clone, Copy)]
 struct Motion {
     /// The largest first displacement; velocities are such that a step goes as far.

@@ -1,5 +1,4 @@
-//! What each method costs and how far off it is, on the paper's scene and on a lightly damped cube
-//! of half its size, to 3 %.
+//! Cost and error of each method, on the paper's scene and on a lightly damped cube of half its size, to 3 %.
 
 use std::sync::OnceLock;
 

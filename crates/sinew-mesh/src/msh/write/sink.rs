@@ -14,7 +14,7 @@ pub enum MshEncoding {
 pub(super) struct Sink<W> {
     to: W,
     encoding: MshEncoding,
-    /// Whether, in text, the row has a number already.
+    /// True if, in text, the row has a number already.
     is_inside_row: bool,
 }
 

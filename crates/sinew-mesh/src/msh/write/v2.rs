@@ -54,7 +54,7 @@ struct Row {
     at: CellIndex,
     tag: u64,
     physical: i32,
-    /// Whether the cell stands in the file already, with another group.
+    /// True if the cell is in the file already, with another group.
     is_copy: bool,
 }
 

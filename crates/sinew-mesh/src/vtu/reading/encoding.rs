@@ -5,7 +5,7 @@ use crate::reading::cursor::quoted;
 use crate::reading::fault::Fault;
 use crate::unstructured::{ByteOrder, Scalar};
 
-/// What a file says about all of its arrays.
+/// Properties that a file states for all of its arrays.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Encoding {
     pub(super) order: ByteOrder,

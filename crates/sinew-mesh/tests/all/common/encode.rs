@@ -21,7 +21,7 @@ pub(crate) struct Layout {
 }
 
 impl Layout {
-    /// Whether each element has its groups in its own row, and consecutive elements of one type are one block.
+    /// True if each element has its groups in its own row, and consecutive elements of one type are one block.
     pub(crate) fn has_groups_in_rows(self) -> bool {
         matches!(self.version, "1" | "2.2")
     }

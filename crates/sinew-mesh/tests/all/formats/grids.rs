@@ -1,4 +1,4 @@
-//! What both of VTK's formats share: types of cells, pieces, numbers that are no values.
+//! Features common to both VTK formats: cell types, pieces, numbers that are not values.
 
 use super::{cell_data, read, refusal, rows};
 use sinew_mesh::MeshFormat::Vtu;

@@ -570,7 +570,7 @@ fn a_bare_4_is_settled_by_the_data() {
     assert_same_mesh(&TWO_REGIONS_41.replace("4.1 0 8", "4 0 8"), TWO_REGIONS_41);
 }
 
-/// As SOFA's meshes have it.
+/// Meshes of SOFA give the version on the line of the section.
 #[test]
 fn a_version_on_the_line_of_the_section_is_read() {
     for (file, version) in [(TWICE_22, "2.2 0 8"), (TWO_REGIONS_41, "4.1 0 8")] {

@@ -1,4 +1,4 @@
-//! What the reference and the schema say, held against what the decoder does.
+//! Comparison of the reference and the schema with the behaviour of the decoder.
 
 mod misfits;
 mod options;

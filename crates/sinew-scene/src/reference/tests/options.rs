@@ -1,4 +1,4 @@
-//! What is said of the options of integrators.
+//! Comparison of the help of integrators' options with their behaviour.
 
 use sinew_core::{Run, State, simulate};
 use sinew_integrators::{OptionDefault, OptionKind};

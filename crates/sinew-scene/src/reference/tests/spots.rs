@@ -55,7 +55,7 @@ impl Spot {
         self.table.keys.iter().map(|key| key.describe())
     }
 
-    /// Whether a key goes with the others that are given.
+    /// True if a key's conditions hold with the other keys that are given.
     pub(super) fn lets(&self, key: &KeyDescription) -> bool {
         let entries = self.entries();
         key.conditions.iter().all(|condition| match condition.goes {

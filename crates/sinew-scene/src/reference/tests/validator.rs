@@ -3,7 +3,7 @@
 use regex_lite::Regex;
 use serde_json::{Map, Value};
 
-/// Whether a value meets a schema; `root` has the definitions.
+/// True if a value meets a schema; `root` has the definitions.
 pub(super) fn meets(root: &Value, schema: &Value, value: &Value) -> bool {
     let rules = match schema {
         Value::Bool(always) => return *always,

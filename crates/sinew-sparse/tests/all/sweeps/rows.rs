@@ -189,7 +189,7 @@ impl<T: Precision> Case<T> {
         ROWS as usize + self.layers
     }
 
-    /// What a vector begins with at a cell, rounded as the kernel rounds it.
+    /// Initial value of a vector at a cell, rounded as the kernel rounds it.
     pub(crate) fn value(&self, field: usize, layer: usize, cell: usize) -> f64 {
         let number = scattered(31 * (field + 1) + 17 * layer + 1009 * cell);
         let mass = 1.25 + scattered(cell);
@@ -297,7 +297,7 @@ impl<T: Precision> Case<T> {
         bits
     }
 
-    /// Whether all vectors are 0 where no cell is.
+    /// True if all vectors are 0 at positions without a cell.
     pub(crate) fn is_zero_elsewhere(&self, fields: &mut Fields<T>) -> bool {
         let mut layers =
             (0..self.fields()).flat_map(|field| (0..self.layers).map(move |layer| (field, layer)));

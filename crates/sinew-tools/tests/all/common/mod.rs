@@ -58,7 +58,7 @@ pub(crate) fn shapes() -> impl Strategy<Value = Convex> {
     prop_oneof![6 => bounded_shapes(), 1 => Just(Convex::Plane)]
 }
 
-/// Whether a point is well inside, by the definition of the shape.
+/// True if a point is inside by at least `margin`, by the definition of the shape.
 pub(crate) fn is_inside(convex: &Convex, point: [f64; 3], margin: f64) -> bool {
     let [x, y, z] = point;
     match *convex {
