@@ -176,7 +176,7 @@ mod tests {
 
     use super::*;
     use crate::command::Command;
-    use crate::session::World;
+    use crate::world::World;
 
     const SPRING: &str = "[oscillator]\nmass = 0.1\nstiffness = 100.0\ndamping = 1.0\nvelocity = -5.0\n\
         [run]\nduration = 1.0\nintegrator = \"central-difference\"\ndt = 0.01\n";

@@ -468,7 +468,7 @@ fn a_grasp_outlives_a_cut() {
         assert!(top > 9, "{top}");
         assert_eq!((report.contacts, report.seized), (top, 9));
         let whole = load(folder.path(), &bar(&jaw, EXPLICIT), "");
-        let tools = std::sync::Arc::clone(whole.model().tools().unwrap());
+        let tools = Arc::clone(whole.model().tools().unwrap());
         let other = end_of(whole);
         let theirs = tools.report(&other, 0);
         assert!((report.work / theirs.work - 1.0).abs() < 0.5);
