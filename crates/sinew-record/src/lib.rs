@@ -22,13 +22,15 @@
 //! ```
 //! use sinew_record::{Ended, Request, RunFolder};
 //! use sinew_scene::{Scene, SceneSource};
+//! use sinew_world::World;
 //!
 //! let text = "[oscillator]\nmass = 0.1\nstiffness = 100.0\ndamping = 0.1\nvelocity = 1.0\n[run]\nduration = 1.0\n\
 //!             integrator = \"newmark\"\ndt = 0.01\n";
 //! let simulation = Scene::parse(SceneSource::new("spring.toml", text))?.build()?;
 //! let place = tempfile::tempdir()?;
 //! let folder = RunFolder::create(&place.path().join("spring"), &simulation, &Request::default())?;
-//! let end = folder.run(&simulation, &mut *simulation.integrator()?, &mut ())?;
+//! let integrator = simulation.integrator()?;
+//! let end = folder.run(&mut World::following(simulation, integrator)?, &mut ())?;
 //! assert_eq!(end.ended, Ended::Finished);
 //! assert!(place.path().join("spring/energy.csv").exists());
 //! # Ok::<(), Box<dyn std::error::Error>>(())

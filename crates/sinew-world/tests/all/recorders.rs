@@ -131,7 +131,7 @@ fn a_motion_in_parts_is_one_motion() {
 fn a_recorder_follows_the_body_through_its_cuts() {
     let text = "[mesh]\ncube = { cells = 2, edge = 0.02 }\n[[region]]\ndensity = 1000.0\nmodel = \"linear\"\n\
                 youngs_modulus = 3500.0\npoissons_ratio = 0.3\n[[fixed]]\ngroup = \"bottom\"\n[[tool]]\nname = \"knife\"\n\
-                shape = { capsule = { length = 0.04, radius = 0.001 } }\nstart = [-0.001, 0.01, 0.0107]\n\
+                shape = { blade = { length = 0.04 } }\nstart = [-0.001, 0.01, 0.0107]\n\
                 rotation = [1.5707963267948966, 0.0, 0.0]\nvelocity = [1.0, 0.0, 0.0]\n[cutting]\ntool = \"knife\"\n\
                 [run]\nduration = 0.03\nintegrator = \"central-difference\"\ndt = 2e-4\n";
     let mut world = following(build(text));
