@@ -50,4 +50,4 @@ pub use published::{DeviceMotion, Published, Simulated};
 pub use rigid_wall::RigidWall;
 pub use software_device::SoftwareDevice;
 pub use stiffness::{Carried, Carry, LocalStiffness};
-pub use tool_simulation::{Body, ToolSimulation, ToolStepError};
+pub use tool_simulation::{ToolSimulation, ToolStepError};

@@ -424,8 +424,11 @@ impl World {
         }
     }
 
-    /// The place of a tool by its name.
-    fn tool(&self, name: &str) -> Result<usize, CommandError> {
+    /// The number of a tool by its name.
+    ///
+    /// # Errors
+    /// [`CommandError::NoTool`].
+    pub fn tool(&self, name: &str) -> Result<usize, CommandError> {
         let tools = self.simulation.model().tools();
         let names = || {
             tools

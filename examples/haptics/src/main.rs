@@ -3,8 +3,8 @@
 //! [`SoftwareDevice`] stands in for a device: a handle of 100 g in a hand that goes up and down. A real one takes its place by an
 //! implementation of [`Device`] with its position and its force; all else stays as it is here:
 //!
-//! 1. The tool is a body of its own on a virtual coupling ([`ToolBody`]), whose other end is steered ([`Steering`]) by the device.
-//! 2. [`ToolSimulation`] takes the steps, and finds how stiff the tissue at the tool is.
+//! 1. The tool of the scene is a body of its own on a virtual coupling, whose other end the device moves.
+//! 2. [`ToolSimulation`] steps the [`World`], and finds how stiff the tissue at the tool is.
 //! 3. [`real_time::run`] has both run in a thread each, and says how regular the ticks were.
 //!
 //! ```sh
@@ -14,14 +14,10 @@
 use std::error::Error;
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;
-use std::sync::Arc;
 
-use sinew_core::{Inputs, Options};
-use sinew_fem::{Element, Fixed, FromMesh, Law, Model, Problem, Rayleigh, Region, Tissue};
-use sinew_haptics::{Body, Coupling, Device, SoftwareDevice, ToolSimulation, real_time};
-use sinew_integrators::build;
-use sinew_mesh::structured::{Split, block};
-use sinew_tools::{Convex, Motion, Pose, Shape, Steering, Tool, ToolBody, Tools, TouchedCell};
+use sinew_haptics::{Coupling, Device, SoftwareDevice, ToolSimulation, real_time};
+use sinew_scene::{Scene, SceneSource};
+use sinew_world::World;
 
 /// Edge of the cube and radius of the ball (m).
 const EDGE: f64 = 0.06;
@@ -38,9 +34,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         [0.5 * EDGE, 0.5 * EDGE, z]
     });
     let coupling = Coupling::of(400.0, &device.limits());
-    let body = tissue(coupling, device.position())?;
-    let method = build("cnn-stabilised", &Options::new())?;
-    let simulation = ToolSimulation::new(body, method, STEP);
+    let world = tissue(coupling, device.position())?;
+    let simulation = ToolSimulation::new(world, "ball")?;
 
     let (mut tick, mut peak) = (0, 0.0_f64);
     println!("  t [s]   tool [mm above the tissue]   force [N]");
@@ -79,66 +74,37 @@ fn main() -> Result<(), Box<dyn Error>> {
 }
 
 /// A cube that is held at the bottom, under a ball of 50 g on a coupling.
-fn tissue(coupling: Coupling, start: [f64; 3]) -> Result<Body, Box<dyn Error>> {
-    let mesh = block([6; 3], [EDGE; 3], Split::Kuhn)?;
-    let problem = Problem {
-        regions: vec![Region {
-            group: None,
-            density: 1060.0, // kg/m3
-            law: Law::Linear {
-                youngs_modulus: 3500.0, // Pa
-                poissons_ratio: 0.3,
-            },
-            element: Element::P1,
-            tissue: Tissue::default(),
-            from_mesh: FromMesh::default(),
-        }],
-        damping: Rayleigh {
-            mass: 20.0,
-            stiffness: 0.0,
-        },
-        fixed: vec![Fixed {
-            on: "bottom".into(),
-            axes: [true; 3],
-        }],
-        ..Problem::default()
-    };
-    let model = Model::build(&mesh, &problem)?;
-    let held = model.pinned().as_chunks::<3>().0;
-    let cells = (0..).zip(model.nodes()).zip(held);
-    let cells = cells.map(|((cell, node), held)| TouchedCell {
-        cell,
-        rest: mesh.points[*node as usize],
-        free: held.map(|held| !held),
-    });
-    let cells: Vec<TouchedCell> = cells.collect();
-
-    let mut inputs = Inputs::new();
-    let steering = Steering::new(&mut inputs);
-    let at_start = Motion::Held(Pose::new(start, [0.0; 3]));
+fn tissue(coupling: Coupling, start: [f64; 3]) -> Result<World, Box<dyn Error>> {
     let mass = 0.05;
-    let ball = Tool {
-        name: "ball".to_owned(),
-        shape: Shape::of(Convex::sphere(RADIUS)?),
-        motion: Motion::Steered(Box::new(at_start), steering),
-        friction: 0.0,
-        cells: (0..cells.len() as u32).collect(),
-        triangles: Vec::new(),
-        grasp: None,
-        body: Some(ToolBody {
-            mass,
-            inertia: [0.4 * mass * RADIUS * RADIUS; 3],
-            coupling: coupling.stiffness,
-            rotational_coupling: 0.5,
-            damping: 0.8,
-        }),
-    };
-    let tools = Arc::new(Tools::new(vec![ball], cells)?);
-    Ok(Body {
-        system: Arc::new(model.with_contact(tools.clone())),
-        tools,
-        tool: 0,
-        steering,
-        inputs,
-    })
+    let inertia = [0.4 * mass * RADIUS * RADIUS; 3];
+    let text = format!(
+        r#"
+[mesh]
+cube = {{ cells = 6, edge = {EDGE} }}
+[[region]]
+density = 1060.0
+model = "linear"
+youngs_modulus = 3500.0
+poissons_ratio = 0.3
+[damping]
+mass = 20.0
+[[fixed]]
+group = "bottom"
+[[tool]]
+name = "ball"
+shape = {{ sphere = {{ radius = {RADIUS} }} }}
+start = {start:?}
+hold = true
+body = {{ mass = {mass}, inertia = {inertia:?}, coupling = {}, rotational_coupling = 0.5, damping = 0.8 }}
+[run]
+duration = 10.0
+integrator = "cnn-stabilised"
+dt = {STEP}
+"#,
+        coupling.stiffness
+    );
+    Ok(World::new(Scene::parse(SceneSource::new(
+        "tissue.toml",
+        text,
+    ))?)?)
 }

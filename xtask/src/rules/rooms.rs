@@ -22,7 +22,10 @@ pub(super) const ROOMS: &[(&str, &[&str])] = &[
     ("sinew-draw", &[]),
     ("sinew-tools", &["sinew-core", "sinew-sparse"]),
     ("sinew-cutting", &["sinew-mesh"]),
-    ("sinew-haptics", &["sinew-core", "sinew-tools"]),
+    (
+        "sinew-haptics",
+        &["sinew-core", "sinew-tools", "sinew-world"],
+    ),
     ("sinew-testkit", &["sinew-core", "sinew-fem", "sinew-mesh"]),
     (
         "sinew-integrators",

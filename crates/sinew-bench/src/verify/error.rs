@@ -11,8 +11,10 @@ use sinew_integrators::{FactorError, StaticError};
 use sinew_measure::{CaseError, MeasureError};
 use sinew_mesh::structured::StructuredError;
 use sinew_mesh::{FindGroupError, MeshFileError, TetMeshError};
+use sinew_scene::SceneError;
 use sinew_sparse::AssemblyError;
 use sinew_tools::{ShapeError, TableError, ToolsError};
+use sinew_world::WorldError;
 
 use crate::tissue::TissueError;
 
@@ -68,6 +70,12 @@ pub enum VerifyError {
     /// A coupling that a device cannot render.
     #[error(transparent)]
     Coupling(#[from] CouplingError),
+    /// A scene.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// A world.
+    #[error(transparent)]
+    World(#[from] WorldError),
     /// A step of a tool in the hand of a device.
     #[error(transparent)]
     ToolStep(#[from] ToolStepError),

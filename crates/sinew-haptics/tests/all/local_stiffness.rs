@@ -4,9 +4,9 @@ use crate::common::tissue;
 
 use std::f64::consts::PI;
 
-use sinew_fem::Law;
-use sinew_haptics::{Body, DeviceMotion, Published, Simulated, ToolSimulation};
-use sinew_tools::Convex;
+use sinew_haptics::{DeviceMotion, Published, Simulated, ToolSimulation};
+
+const LINEAR: &str = "model = \"linear\"";
 
 /// Step (s).
 const DT: f64 = 2e-3;
@@ -24,22 +24,25 @@ struct Press {
 }
 
 impl Press {
-    fn plate(law: Law) -> Self {
-        let rotation_vector = [PI, 0.0, 0.0];
-        let body = tissue::under(Convex::Plane, rotation_vector, law);
-        Self::new(body, [0.03, 0.03, tissue::EDGE], rotation_vector)
+    fn plate(law: &str) -> Self {
+        Self::new(
+            "{ plane = {} }",
+            [0.03, 0.03, tissue::EDGE],
+            [PI, 0.0, 0.0],
+            law,
+        )
     }
 
     /// A ball of 40 mm, which touches several nodes.
-    fn ball(law: Law) -> Self {
-        let radius = 0.04;
-        let body = tissue::under(Convex::sphere(radius).unwrap(), [0.0; 3], law);
-        Self::new(body, [0.03, 0.03, tissue::EDGE + radius], [0.0; 3])
+    fn ball(law: &str) -> Self {
+        let top = [0.03, 0.03, tissue::EDGE + 0.04];
+        Self::new("{ sphere = { radius = 0.04 } }", top, [0.0; 3], law)
     }
 
-    fn new(body: Body, top: [f64; 3], rotation_vector: [f64; 3]) -> Self {
+    fn new(shape: &str, top: [f64; 3], rotation_vector: [f64; 3], law: &str) -> Self {
+        let method = ("symplectic-euler", DT);
         Self {
-            simulation: tissue::simulation(body, "symplectic-euler", DT),
+            simulation: tissue::under(shape, rotation_vector, law, method),
             top,
             rotation_vector,
             depth: -1e-3,
@@ -80,8 +83,8 @@ impl Press {
 #[test]
 fn under_a_plate_it_is_that_of_the_block() {
     for (law, by, tolerance) in [
-        (tissue::linear(), 1e-3, 1e-6),
-        (tissue::neo_hookean(), 1e-4, 1e-4),
+        (LINEAR, 1e-3, 1e-6),
+        ("model = \"neo-hookean\"", 1e-4, 1e-4),
     ] {
         let (expected, published) = Press::plate(law).at(0.006, by);
         let found = published.stiffness[2][2];
@@ -96,9 +99,9 @@ fn under_a_plate_it_is_that_of_the_block() {
 #[test]
 fn few_iterations_come_from_above() {
     let mut last = f64::INFINITY;
-    let settled = Press::ball(tissue::linear()).to(0.006, ENOUGH).stiffness[2][2];
+    let settled = Press::ball(LINEAR).to(0.006, ENOUGH).stiffness[2][2];
     for iterations in [0, 1, 3, 10, 30] {
-        let published = Press::ball(tissue::linear()).to(0.006, iterations);
+        let published = Press::ball(LINEAR).to(0.006, iterations);
         let found = published.stiffness[2][2];
         assert!(found <= last * (1.0 + 1e-9), "{iterations}: {found} {last}");
         assert!(found >= settled * (1.0 - 1e-6), "{found} {settled}");

@@ -1,22 +1,17 @@
 //! Forces that a device with force feedback receives from a simulation.
 
 use std::f64::consts::TAU;
-use std::sync::Arc;
 
-use sinew_core::{Inputs, Options};
-use sinew_fem::hyperelastic::Parameters;
-use sinew_fem::{Element, Law, Problem, Rayleigh};
 use sinew_haptics::{
-    Body, Coupling, Device, DeviceMotion, Lockstep, Published, RigidWall, Simulated,
-    SoftwareDevice, ToolSimulation,
+    Coupling, Device, DeviceMotion, Lockstep, Published, RigidWall, Simulated, SoftwareDevice,
+    ToolSimulation,
 };
-use sinew_mesh::structured::{Split, block};
-use sinew_tools::{Convex, Motion, Pose, Steering, Tool, ToolBody};
+use sinew_scene::{Scene, SceneSource};
+use sinew_world::World;
 
-use crate::verify::bodies::{YOUNGS_MODULUS, body, held};
+use crate::verify::bodies::{DENSITY, YOUNGS_MODULUS};
 use crate::verify::check::{Asked, Check, Source};
 use crate::verify::error::VerifyError;
-use crate::verify::pressed::{Pressed, method, tool};
 use crate::verify::subject::Subject;
 
 pub(super) const SUBJECT: Subject = Subject {
@@ -80,7 +75,7 @@ fn checks() -> Vec<Check> {
             move |_| lag(hertz),
         ));
     }
-    for (name, law) in [("linear", linear()), ("neo-Hookean", neo_hookean())] {
+    for (name, law) in [("linear", "linear"), ("neo-Hookean", "neo-hookean")] {
         checks.push(Check::one(
             format!("ball of 40 mm, 6 mm deep in a cube of {name} tissue"),
             "local stiffness over the slope of the settled force",
@@ -92,62 +87,29 @@ fn checks() -> Vec<Check> {
     checks
 }
 
-fn linear() -> Law {
-    Law::Linear {
-        youngs_modulus: YOUNGS_MODULUS,
-        poissons_ratio: 0.3,
-    }
-}
-
-fn neo_hookean() -> Law {
-    Law::Hyperelastic {
-        id: "neo-hookean",
-        parameters: Parameters::new(YOUNGS_MODULUS, 0.3),
-    }
-}
-
-/// A cube under a ball of this radius (m), which is a body on a coupling where there is one.
+/// A cube of a law under a ball of this radius (m) that begins at a place (m), as a body on a coupling if there is one.
 fn cube(
-    law: Law,
-    radius: f64,
+    model: &str,
+    (radius, start): (f64, [f64; 3]),
     coupling: Option<Coupling>,
-    (id, dt): (&str, f64),
+    (method, dt): (&str, f64),
 ) -> Result<ToolSimulation, VerifyError> {
-    let mesh = block([6; 3], [EDGE; 3], Split::Kuhn)?;
-    let mut problem = Problem {
-        damping: Rayleigh {
-            mass: 20.0,
-            stiffness: 0.0,
-        },
-        fixed: vec![held("bottom", [true; 3])],
-        ..body(YOUNGS_MODULUS, 0.3, Element::P1)
-    };
-    for region in &mut problem.regions {
-        region.law = law;
-    }
-    let mut inputs = Inputs::new();
-    let steering = Steering::new(&mut inputs);
-    let above = Motion::Held(Pose::new([0.0, 0.0, 1.0], [0.0; 3]));
-    let motion = Motion::Steered(Box::new(above), steering);
-    let ball = Tool {
-        body: coupling.map(|coupling| ToolBody {
-            mass: MASS,
-            inertia: [0.4 * MASS * radius * radius; 3],
-            coupling: coupling.stiffness,
-            rotational_coupling: 0.5,
-            damping: 0.8,
-        }),
-        ..tool(Convex::sphere(radius)?, motion, 0.0)
-    };
-    let Pressed { model, tools, .. } = Pressed::new(&mesh, &problem, ball, |_| true)?;
-    let body = Body {
-        system: Arc::new(model),
-        tools,
-        tool: 0,
-        steering,
-        inputs,
-    };
-    Ok(ToolSimulation::new(body, method(id, &Options::new())?, dt))
+    let inertia = [0.4 * MASS * radius * radius; 3];
+    let body = coupling.map(|coupling| {
+        let stiffness = coupling.stiffness;
+        format!(
+            "body = {{ mass = {MASS}, inertia = {inertia:?}, coupling = {stiffness}, rotational_coupling = 0.5, damping = 0.8 }}\n"
+        )
+    });
+    let text = format!(
+        "[mesh]\ncube = {{ cells = 6, edge = {EDGE}, split = \"kuhn\" }}\n[[region]]\ndensity = {DENSITY:?}\nmodel = \"{model}\"\n\
+         youngs_modulus = {YOUNGS_MODULUS}\npoissons_ratio = 0.3\n[damping]\nmass = 20.0\n[[fixed]]\ngroup = \"bottom\"\n\
+         [[tool]]\nname = \"ball\"\nshape = {{ sphere = {{ radius = {radius} }} }}\nstart = {start:?}\nhold = true\n{}\
+         [run]\nduration = 100.0\nintegrator = \"{method}\"\ndt = {dt}\n",
+        body.unwrap_or_default()
+    );
+    let scene = Scene::parse(SceneSource::new("cube.toml", text))?;
+    Ok(ToolSimulation::new(World::new(scene)?, "ball")?)
 }
 
 /// Forces on a hand.
@@ -185,7 +147,12 @@ fn felt(is_rigid: bool, hertz: f64, stiffness: f64, seconds: u32) -> Result<Felt
     } else {
         "cnn-stabilised"
     };
-    let cube = cube(linear(), radius, Some(coupling), (id, 1.0 / hertz))?;
+    let cube = cube(
+        "linear",
+        (radius, device.position()),
+        Some(coupling),
+        (id, 1.0 / hertz),
+    )?;
     in_lockstep(cube, coupling, &mut device, seconds)
 }
 
@@ -229,10 +196,11 @@ fn lag(hertz: f64) -> Result<f64, VerifyError> {
     Ok(best.unwrap_or_default() as f64 / ticks)
 }
 
-fn stiffness_over_slope(law: Law) -> Result<f64, VerifyError> {
+fn stiffness_over_slope(law: &str) -> Result<f64, VerifyError> {
     let (radius, dt) = (0.04, 2e-3);
-    let mut cube = cube(law, radius, None, ("symplectic-euler", dt))?;
     let mut from = -1e-3;
+    let start = [0.5 * EDGE, 0.5 * EDGE, EDGE + radius - from];
+    let mut cube = cube(law, (radius, start), None, ("symplectic-euler", dt))?;
     let mut pressed = |depth: f64| -> Result<Published, VerifyError> {
         let steps = 1000;
         let mut at = |step: u32, iterations: usize| {
