@@ -95,6 +95,7 @@ pub(super) const ROOMS: &[(&str, &[&str])] = &[
             "sinew-integrators",
             "sinew-scene",
             "sinew-measure",
+            "sinew-world",
             "sinew-draw",
         ],
     ),
@@ -129,6 +130,7 @@ pub(super) const ROOMS: &[(&str, &[&str])] = &[
             "sinew-mesh",
             "sinew-record",
             "sinew-scene",
+            "sinew-world",
         ],
     ),
 ];
