@@ -1,4 +1,4 @@
-//! What a run of a scene leaves behind: fields, tables, summary, report, and a checkpoint from which it goes on.
+//! Results of a run of a scene: fields, tables, summary, report, and a checkpoint from which it can be continued.
 //!
 //! A run writes into a folder of its own ([`RunFolder`]). Everything in it is a function of the scene and the number of
 //! steps taken, except for one object in `summary.json` about the computer; so a run that was killed and went on leaves
@@ -6,7 +6,7 @@
 //!
 //! | file | content |
 //! | --- | --- |
-//! | `fields.pvd`, `fields/` | displacement, velocity, strain, stress, forces and pressures of tools at the instants that `[output]` asks for |
+//! | `fields.pvd`, `fields/` | displacement, velocity, strain, stress, forces and pressures of tools at instants of `[output]` |
 //! | `surface.vtu` | the boundary at rest, with the groups of triangles on it |
 //! | `probes.csv` | displacements (m) of the probes |
 //! | `energy.csv` | the balance of energy (J) |

@@ -17,9 +17,9 @@ use crate::run_folder::{Beginning, End, RunFolder, cause, cut_record};
 use crate::stepping::Stepping;
 
 impl RunFolder {
-    /// Repeats a session by its log and leaves in a folder at `path` what a run leaves there: the motion since the last reset,
-    /// whose steps are counted from there on. Where steps change their length, rows and frames come after as many steps as fit
-    /// the mean length.
+    /// Repeats a session by its log and leaves in a folder at `path` what a run leaves there: the motion since the last
+    /// reset, whose steps are counted from there on. Where steps change their length, rows and frames come after as
+    /// many steps as fit the mean length.
     ///
     /// # Errors
     /// [`RecordRunError`] for a folder that may not be used, and for a session that takes another course than its log.
