@@ -6,7 +6,7 @@
 //!
 //! | file | content |
 //! | --- | --- |
-//! | `fields.pvd`, `fields/` | displacement, velocity, strain, stress, forces and pressures of tools at instants of `[output]` |
+//! | `fields.pvd`, `fields/` | displacement, velocity, strain, stress, tool forces and pressures, as `[output]` asks |
 //! | `surface.vtu` | the boundary at rest, with the groups of triangles on it |
 //! | `probes.csv` | displacements (m) of the probes |
 //! | `energy.csv` | the balance of energy (J) |
