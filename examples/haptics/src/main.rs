@@ -1,9 +1,10 @@
-//! A hand that presses a cube of tissue and feels it, by the clock: 1 kHz for the device, 100 Hz for the simulation.
+//! A hand that presses a cube of tissue and feels it, in real time: 1 kHz for the device, 100 Hz for the simulation.
 //!
-//! [`SoftwareDevice`] stands in for a device: a handle of 100 g in a hand that goes up and down. A real one takes its place by an
-//! implementation of [`Device`] with its position and its force; all else stays as it is here:
+//! [`SoftwareDevice`] replaces a device: a handle of 100 g in a hand that moves up and down. To use a real device,
+//! implement [`Device`] with its position and its force; the rest of this program stays the same:
 //!
-//! 1. The tool is a body of its own on a virtual coupling ([`ToolBody`]), whose other end is steered ([`Steering`]) by the device.
+//! 1. The tool is a body of its own on a virtual coupling ([`ToolBody`]), whose other end is steered ([`Steering`]) by
+//!    the device.
 //! 2. [`ToolSimulation`] takes the steps, and finds how stiff the tissue at the tool is.
 //! 3. [`real_time::run`] has both run in a thread each, and says how regular the ticks were.
 //!
