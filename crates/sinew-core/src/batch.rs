@@ -298,8 +298,9 @@ impl<'a> Batch<'a> {
     }
 
     /// Resolves contact on a trial state, before [`Batch::end_step`]; `pushed` receives the changed cells, and `cells`
-    /// provides the cells that the contact asks for. Velocities change displacements by at most `saturation` (m/s)
-    /// times the step; the state keeps an acceleration that changes by the change of velocity over `kick` (s).
+    /// provides the cells that the contact asks for. Components of velocities move displacements at a speed of at most
+    /// `saturation` (m/s). `kick` is the time (s) by which a change of velocity is divided to correct the acceleration
+    /// in the state.
     pub fn meet(
         &self,
         (state, cells): (&mut State, &mut dyn ShowCells),

@@ -1,4 +1,4 @@
-//! A simulated device, for tests of what real ones would feel.
+//! A simulated device, for tests in place of real ones.
 
 use std::fmt::{self, Debug};
 
@@ -10,8 +10,8 @@ use crate::device::Device;
 /// Substeps of a tick in which its motion is computed.
 const PARTS: usize = 10;
 
-/// A handle with a mass, drawn by the spring and the damper of a hand that follows a path, with encoders and forces
-/// that are held for a tick.
+/// A handle with a mass, pulled by the spring and the damper of a hand that follows a path, with an encoder and with
+/// forces that are held for a tick.
 ///
 /// Time passes with [`Device::render`], by one tick: simulated time, in which nothing depends on a clock.
 pub struct SoftwareDevice {

@@ -75,7 +75,7 @@ impl Sums {
 }
 
 /// Motion at the last row: time (s), displacement (m) and velocity (m/s) of the degrees of freedom, and the
-/// acceleration (m/s^2) where what the method takes is known.
+/// acceleration (m/s^2) if the energy that the method takes is known.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct LastRow {
     pub(crate) t: f64,
@@ -88,7 +88,7 @@ pub(crate) struct LastRow {
     pub(crate) internal: Vec<f64>,
 }
 
-/// Sums up, from row to row, what loads, moved supports and damping do.
+/// Sums up, from row to row, the work of loads and moved supports and the dissipation by damping.
 ///
 /// Between two rows forces are taken as the mean of both ends and velocities as `du/dt`, so that for the mean
 /// acceleration method (Newmark with gamma 1/2 and beta 1/4), with a row for every step, only rounding remains, jumps
@@ -515,7 +515,7 @@ impl Balance {
         work([&forces, &forces], [&last.u, &here.u])
     }
 
-    /// Loads (N) of the degrees of freedom at two rows, whose mean has the impulse of the loads between them, jumps
+    /// Loads (N) on the degrees of freedom at two rows. Their mean has the impulse of the loads between the rows, jumps
     /// included.
     fn loads_at_ends(
         &self,
@@ -624,8 +624,8 @@ impl Balance {
                 .sum::<f64>())
     }
 
-    /// Energy (J) that damping takes between two rows: `w' D w dt` with `w = du/dt`, and D half way between them; of a
-    /// body with moved parts, whose nodes have these displacements (m) then, with all its nodes.
+    /// Energy (J) that damping takes between two rows: `w' D w dt` with `w = du/dt`, and D half way between them. For a
+    /// body with moved parts all nodes count, with these displacements (m).
     fn damped(
         &self,
         [last, here]: [&LastRow; 2],

@@ -2,7 +2,7 @@
 
 /// Watches a run: shows how far it is, and may end it.
 pub trait Companion {
-    /// True if the run shall stop, with a checkpoint where it writes any; called several times a second.
+    /// True if the run shall stop, with a checkpoint if it writes any; called several times a second.
     fn is_interrupted(&self) -> bool {
         false
     }

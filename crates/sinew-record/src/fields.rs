@@ -248,8 +248,8 @@ impl Fields {
 }
 
 /// The largest step (s) at which each tetrahedron alone, or with those over which its strain is averaged, with the
-/// masses of its nodes would be stable under central difference: 2/omega with its largest frequency. That of the body
-/// is below all of them (Rayleigh's principle); at small strain.
+/// masses of its nodes, is stable under central difference: 2/omega with its largest frequency. The largest frequency
+/// of the body is below all of them (Rayleigh's principle); at small strain.
 fn step_limits(model: &Model) -> Vec<f32> {
     let omegas = model.tet_omegas_squared();
     let limits = omegas

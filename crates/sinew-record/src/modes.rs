@@ -51,8 +51,8 @@ impl NaturalMode {
     }
 }
 
-/// The modes of the lowest frequencies of a simulation, multiple ones and those that no load excites included. Those of
-/// a body of large deformation are of small motions about rest, so fast that no stress relaxes.
+/// The modes of the lowest frequencies of a simulation, multiple ones and those that no load excites included. For a
+/// body in large deformation they are those of small motions about rest, so fast that no stress relaxes.
 ///
 /// # Errors
 /// [`ModesError`] for a system without matrices, a matrix without a factor and an iteration that does not converge.
@@ -269,8 +269,8 @@ mod tests {
         }
     }
 
-    /// A cube that is alike in x and y has its swings in pairs, and a free body six motions without a spring: neither
-    /// is seen by its loads alone.
+    /// A cube with equal x and y directions has pairs of bending modes, and a free body six rigid-body modes: its loads
+    /// alone excite neither.
     #[test]
     fn multiple_modes_and_rigid_motions_are_found() {
         let cube = |support: &str| {
@@ -331,8 +331,8 @@ mod tests {
         assert_eq!(check_modes_folder(&out, &[]).unwrap(), Tenant::Earlier);
     }
 
-    /// All hyperelastic laws are the linear one about rest (Bonet and Wood, Nonlinear Continuum Mechanics, section
-    /// 6.6).
+    /// All hyperelastic laws agree with the linear one about rest (Bonet and Wood, Nonlinear Continuum Mechanics,
+    /// section 6.6).
     #[test]
     fn large_deformation_has_the_modes_of_the_linear_law_about_rest() {
         let modes = |model: &str| {

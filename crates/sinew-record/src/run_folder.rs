@@ -87,7 +87,7 @@ pub(crate) struct End<'a> {
 
 impl RunFolder {
     /// Checks, before long work, that a run of this scene, or a replay of its session by a file with the log, may write
-    /// into a folder at `path`. Changes nothing except for what [`RunFolder::settle`] completes.
+    /// into a folder at `path`. Changes nothing except that it completes a finished run, see [`RunFolder::settle`].
     ///
     /// # Errors
     /// [`RecordRunError::Output`] for a folder that holds other things, the inputs included, or cannot be written, and
@@ -141,8 +141,8 @@ impl RunFolder {
     /// `.old`, until the new ones are complete.
     ///
     /// # Errors
-    /// [`RecordRunError`] for a folder that may not be used, as [`RunFolder::check`] says, for more frames than a
-    /// folder holds, and for inputs that cannot be read any more.
+    /// [`RecordRunError`] for a folder that may not be used, see [`RunFolder::check`], for more frames than a folder
+    /// holds, and for inputs that cannot be read any more.
     pub fn create(
         path: &Path,
         simulation: &Simulation,

@@ -21,7 +21,7 @@ pub(crate) struct Received {
 }
 
 impl Received {
-    /// The mean force (N) and torque (N m) on a tool from the last row to a time (s); of the first row those of the
+    /// The mean force (N) and torque (N m) on a tool from the last row to a time (s); for the first row those of the
     /// step before.
     fn means(&self, t: f64, index: usize, report: &ToolReport) -> [[f64; 3]; 2] {
         let span = t - self.t;

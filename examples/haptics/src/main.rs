@@ -5,8 +5,8 @@
 //!
 //! 1. The tool is a body of its own on a virtual coupling ([`ToolBody`]), whose other end is steered ([`Steering`]) by
 //!    the device.
-//! 2. [`ToolSimulation`] takes the steps, and finds how stiff the tissue at the tool is.
-//! 3. [`real_time::run`] has both run in a thread each, and says how regular the ticks were.
+//! 2. [`ToolSimulation`] takes the steps, and computes the stiffness of the tissue at the tool.
+//! 3. [`real_time::run`] runs both in a thread each, and reports the jitter of the ticks.
 //!
 //! ```sh
 //! cargo run --release

@@ -8,7 +8,7 @@ use sinew_haptics::{Coupling, Device, Lockstep, Published, RigidWall, Simulated,
 /// Energy (J) that a device may take out: that of no path, with a margin for motion that its encoder does not see.
 const MOST: f64 = 1e-6;
 
-/// Forces and energy that a hand felt in a run.
+/// Peak force (N) and energy (J) in a run, from the view of the hand.
 #[derive(Debug, Default)]
 struct Felt {
     peak: f64,

@@ -138,8 +138,8 @@ fn supports_in_motion_do_work() {
     }
 }
 
-/// A body that is carried by its base and gains speed evenly: the base pushes with the mass of all of it, its own
-/// nodes' too, whether its way is a formula or a table, and however far the rows are apart.
+/// A body that its base accelerates uniformly: the force on the base is that of the whole mass, including the base's
+/// own nodes, whether the motion is smooth or a table, and for any spacing of the rows.
 #[test]
 fn a_base_pushes_with_the_whole_mass_whatever_its_way() {
     let (acceleration, end) = (4.0, 0.4);
@@ -172,8 +172,8 @@ fn a_base_pushes_with_the_whole_mass_whatever_its_way() {
     }
 }
 
-/// A body that its base carries without strain feels none of its damping, and neither does the base, whatever a method
-/// sets beside whose speed.
+/// A body that its base moves without strain has no damping force, and neither has the base, whatever times a method
+/// uses for the velocities of cells and of supports.
 #[test]
 fn damping_adds_nothing_to_the_push_of_a_base() {
     let (acceleration, edge, end) = (4.0, 0.02, 0.08_f64);
@@ -236,8 +236,8 @@ fn dashpots_at_moved_supports_are_in_it() {
     assert!(fine < 2e-3 && coarse > 3.0 * fine, "{coarse} {fine}");
 }
 
-/// Stiffness damping of tissue in large deformation, between a part that is moved and the rest: what damping took never
-/// falls, and with it the balance closes.
+/// Stiffness damping of tissue in large deformation, between a part that is moved and the rest: the dissipated energy
+/// never falls, and with it the balance closes.
 #[test]
 fn stiffness_damping_at_moved_supports_of_soft_tissue_is_in_it() {
     let text = |law: &str, dt: &str| {
@@ -330,8 +330,8 @@ fn what_implicit_euler_takes_from_an_oscillator_is_told_with_its_share() {
     }
 }
 
-/// With rows for every step or only some, on linear bodies and others, whatever puts the energy in; and the method that
-/// it names keeps it.
+/// Warnings are given with rows for every step or only some, on linear bodies and others, whatever supplies the energy;
+/// and the method that they name conserves it.
 #[test]
 fn methods_that_take_much_energy_are_told_with_one_that_keeps_it() {
     let body = |model: &str, more: &str, run: &str| {
@@ -436,8 +436,8 @@ fn energy_that_tissue_takes_is_not_told_as_the_methods() {
     }
 }
 
-/// A row comes after several parts of a step, with the motion between them: the balance closes as with a fixed step
-/// that is as long as parts at rest.
+/// A row comes after several substeps, with the motion between them: the balance closes as with a fixed step that is as
+/// long as substeps at rest.
 #[test]
 fn steps_that_are_taken_again_leave_what_a_fixed_step_leaves_of_the_work_of_supports() {
     for (ratio, rise) in [(0.45, 0.05), (0.3, 0.06)] {
@@ -566,8 +566,8 @@ fn energy_that_a_clamp_takes_is_told_with_its_share() {
     }
 }
 
-/// Newmark's method promises the energy of linear tissue only. The warnings name a method that keeps it here, which
-/// does.
+/// Newmark's method conserves the energy of linear tissue only. The warnings name a method that conserves it here, as
+/// is checked.
 #[test]
 fn energy_that_newmark_loses_or_makes_on_thrown_soft_tissue_is_told_with_a_remedy() {
     for (dt, words) in [

@@ -211,8 +211,8 @@ fn supports_that_share_nodes_share_no_force() {
     }
 }
 
-/// A step far too long turns tetrahedra inside out, of which the law has no force and so no acceleration. No row of the
-/// energy is due there, which would be refused before.
+/// A step far too long inverts tetrahedra, for which the law has no force and so no acceleration. No row of the energy
+/// is due there, which would be refused before.
 #[test]
 fn a_run_ends_by_name_where_a_frame_asks_for_an_acceleration_that_the_law_refuses() {
     let place = tempfile::tempdir().unwrap();

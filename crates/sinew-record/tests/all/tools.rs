@@ -13,8 +13,8 @@ use crate::tables_and_fields::singles;
 /// Young's modulus times area over length (N/m) of the bar.
 const STIFFNESS: f64 = 3000.0 * 0.1 * 0.1 / 0.1;
 
-/// The height (m) of the plate: down by 5 mm within 0.1 s, with a soft beginning and end, so that little is lost where
-/// nodes meet it.
+/// The height (m) of the plate: down by 5 mm within 0.1 s, with a smooth beginning and end, so that little energy is
+/// lost when nodes meet it.
 fn height(t: f64) -> f64 {
     let share = (t / 0.1).min(1.0);
     0.1 - 0.005 * (std::f64::consts::FRAC_PI_2 * share).sin().powi(2)
@@ -99,8 +99,8 @@ fn the_work_of_tools_is_part_of_the_balance() {
     );
 }
 
-/// The pressure under the plate is E d/L wherever it touches, at edges and corners too, and its forces sum up to what
-/// the plate feels.
+/// The pressure under the plate is E d/L wherever it touches, at edges and corners too, and its forces sum up to the
+/// force on the plate.
 #[test]
 fn fields_have_forces_and_pressures_of_contact() {
     let place = tempfile::tempdir().unwrap();

@@ -27,7 +27,7 @@ pub struct CutTotals {
     pub changes: u64,
     /// Work (J) of the blade: the toughness times the area.
     pub blade_work: f64,
-    /// Defects of strokes whose blade was lifted, which their sheets do not show.
+    /// Defects of lifted strokes that their sheets do not show.
     pub rough: RoughStrokes,
 }
 
@@ -170,12 +170,12 @@ impl Cutter {
         next.map_or(f64::INFINITY, |next| next.max(t))
     }
 
-    /// Cuts along the paths of the scene's blade and of the tool that removes, up to `end` (s), in the configuration of
-    /// the state, before the step that ends then. If the body changes, returns the scene to continue with, and
-    /// transfers the state to it.
+    /// Cuts along the path of the scene's blade up to `end` (s), and removes the tetrahedra that are inside the
+    /// removing tool then, in the configuration of the state, before the step that ends then. If the body changes,
+    /// returns the scene to continue with, and transfers the state to it.
     ///
     /// # Errors
-    /// [`CuttingError`]; the run cannot go on then.
+    /// [`CuttingError`]; the run cannot continue then.
     pub fn follow(
         &mut self,
         simulation: &Simulation,
@@ -236,7 +236,7 @@ impl Cutter {
     /// state. If the body changes, returns the scene to continue with, and transfers the state to it.
     ///
     /// # Errors
-    /// [`CuttingError`]; the run cannot go on then.
+    /// [`CuttingError`]; the run cannot continue then.
     pub fn cut(
         &mut self,
         poses: [[[f64; 3]; 2]; 2],

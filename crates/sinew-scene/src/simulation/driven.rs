@@ -111,7 +111,7 @@ impl Simulation {
     /// courses over time. Its matrices are shared; no force changes until a factor is given.
     ///
     /// # Errors
-    /// [`DrivenLoadError`] where the system refuses its loads.
+    /// [`DrivenLoadError`] if the system refuses its loads.
     pub fn with_driven_loads(&self, channels: &[Channel]) -> Result<Self, DrivenLoadError> {
         let driven = |place: usize| channels.get(place).map(|channel| Ramp::Input(*channel));
         let model = match &self.model {

@@ -229,8 +229,8 @@ fn read<T>(
 }
 
 impl Rows {
-    /// The rows of a text with one of these sets of columns, up to `at_once` of which may have one time, or the line
-    /// that is at fault.
+    /// The rows of a text with one of these sets of columns, or the line with a fault. Up to `at_once` rows may have
+    /// the same time.
     fn parse(
         text: &str,
         accepted: &[&'static [&'static str]],

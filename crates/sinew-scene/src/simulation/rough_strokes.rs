@@ -28,7 +28,7 @@ impl RoughStrokes {
         }
     }
 
-    /// Sum of two, of which this was the first.
+    /// Sum of these defects and later ones.
     pub(super) fn and(self, other: Self) -> Self {
         fn both<T>(one: Option<T>, other: Option<T>, and: impl FnOnce(T, T) -> T) -> Option<T> {
             match (one, other) {

@@ -101,7 +101,7 @@ impl Log {
         &self.entries[..last.map_or(0, |last| last + 1)]
     }
 
-    /// Replaces its commands by these, of a session that has taken as many steps as came before the last of them.
+    /// Replaces its commands by these, of a session that has taken as many steps as there are before the last of them.
     pub(crate) fn begin_with(&mut self, entries: &[Entry]) {
         self.entries = entries.to_vec();
         self.steps = entries.last().map_or(0, |last| last.step);
