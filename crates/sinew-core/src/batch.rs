@@ -7,23 +7,23 @@ use crate::{
     ShowCells, State, StepError, StepReport, SynchroniseError, System, Trial, VelocityTime, Watch,
 };
 
-/// Steps to take, and the work around each: sizes are checked, the clock is kept, a guard
-/// clamps, the system is told of the result, degrees of freedom are watched, divergence is found.
+/// Steps to take, and the work around each: checks sizes, keeps the clock, applies a guard, passes the result to the
+/// system, samples degrees of freedom, detects divergence.
 pub struct Batch<'a> {
     system: &'a dyn System,
     inputs: &'a Inputs,
-    /// Length of a step, or of a part of one (s).
+    /// Length of a step, or of a substep (s).
     dt: f64,
     /// Identity of the loads.
     loads: Option<[Revision; 2]>,
     steps: usize,
     taken: usize,
-    /// Parts of a step, and those taken of the step under way.
+    /// Substeps of a step, and those taken of the current step.
     parts: u32,
     parts_taken: u32,
-    /// Parts of the step under way after which it pauses.
+    /// Substeps of the current step after which it pauses.
     pause: u32,
-    /// Work of the step under way.
+    /// Work of the current step.
     step_work: StepReport,
     work: StepReport,
     divergence_limit: f64,
@@ -37,7 +37,7 @@ pub struct Batch<'a> {
 pub struct Step<'a> {
     /// The system.
     pub system: &'a dyn System,
-    /// Inputs from outside.
+    /// External inputs.
     pub inputs: &'a Inputs,
     /// Length (s).
     pub dt: f64,
@@ -50,7 +50,7 @@ pub struct Stepped {
     pub work: StepReport,
     /// The velocity's time.
     pub velocity: VelocityTime,
-    /// Where damping takes velocities.
+    /// Instants at which damping takes velocities.
     pub damped: DampedAt,
     /// Kind of acceleration that the state keeps.
     pub acceleration: Acceleration,
@@ -227,13 +227,13 @@ impl<'a> Batch<'a> {
         self.system
     }
 
-    /// Inputs from outside.
+    /// External inputs.
     #[must_use]
     pub fn inputs(&self) -> &'a Inputs {
         self.inputs
     }
 
-    /// Length of a step, or of the current part (s).
+    /// Length of a step, or of the current substep (s).
     #[must_use]
     pub fn dt(&self) -> f64 {
         self.dt
@@ -251,20 +251,19 @@ impl<'a> Batch<'a> {
         self.work
     }
 
-    /// The degree of freedom that went farthest beyond the limit, where one did: the last step taken
-    /// is the first after which it had.
+    /// The degree of freedom farthest beyond the limit, if any: the last step taken is the first after which it was.
     #[must_use]
     pub fn diverged(&self) -> Option<usize> {
         self.diverged
     }
 
-    /// Whether there are steps left to take.
+    /// True if there are steps left to take.
     #[must_use]
     pub fn goes_on(&self) -> bool {
         self.taken < self.steps && self.parts_taken < self.pause && self.diverged.is_none()
     }
 
-    /// Whether the next step, or part of one, is the last, or the last before a pause.
+    /// True if the next step or substep is the last, or the last before a pause.
     #[must_use]
     pub fn is_last(&self) -> bool {
         let next = self.parts_taken + 1;
@@ -281,7 +280,7 @@ impl<'a> Batch<'a> {
         }
     }
 
-    /// Limits of the guard that clamps the steps, where there is one.
+    /// Limits of the guard that clamps the steps, if there is one.
     #[must_use]
     pub fn guarding(&self) -> Option<&Guarding> {
         self.guarding.as_ref()
@@ -292,14 +291,16 @@ impl<'a> Batch<'a> {
         self.work += work;
     }
 
-    /// What touches the system.
+    /// Contact of the system, if any.
     #[must_use]
     pub fn contact(&self) -> Option<&'a dyn Contact> {
         self.system.contact()
     }
 
-    /// Lets what touches the system push cells of a trial state, before [`Batch::end_step`]; `pushed` are the cells that it
-    /// did push afterwards, and `cells` shows it those that it asks for. Velocities move displacements up to a size of `saturation` (m/s); `kick` is the time (s) by which a change of velocity is divided in an acceleration that the state keeps.
+    /// Resolves contact on a trial state, before [`Batch::end_step`]; `pushed` receives the changed cells, and `cells`
+    /// provides the cells that the contact asks for. Components of velocities move displacements at a speed of at most
+    /// `saturation` (m/s). `kick` is the time (s) by which a change of velocity is divided to correct the acceleration
+    /// in the state.
     pub fn meet(
         &self,
         (state, cells): (&mut State, &mut dyn ShowCells),
@@ -343,8 +344,8 @@ impl<'a> Batch<'a> {
         Ok(())
     }
 
-    /// Takes all steps by calling `step` for each: it moves u, v and all else that the state keeps, and
-    /// leaves the clock to the batch.
+    /// Takes all steps by calling `step` for each: it advances u, v and all else in the state, and leaves the clock to
+    /// the batch.
     ///
     /// # Errors
     /// The error of the first step that fails.
@@ -367,8 +368,7 @@ impl<'a> Batch<'a> {
         Ok(())
     }
 
-    /// Ends a step, or a part of one, that moved the state and was clamped where it had to be.
-    /// [`Batch::each`] does so itself.
+    /// Ends a step or substep that has advanced the state and clamped it if necessary. [`Batch::each`] does so itself.
     ///
     /// # Errors
     /// [`StepError::Refused`] when the system does not accept the state, which is then that of the end of the step.
@@ -380,12 +380,12 @@ impl<'a> Batch<'a> {
         Ok(())
     }
 
-    /// Ends a step, or a part of one, of a machine that holds u and v in a form of its own and knows that
-    /// no displacement is beyond [`Batch::divergence_limit`]. The state needs to hold what
-    /// [`Batch::watched`] names, and all of u and v only where [`Batch::looks_at_steps`].
+    /// Ends a step or substep of a machine that holds u and v in its own form and knows that no displacement is beyond
+    /// [`Batch::divergence_limit`]. The state must hold the values that [`Batch::watched`] names, and all of u and v
+    /// only if [`Batch::looks_at_steps`].
     ///
     /// # Errors
-    /// As [`Batch::end_step`].
+    /// The errors of [`Batch::end_step`].
     pub fn end_step_within_limit(
         &mut self,
         state: &mut State,
@@ -397,7 +397,7 @@ impl<'a> Batch<'a> {
         Ok(())
     }
 
-    /// Ends a part, on the clock and for the system; whether it ends a step.
+    /// Ends a substep, on the clock and for the system; returns true if it ends a step.
     fn end_part(&mut self, state: &mut State, stepped: Stepped) -> Result<bool, StepError> {
         state.end_step(self.dt, stepped.velocity, stepped.acceleration);
         state.damped = stepped.damped;
@@ -426,7 +426,7 @@ impl<'a> Batch<'a> {
         }
     }
 
-    /// Whether the system looks at the state after every step, or part of one.
+    /// True if the system reads the state after every step or substep.
     #[must_use]
     pub fn looks_at_steps(&self) -> bool {
         self.system.looks_at_steps()
@@ -444,14 +444,13 @@ impl<'a> Batch<'a> {
         self.divergence_limit
     }
 
-    /// Steps, or parts of them, that are left.
+    /// Substeps that are left.
     #[must_use]
     pub fn parts_left(&self) -> usize {
         (self.steps - self.taken) * self.parts as usize - self.parts_taken as usize
     }
 
-    /// Runs `body` on the next `parts` steps, or parts of them, at most, as far as they are whole
-    /// steps.
+    /// Runs `body` on at most the next `parts` substeps, rounded down to whole steps.
     pub fn at_most<R>(&mut self, parts: usize, body: impl FnOnce(&mut Self) -> R) -> R {
         let steps = self.steps;
         self.steps = steps.min(self.taken + parts / self.parts as usize);
@@ -460,7 +459,7 @@ impl<'a> Batch<'a> {
         result
     }
 
-    /// Runs `body` on steps that are each cut into `parts` equal parts.
+    /// Runs `body` on steps that are each divided into `parts` equal substeps.
     pub fn in_parts<R>(&mut self, parts: u32, body: impl FnOnce(&mut Self) -> R) -> R {
         let whole = (self.dt, self.parts, self.pause);
         self.dt /= f64::from(parts);
@@ -473,8 +472,9 @@ impl<'a> Batch<'a> {
         result
     }
 
-    /// Runs `body` on the next step, or part of one, alone, cut into equal parts of its own: their number may be another for the next one.
-    /// It is a trial until [`Batch::keep_trial`] or [`Batch::discard_trial`] is called: it counts as work, but is not taken and not sampled.
+    /// Runs `body` on the next step or substep alone, divided into equal substeps of its own: their number may differ
+    /// for the next one. It is a trial until [`Batch::keep_trial`] or [`Batch::discard_trial`] is called: its work
+    /// counts, but it is not taken and not sampled.
     pub fn try_in_parts<R>(&mut self, parts: u32, body: impl FnOnce(&mut Self) -> R) -> R {
         let whole = (
             self.dt,

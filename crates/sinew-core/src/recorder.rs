@@ -2,10 +2,10 @@
 
 use crate::{EvaluationError, Inputs, LoadTime, State, StepReport, System, Trial};
 
-/// Whether a simulation goes on.
+/// Decision whether a simulation continues.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
-    /// The run goes on.
+    /// The run continues.
     Continue,
     /// The run ends here.
     Stop,

@@ -125,7 +125,7 @@ pub struct RecordedSteps<'r, R: Recorder + ?Sized> {
     watch: Watch,
     steps: usize,
     work: StepReport,
-    /// Whether the recorder has seen the present state.
+    /// True if the recorder has seen the present state.
     is_shown: bool,
 }
 

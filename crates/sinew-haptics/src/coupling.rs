@@ -1,4 +1,4 @@
-//! The virtual coupling between a device and a tool, and what the device allows of it.
+//! The virtual coupling between a device and a tool, and the limits that the device sets.
 
 /// A spring and a damper between a device and the tool of a simulation: the only thing that the device feels.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -9,12 +9,12 @@ pub struct Coupling {
     pub damping: f64,
 }
 
-/// What a device is able to do.
+/// Capabilities of a device.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DeviceLimits {
-    /// Time (s) for which a force is held: one tick.
+    /// Time (s) for which a force is held constant: one tick.
     pub tick: f64,
-    /// Damping (N s/m) of the device itself, with the hand that holds it at least.
+    /// Lower bound of the damping (N s/m) of the device together with the hand that holds it.
     pub damping: f64,
     /// The smallest displacement (m) that it measures.
     pub resolution: f64,
@@ -34,10 +34,10 @@ pub enum CouplingError {
         /// Its value.
         value: f64,
     },
-    /// A damping that is none.
+    /// An invalid damping.
     #[error("damping of the coupling = {0} N s/m: expected a finite number, 0 or above")]
     Damping(f64),
-    /// A coupling that would make energy in each tick.
+    /// A coupling that would create energy in each tick.
     #[error(
         "a coupling of {stiffness} N/m and {damping} N s/m on a device with {device} N s/m and ticks of {tick} s: its forces would be held so long that they drive \
          the device; it has to be below {largest} N/m with this damping"
@@ -57,7 +57,8 @@ pub enum CouplingError {
 }
 
 impl Coupling {
-    /// A coupling of this stiffness k (N/m) with the damping `B = k T`: twice what holding the spring's force for a tick T takes from it.
+    /// A coupling of this stiffness k (N/m) with the damping `B = k T`: twice the damping that is lost by holding the
+    /// spring's force for a tick T.
     ///
     /// [`Self::check`] accepts it for `k < 2 b/(3 T)`, where b is the damping of the device.
     #[must_use]
@@ -68,10 +69,11 @@ impl Coupling {
         }
     }
 
-    /// The stiffness (N/m) below which a device renders a coupling of this damping, `2 (b - |B|)/T`; 0 where it renders none. The bound itself is refused.
+    /// The stiffness (N/m) below which a device renders a coupling of this damping, `2 (b - |B|)/T`; 0 if it renders
+    /// none. The bound itself is refused.
     ///
-    /// From `b > k T/2 + |B|`: Colgate and Schenkel, Passivity of a class of sampled-data systems (Journal of Robotic Systems 14, 1997), for a spring k and a
-    /// damper B whose force is held for T on a device with the damping b.
+    /// From `b > k T/2 + |B|`: Colgate and Schenkel, Passivity of a class of sampled-data systems (Journal of Robotic
+    /// Systems 14, 1997), for a spring k and a damper B whose force is held for T on a device with the damping b.
     #[must_use]
     pub fn largest_stiffness(&self, device: &DeviceLimits) -> f64 {
         (2.0 * (device.damping - self.damping.abs()) / device.tick).max(0.0)

@@ -1,10 +1,10 @@
-//! Devices that a hand holds.
+//! Devices that a user holds.
 
 use crate::coupling::DeviceLimits;
 
 /// A device with a handle.
 pub trait Device {
-    /// What it is able to do.
+    /// Capabilities of the device.
     fn limits(&self) -> DeviceLimits;
 
     /// Position (m) of its handle, as it measures it.

@@ -6,41 +6,43 @@ use crate::coupling::{Coupling, CouplingError, DeviceLimits};
 use crate::local_model::LocalModel;
 use crate::published::Published;
 
-/// Energy (J) that a device is lent before it has given any: without it no first force could ever be rendered.
+/// Energy (J) that a device is granted before it has supplied any: without it no first force could ever be rendered.
 const LENT: f64 = 5e-7;
 
 /// Energy (J) that is not spent on a device which gives way: from nothing, no force would ever grow again.
 const KEPT: f64 = 0.5 * LENT;
 
-/// Bound of the way of a device in the next tick, over that in the last one.
+/// Largest displacement of a device in the next tick, over that in the last one.
 const MOST_FASTER: f64 = 1.5;
 
-/// Room for what tissue holds beyond its energy as a spring, of which the law of Hertz has 1.2 times as much.
+/// Bound of the energy in the tissue, over its energy as a spring; under the law of Hertz it is 1.2 times as much.
 const TISSUE: f64 = 2.0;
 
-/// The loop that renders forces at the rate of a device from what a slower simulation publishes.
+/// The loop that renders forces at the rate of a device, from the data that a slower simulation publishes.
 ///
-/// It never waits and reads no clock: each tick takes the position of the device and gives the force that is held until the next. Between two steps the tool is where
-/// the last step's tissue, as a spring, and the coupling are in balance. What a new step changes of it comes in steadily, over the time of one step.
+/// It never waits and reads no clock: each tick takes the position of the device and returns the force that is held
+/// until the next. Between two steps the tool is where the tissue of the last step, as a spring, and the coupling are
+/// in equilibrium. Changes by a new step are blended in linearly, over the time of one step.
 ///
-/// The device never gets out more energy than it has put in: the coupling is stretched as far as that energy allows, whatever the simulation says and however
-/// late it comes. This is the passive set-position modulation of Lee and Huang (IEEE Transactions on Robotics 26, 2010) with the work of the held force counted from positions
-/// (Hannaford and Ryu, IEEE Transactions on Robotics and Automation 18, 2002), which is exact at any tick.
+/// The device never receives more energy than it has supplied: the coupling is stretched only as far as that energy
+/// allows, whatever the simulation publishes and however late. This is the passive set-position modulation of Lee and
+/// Huang (IEEE Transactions on Robotics 26, 2010) with the work of the held force computed from positions (Hannaford
+/// and Ryu, IEEE Transactions on Robotics and Automation 18, 2002), which is exact at any tick.
 #[derive(Clone, Debug)]
 pub struct ForceLoop {
     coupling: Coupling,
     device: DeviceLimits,
     model: LocalModel,
-    /// How far (m) the tool was from where a new step put it.
+    /// Distance vector (m) between the rendered tool and the position that a new step gave it.
     offset: Vector,
     /// Ticks that the offset takes to vanish, and those since the last step came.
     blend: [u32; 2],
     /// Position (m) of the device at the last tick, from the first on.
     last: Option<Vector>,
-    /// From the device to the tool (m).
+    /// Vector from the device to the tool (m).
     stretched: Vector,
     force: Vector,
-    /// What the device has put in and may take out (J).
+    /// Energy (J) that the device has supplied and may take out again.
     energy: f64,
     reserve: f64,
     is_limited: bool,
@@ -72,14 +74,14 @@ impl ForceLoop {
         })
     }
 
-    /// Keeps at most this energy (J) beyond what coupling and tissue hold, at first that of a coupling that is stretched by 1 mm: what tissue has dissipated must not
-    /// all come back where a simulation errs.
+    /// Limits the stored energy (J) beyond that in coupling and tissue, at first to that of a coupling stretched by 1
+    /// mm: the energy that tissue has dissipated must not come back if a simulation is wrong.
     #[must_use]
     pub fn with_reserve(self, reserve: f64) -> Self {
         Self { reserve, ..self }
     }
 
-    /// Takes what a step has led to.
+    /// Receives the result of a step.
     pub fn take(&mut self, published: &Published) {
         self.model = LocalModel::of(published);
         let ticks = (published.dt / self.device.tick).round().max(1.0);
@@ -90,7 +92,7 @@ impl ForceLoop {
         }
     }
 
-    /// The force (N) on the device at this position (m), until the next tick; none where the position is not finite.
+    /// The force (N) on the device at this position (m), until the next tick; 0 if the position is not finite.
     pub fn tick(&mut self, position: Vector) -> Vector {
         let Coupling { stiffness, damping } = self.coupling;
         if !position.iter().all(|value| value.is_finite()) {
@@ -125,8 +127,9 @@ impl ForceLoop {
         self.force
     }
 
-    /// The largest force (N) until the next tick, in which the device may move as far along it as 1.5 times its last way (m): what its energy pays for. Where a force
-    /// resists a motion, as much as the damper takes is paid for by the motion itself: so a debt, as after a force that was held for too long, is worked off.
+    /// The largest force (N) until the next tick that the energy allows, if the device moves along it by up to 1.5
+    /// times its last displacement (m). A force that resists a motion may be as large as that of the damper, whose
+    /// energy the motion itself supplies: so a debt, as after a force that was held for too long, is paid back.
     fn affordable(&self, resists: bool, moved: f64) -> f64 {
         let Self { device, energy, .. } = self;
         let way = MOST_FASTER * moved + device.resolution;
@@ -146,7 +149,7 @@ impl ForceLoop {
         self.force
     }
 
-    /// Where the tool is felt to be (m).
+    /// Position (m) of the tool as the user feels it.
     #[must_use]
     pub fn tool(&self) -> [f64; 3] {
         add(self.last.unwrap_or_default(), self.stretched)
@@ -158,7 +161,8 @@ impl ForceLoop {
         self.energy
     }
 
-    /// Whether the last force is less than coupling and tissue ask for, because the device has not put in the energy, or is not strong enough.
+    /// True if the last force is below that of coupling and tissue, because the device has not supplied the energy or
+    /// is not strong enough.
     #[must_use]
     pub fn is_limited(&self) -> bool {
         self.is_limited
@@ -172,7 +176,7 @@ impl ForceLoop {
     }
 }
 
-/// A vector, or as much of it as is no longer than this.
+/// A vector, shortened to this length if it is longer.
 fn shortened(vector: Vector, longest: f64) -> Vector {
     let size = length(vector);
     if size > longest {

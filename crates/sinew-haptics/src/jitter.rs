@@ -1,11 +1,11 @@
-//! Durations, counted.
+//! A histogram of durations.
 
 use std::fmt::{self, Debug};
 
 /// Durations of at least this many microseconds are counted as one.
 const MOST: usize = 20_000;
 
-/// How often durations of each microsecond occurred, in room that does not grow.
+/// A histogram of durations by microsecond, in memory of fixed size.
 #[derive(Clone)]
 pub struct Jitter {
     counts: Vec<u64>,

@@ -1,11 +1,15 @@
-//! Force feedback: a device at 1 kHz feels tissue that is simulated at 100 Hz, and never gets out more energy than it has put in.
+//! Force feedback: a device at 1 kHz feels tissue that is simulated at 100 Hz, and never receives more energy than it
+//! has supplied.
 //!
-//! A device talks to a [`Coupling`] alone, a spring and a damper whose other end is the tool of a simulation. After each step a simulation tells where its tool is, with which force
-//! the tissue pushes it, and how stiff the tissue is there ([`Published`]); a [`ForceLoop`] gives the device a force at each of its ticks from that. Its stiffness is that of slow
-//! displacements ([`LocalStiffness`]), so that between two steps the force follows the hand as the tissue would.
+//! A device is connected only to a [`Coupling`], a spring and a damper whose other end is the tool of a simulation.
+//! After each step a simulation publishes the position of its tool, the force of the tissue on it, and the stiffness of
+//! the tissue there ([`Published`]); from these a [`ForceLoop`] computes the force on the device at each of its ticks.
+//! The stiffness is that against slow displacements ([`LocalStiffness`]), so that between two steps the force follows
+//! the hand as the tissue would.
 //!
-//! [`real_time::run`] has a device and a simulation run in a thread each, by the clock; [`Lockstep`] runs them in one simulated time, for tests. [`ToolSimulation`] is a
-//! body with a tool that the device moves; [`SoftwareDevice`] stands in for a device and the hand that holds it, [`RigidWall`] for what is hardest to render.
+//! [`real_time::run`] runs a device and a simulation in a thread each, by the clock; [`Lockstep`] runs them in one
+//! simulated time, for tests. [`ToolSimulation`] is a body with a tool that the device moves; [`SoftwareDevice`]
+//! replaces a device and the hand that holds it, [`RigidWall`] is the hardest case to render.
 //!
 //! ```
 //! use sinew_haptics::{Coupling, Device, Lockstep, RigidWall, SoftwareDevice};

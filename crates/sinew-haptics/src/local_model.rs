@@ -5,11 +5,12 @@ use sinew_tools::vector::{Vector, add, dot, length, scaled, sub};
 use crate::matrix::{Matrix, solved, times};
 use crate::published::Published;
 
-/// Tissue as a spring at the place where a step left the tool: the force on a tool at y is `f - K (y - y0)`, and none that pulls along f.
+/// Tissue as a spring at the position of the tool after a step: the force on a tool at y is `f - K (y - y0)`, without
+/// tension along f.
 ///
-/// It is the gradient of a convex energy. So the place of a tool without mass between this spring and that of a coupling is where a sum of two convex energies
-/// is least: the tool's place moves by no more than the device does, and what the device feels, the coupling's force there, is no
-/// stiffer than the coupling, however stiff the tissue.
+/// It is the gradient of a convex energy. So the position of a massless tool between this spring and that of a coupling
+/// minimises a sum of two convex energies: the tool moves by no more than the device does, and the force on the device,
+/// that of the coupling, is no stiffer than the coupling, however stiff the tissue.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct LocalModel {
     position: Vector,
@@ -20,7 +21,7 @@ pub(crate) struct LocalModel {
 }
 
 impl LocalModel {
-    /// The tissue as a simulation tells of it.
+    /// The tissue as published by a simulation.
     pub(crate) fn of(published: &Published) -> Self {
         let size = length(published.force);
         let pushes = size > 0.0 && !published.may_pull;
@@ -32,7 +33,7 @@ impl LocalModel {
         }
     }
 
-    /// The place (m) of a tool without mass whose coupling of this stiffness (N/m) leads to a place (m).
+    /// The position (m) of a massless tool whose coupling of this stiffness (N/m) leads to a position (m).
     pub(crate) fn tool(&self, coupling: f64, device: Vector) -> Vector {
         let at = self.balance(coupling, device, &self.stiffness, self.force);
         let Some(normal) = self.normal else {
@@ -42,7 +43,7 @@ impl LocalModel {
         if dot(normal, at_tool) >= 0.0 {
             return at;
         }
-        // The surface is left by as much as takes the force along the normal away.
+        // The contact is released by removing the component of the force along the normal.
         let along = times(&self.stiffness, normal);
         let size = dot(normal, along);
         let mut released = self.stiffness;
@@ -55,7 +56,7 @@ impl LocalModel {
         self.balance(coupling, device, &released, force)
     }
 
-    /// The place (m) at which the forces of tissue and coupling add up to 0.
+    /// The position (m) at which the forces of tissue and coupling add up to 0.
     fn balance(&self, coupling: f64, device: Vector, tissue: &Matrix, force: Vector) -> Vector {
         let mut sum = *tissue;
         for (axis, row) in sum.iter_mut().enumerate() {
@@ -68,7 +69,7 @@ impl LocalModel {
         }
     }
 
-    /// The force (N) on a tool at a place (m).
+    /// The force (N) on a tool at a position (m).
     pub(crate) fn force(&self, at: Vector) -> Vector {
         let force = sub(self.force, times(&self.stiffness, sub(at, self.position)));
         match self.normal {
@@ -81,7 +82,8 @@ impl LocalModel {
         }
     }
 
-    /// The energy (J) that the tissue holds where it pushes back with a force (N), as a spring; infinite where it has no stiffness in that direction.
+    /// The elastic energy (J) of the tissue if it resists with a force (N), as a spring; infinite if it has no
+    /// stiffness in that direction.
     pub(crate) fn energy(&self, force: Vector) -> f64 {
         let squared = dot(force, force);
         if squared == 0.0 {
@@ -127,7 +129,7 @@ mod tests {
     }
 
     proptest! {
-        /// What a convex energy gives: the tool moves by no more than the device, and the force resists.
+        /// Consequences of a convex energy: the tool moves by no more than the device, and the force resists.
         #[test]
         fn the_tool_moves_by_no_more_than_the_device(
             factor in prop::array::uniform3(prop::array::uniform3(-30.0..30.0)),

@@ -6,18 +6,19 @@ use crate::force_loop::ForceLoop;
 use crate::hand::Hand;
 use crate::published::{Published, Simulated};
 
-/// A device and a simulation at their own rates, one after the other: what a run with two threads does when everything is in time, without a clock and with the
-/// same bits each time.
+/// A device and a simulation at their own rates, one after the other: a run with two threads in which everything is in
+/// time, but without a clock and with the same bits each time.
 ///
-/// A step begins with the device where it is then, and its result comes one step later, as if the computer had needed all that time.
+/// A step begins with the current motion of the device, and its result comes one step later, as if the computer had
+/// needed all that time.
 #[derive(Debug)]
 pub struct Lockstep<S> {
     simulation: S,
     forces: ForceLoop,
     hand: Hand,
-    /// What the step under way will lead to.
+    /// Result of the current step, not published yet.
     pending: Option<Published>,
-    /// Ticks until it does.
+    /// Ticks until it is published.
     until: u64,
     ticks_per_step: u64,
 }
@@ -44,15 +45,16 @@ impl<S: Simulated> Lockstep<S> {
         })
     }
 
-    /// Holds the result of the step under way back by this many ticks, as a slow step would.
+    /// Delays the result of the current step by this many ticks, as a slow step would.
     pub fn hold_back(&mut self, ticks: u64) {
         self.until += ticks;
     }
 
-    /// Takes a tick of the device, and what is due of the simulation; what a step has led to, where one has ended.
+    /// Takes a tick of the device, and a step of the simulation if one is due; returns the result of a step, if one has
+    /// ended.
     ///
     /// # Errors
-    /// Where a step cannot be taken.
+    /// If a step cannot be taken.
     pub fn tick(&mut self, device: &mut impl Device) -> Result<Option<Published>, S::Error> {
         let position = device.position();
         self.hand.see(position, device.rotation_vector());

@@ -1,9 +1,9 @@
-//! What a simulation tells the loop of a device after each step.
+//! Data that a simulation publishes for the loop of a device after each step.
 
-/// A tool after a step, and how the tissue at it resists.
+/// A tool after a step, and the resistance of the tissue at it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Published {
-    /// The time (s) of the simulation at which all this holds.
+    /// The time (s) of the simulation at which these data hold.
     pub t: f64,
     /// The length (s) of the step that ended then.
     pub dt: f64,
@@ -21,9 +21,10 @@ pub struct Published {
     pub force: [f64; 3],
     /// Its torque (N m) about the tool's origin.
     pub torque: [f64; 3],
-    /// The force (N) by which the tissue resists a slow displacement of the tool, over that displacement (m): symmetric, without negative eigenvalues.
+    /// The force (N) by which the tissue resists a slow displacement of the tool, over that displacement (m):
+    /// symmetric, without negative eigenvalues.
     pub stiffness: [[f64; 3]; 3],
-    /// Whether the tissue may also pull, as where a tool holds it.
+    /// True if the tissue may also pull, for example because a tool holds it.
     pub may_pull: bool,
 }
 
@@ -78,9 +79,9 @@ pub trait Simulated {
     /// The length (s) of each step.
     fn dt(&self) -> f64;
 
-    /// Takes one step with the device where it is now, and tells of the tool at its end.
+    /// Takes one step with the current motion of the device, and returns the tool at its end.
     ///
     /// # Errors
-    /// Where the step cannot be taken.
+    /// If the step cannot be taken.
     fn step(&mut self, device: &DeviceMotion) -> Result<Published, Self::Error>;
 }

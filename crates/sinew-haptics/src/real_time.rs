@@ -14,7 +14,7 @@ use crate::hand::Hand;
 use crate::jitter::Jitter;
 use crate::published::{DeviceMotion, Published, Simulated};
 
-/// Time before a tick from which it is waited for without sleep: a thread that sleeps is often woken that late.
+/// Time before a tick during which the thread waits without sleep: a thread that sleeps is often woken that late.
 const AWAKE: Duration = Duration::from_micros(150);
 
 /// A run that could not begin, or ended early.
@@ -29,25 +29,26 @@ pub enum RealTimeError<E> {
     Step(E),
 }
 
-/// What a run was like.
+/// Report on a run.
 #[derive(Clone, Debug)]
 pub struct LoopReport {
-    /// By how much (s) ticks began later than they were due.
+    /// Delays (s) of ticks relative to their due times.
     pub jitter: Jitter,
-    /// How long (s) the loop worked in a tick, the device apart.
+    /// Durations (s) of the loop's work in a tick, from reading the device to the force.
     pub work: Jitter,
     /// Number of steps that were published.
     pub steps: u64,
-    /// Number of them that took longer than their own time.
+    /// Number of steps that took longer than their own length.
     pub late_steps: u64,
     /// The most ticks by which a step was late.
     pub most_late: u32,
 }
 
-/// Runs a device in this thread and a simulation in one of its own, until `each` says so, which is told after each tick.
+/// Runs a device in this thread and a simulation in another one, until `each`, which is called after each tick, breaks.
 ///
-/// Neither waits for the other. A simulation that is slower than its steps are long drops time: the loop goes on with what it knows, and gives no more energy than it was
-/// given. No force is left on the device at the end, whatever ended it: a panic of `each`, of the simulation or of the device goes on after that.
+/// Neither waits for the other. A simulation that is slower than real time loses time: the loop continues with the last
+/// data, and returns no more energy than it received. No force is left on the device at the end, whatever the reason; a
+/// panic of `each`, of the simulation or of the device continues after that.
 ///
 /// # Errors
 /// [`RealTimeError`] for a coupling that the device cannot render, and a step that cannot be taken.

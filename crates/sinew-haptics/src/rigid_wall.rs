@@ -1,4 +1,4 @@
-//! A rigid wall as the simplest simulation: what is hardest to render.
+//! A rigid wall: the simplest simulation, and the hardest to render.
 
 use std::convert::Infallible;
 
@@ -7,7 +7,7 @@ use sinew_tools::vector::{Vector, add, scaled, sub};
 use crate::coupling::Coupling;
 use crate::published::{DeviceMotion, Published, Simulated};
 
-/// Stiffness (N/m) that the wall tells of: that of steel behind a square millimetre, and beyond what any coupling shows.
+/// Stiffness (N/m) that the wall publishes: that of steel behind a square millimetre, and beyond that of any coupling.
 const STIFFNESS: f64 = 1e6;
 
 /// A point mass on a coupling above the rigid and smooth ground z = 0.
@@ -21,7 +21,7 @@ pub struct RigidWall {
     steps: u64,
     position: Vector,
     velocity: Vector,
-    /// Where the device was at the end of the last step.
+    /// Position (m) of the device at the end of the last step.
     device: Vector,
 }
 

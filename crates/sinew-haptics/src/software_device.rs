@@ -1,4 +1,4 @@
-//! A device made of numbers, for tests of what real ones would feel.
+//! A simulated device, for tests in place of real ones.
 
 use std::fmt::{self, Debug};
 
@@ -7,10 +7,11 @@ use sinew_tools::vector::{Vector, add, dot, scaled, sub};
 use crate::coupling::DeviceLimits;
 use crate::device::Device;
 
-/// Parts of a tick in which its motion is computed.
+/// Substeps of a tick in which its motion is computed.
 const PARTS: usize = 10;
 
-/// A handle with a mass, drawn by the spring and the damper of a hand that follows a path, with encoders and forces that are held for a tick.
+/// A handle with a mass, pulled by the spring and the damper of a hand that follows a path, with an encoder and with
+/// forces that are held for a tick.
 ///
 /// Time passes with [`Device::render`], by one tick: simulated time, in which nothing depends on a clock.
 pub struct SoftwareDevice {
@@ -39,7 +40,8 @@ impl Debug for SoftwareDevice {
 }
 
 impl SoftwareDevice {
-    /// A handle of 100 g in a hand of 500 N/m and 5 N s/m that follows a path (m) in time (s); ticks of 1 ms, a resolution of 25 um, at most 20 N.
+    /// A handle of 100 g in a hand of 500 N/m and 5 N s/m that follows a path (m) in time (s); ticks of 1 ms, a
+    /// resolution of 25 um, at most 20 N.
     #[must_use]
     pub fn in_a_hand(path: impl Fn(f64) -> [f64; 3] + Send + 'static) -> Self {
         Self {
@@ -77,7 +79,8 @@ impl SoftwareDevice {
         self.velocity
     }
 
-    /// The energy (J) that the handle has got out of what renders the forces, exactly, since a held force does work over a displacement: negative where it has put some in.
+    /// The energy (J) that the handle has taken out of the source of the forces, exact, since it is the work of held
+    /// forces over displacements: negative if it has supplied energy.
     #[must_use]
     pub fn energy_taken_out(&self) -> f64 {
         self.work[0]
@@ -100,7 +103,7 @@ impl Device for SoftwareDevice {
         self.position.map(|value| (value / step).round() * step)
     }
 
-    /// By the implicit midpoint rule, which neither adds nor takes energy.
+    /// Integrates the motion over a tick by the implicit midpoint rule, which neither adds nor takes energy.
     fn render(&mut self, force: [f64; 3]) {
         let dt = self.limits.tick / PARTS as f64;
         let (before, t) = (self.position, self.t());

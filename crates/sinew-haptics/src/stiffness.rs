@@ -1,11 +1,11 @@
-//! How tissue resists a slow displacement of a tool.
+//! Resistance of tissue to a slow displacement of a tool.
 
 use sinew_core::{ElasticLaw, EvaluationError, TangentKind, Trial, vectors};
 use sinew_tools::vector::{Vector, cross, dot, scaled};
 
 use crate::matrix::Matrix;
 
-/// Square of the part of a normal below which a cell counts as held in its direction.
+/// Squared length of the free part of a normal below which a cell counts as held in its direction.
 const HELD: f64 = 1e-6;
 
 /// Cells that a tool carries along when it moves.
@@ -28,7 +28,8 @@ impl Cell {
         &mut vector[3 * self.cell as usize..][..3]
     }
 
-    /// The normal of a smooth surface, without the directions in which the cell is held, over its own square; `None` for a cell that is carried fully, or does not move along it.
+    /// The normal of a smooth surface, without the directions in which the cell is held, and the same divided by its
+    /// squared length; `None` for a cell that is carried fully, or that cannot move along the normal.
     fn normal(&self) -> Option<[Vector; 2]> {
         let Carry::Along(normal) = self.carry else {
             return None;
@@ -38,7 +39,7 @@ impl Cell {
         (squared > HELD).then(|| [free, scaled(free, 1.0 / squared)])
     }
 
-    /// Moves it along with a tool that moves by 1 m along an axis.
+    /// Moves it with a tool that moves by 1 m along an axis.
     fn carry(&self, field: &mut [f64], axis: usize) {
         let own = self.of(field);
         match (self.carry, self.normal()) {
@@ -59,7 +60,7 @@ impl Cell {
         }
     }
 
-    /// Takes from a vector what would move it against a tool that stays.
+    /// Removes from a vector the part that would move it relative to a tool at rest.
     fn leave(&self, vector: &mut [f64]) {
         let own = self.of(vector);
         match (self.carry, self.normal()) {
@@ -83,12 +84,12 @@ fn add(of_cell: &mut [f64], vector: &Vector, factor: f64) {
     }
 }
 
-/// How a tool carries a cell along.
+/// Constraint by which a tool carries a cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Carry {
-    /// Along this unit normal alone, as a smooth surface does.
+    /// Along this unit normal only, as by a smooth surface.
     Along([f64; 3]),
-    /// In all directions, as one that holds it, or on which it does not slip.
+    /// In all directions, as by a tool that holds it, or on which it does not slip.
     Fully,
 }
 
@@ -108,12 +109,14 @@ impl Carried {
     }
 }
 
-/// The stiffness (N/m) against displacements of a tool: for each direction the least energy of a displacement field that goes with the tool where it is carried.
+/// The stiffness (N/m) against displacements of a tool: for each direction the least energy of a displacement field
+/// that follows the tool at the carried cells.
 ///
-/// With the fields `u_j` of the three directions it is `u_i' K u_j`. This is the quasi-static value: how stiff a step is, `P/dt^2` of the nodes in contact, is their inertia,
-/// hundreds of times as much at 1 ms. The fields come from conjugate gradients in the space of those that leave carried cells where they are; they are kept, so that a few
-/// iterations a step follow a tool that moves on. Any such field has more energy than the least: the stiffness comes from above, and has no negative eigenvalue where the
-/// tangent has none.
+/// With the fields `u_j` of the three directions it is `u_i' K u_j`. This is the quasi-static value: the stiffness over
+/// a step, `P/dt^2` of the nodes in contact, is that of their inertia, hundreds of times larger at 1 ms. The fields
+/// come from conjugate gradients in the space of fields that do not move carried cells; they are kept, so that a few
+/// iterations per step follow a moving tool. Any such field has more energy than the minimum: the result is an upper
+/// bound, and has no negative eigenvalue if the tangent has none.
 #[derive(Clone, Debug, Default)]
 pub struct LocalStiffness {
     fields: [Vec<f64>; 3],
@@ -128,7 +131,7 @@ pub struct LocalStiffness {
 }
 
 impl LocalStiffness {
-    /// For a system of so many degrees of freedom, in cells of three layers.
+    /// For a system with this number of degrees of freedom, in cells of three layers.
     #[must_use]
     pub fn new(dofs: usize) -> Self {
         let zeros = || vec![0.0; dofs];
@@ -143,10 +146,10 @@ impl LocalStiffness {
         }
     }
 
-    /// Takes some more iterations with the tangent at a trial point, and returns the stiffness: 0 where nothing is carried.
+    /// Does more iterations with the tangent at a trial point, and returns the stiffness: 0 if nothing is carried.
     ///
-    /// One costs three products with the tangent, the first look three more. Where the tangent, or what follows from it, is not positive, that of elements without
-    /// negative eigenvalues takes its place.
+    /// An iteration costs three products with the tangent, and each call three more. If the tangent or the resulting
+    /// stiffness is not positive, the tangent with element matrices without negative eigenvalues is used instead.
     ///
     /// # Errors
     /// [`EvaluationError`] when the law is outside its domain.
@@ -191,7 +194,9 @@ impl LocalStiffness {
         Ok(())
     }
 
-    /// Conjugate gradients for the field of a direction; whether the tangent has been positive. Scales are the same for all directions of a cell, so that they and the space of free displacements go together.
+    /// Conjugate gradients for the field of a direction; returns true if the tangent was positive along all search
+    /// directions. Scales are equal for all directions of a cell, so that they commute with the projection onto free
+    /// displacements.
     fn refine_field(
         &mut self,
         axis: usize,
@@ -249,7 +254,7 @@ impl LocalStiffness {
     }
 }
 
-/// Whether a symmetric matrix has no negative eigenvalue, but for rounding: by its principal minors.
+/// True if a symmetric matrix has no negative eigenvalue, except for rounding: tested by its principal minors.
 fn is_semidefinite(matrix: &Matrix) -> bool {
     let [a, b, c] = *matrix;
     let scale = a[0].abs().max(b[1].abs()).max(c[2].abs());
@@ -265,7 +270,7 @@ fn is_semidefinite(matrix: &Matrix) -> bool {
         && all >= -small * scale * scale
 }
 
-/// The sum of squares, each times the number of its cell.
+/// The sum of squares, each times the scale of its cell.
 fn scaled_square(vector: &[f64], scales: &[f64]) -> f64 {
     let cells = vector.as_chunks::<3>().0.iter().zip(scales);
     cells

@@ -36,12 +36,12 @@ pub(crate) struct Energies {
     pub(crate) damped: f64,
     /// Energy that the method took since the beginning, where its closed form is known.
     pub(crate) method: Option<f64>,
-    /// What the energy gained beyond all that: what memory stores and dissipates, which is less than 0 then; what the method, where that is not known, and the distance of the rows bring
-    /// in or take away.
+    /// Change of energy that the entries above do not explain: energy stored and dissipated by memory (negative then),
+    /// energy that the method takes, if unknown, and errors from the distance between rows.
     pub(crate) remainder: f64,
-    /// All that was put in until then: the energy of the start and the work since.
+    /// Energy supplied up to then: the energy at the start and the work since.
     pub(crate) given: f64,
-    /// Energy that the method took since the beginning, where it is one that does, or its clamp did.
+    /// Energy dissipated since the beginning by the method, if it is a dissipative one, or by its clamp.
     pub(crate) taken: Option<f64>,
 }
 
@@ -74,8 +74,8 @@ impl Sums {
     }
 }
 
-/// Motion at the last row: time (s), displacement (m) and velocity (m/s) of the degrees of freedom, and the acceleration
-/// (m/s^2) where what the method takes is known.
+/// Motion at the last row: time (s), displacement (m) and velocity (m/s) of the degrees of freedom, and the
+/// acceleration (m/s^2) if the energy that the method takes is known.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct LastRow {
     pub(crate) t: f64,
@@ -88,32 +88,34 @@ pub(crate) struct LastRow {
     pub(crate) internal: Vec<f64>,
 }
 
-/// Sums up, from row to row, what loads, moved supports and damping do.
+/// Sums up, from row to row, the work of loads and moved supports and the dissipation by damping.
 ///
 /// Between two rows forces are taken as the mean of both ends and velocities as `du/dt`, so that for the mean
-/// acceleration method (Newmark with gamma 1/2 and beta 1/4), with a row for every step, nothing remains but rounding,
-/// jumps and kinks of loads included. What a support gives the inertia and the damping of its own nodes is counted by what these hold and
-/// take, whatever jumps its speed makes. Loads that jump or bend beside moved supports remain in part.
+/// acceleration method (Newmark with gamma 1/2 and beta 1/4), with a row for every step, only rounding remains, jumps
+/// and kinks of loads included. Work of a support against the inertia and the damping of its own nodes is computed from
+/// their kinetic energy and their dissipation, so jumps of its speed do not matter. Loads that jump or bend together
+/// with moved supports remain in part.
 pub(crate) struct Balance {
     simulation: Arc<Simulation>,
     pub(crate) sums: Sums,
     pub(crate) last: Option<LastRow>,
     /// All nodes at the last row, where some are moved.
     nodes: Option<Nodes>,
-    /// What the method takes, where that is known.
+    /// Closed form of the energy that the method takes, if known.
     form: Option<NumericalDissipation>,
-    /// Whether the method takes energy by itself.
+    /// True if the method itself dissipates energy.
     takes_energy: bool,
-    /// Whether each step is looked at to tell how much.
+    /// True if each step is checked to measure how much.
     is_watched: bool,
-    /// Whether each step has a row.
+    /// True if each step has a row.
     has_rows_of_steps: bool,
 }
 
 /// A row, with all nodes then where some are moved.
 type End<'a> = (&'a LastRow, Option<&'a Nodes>);
 
-/// Work (J) of loads and of supports, without what these give the inertia of their own nodes, and energy (J) that damping took.
+/// Work (J) of loads and of supports, without the work against the inertia of the supports' own nodes, and energy (J)
+/// taken by damping.
 #[derive(Debug, Clone, Copy)]
 struct Work {
     loads: f64,
@@ -122,7 +124,8 @@ struct Work {
 }
 
 impl Work {
-    /// That of an interval, better known by both of its halves: the error of each falls as the square of the length (Richardson).
+    /// Work over an interval, improved by that over its two halves: the error falls as the square of the length
+    /// (Richardson extrapolation).
     fn extrapolated(self, [first, second]: [Self; 2]) -> Self {
         let better = |part: fn(&Self) -> f64| {
             let halves = part(&first) + part(&second);
@@ -171,7 +174,7 @@ fn half_way([last, here]: [&LastRow; 2]) -> LastRow {
 struct Nodes {
     u: Vec<f64>,
     loads: Vec<f64>,
-    /// Of supports and moved parts, against what the body holds elastically.
+    /// Forces of supports and moved parts, which balance the elastic forces of the body.
     supports: Vec<f64>,
     /// Kinetic energy (J) of all nodes, and of the components that are moved.
     kinetic: [f64; 2],
@@ -210,17 +213,18 @@ impl Balance {
         balance
     }
 
-    /// Whether stress relaxes: what memory stores and what it dissipates are not told apart, and stand in the remainder.
+    /// True if stress relaxes: energy stored and energy dissipated by memory are not separated, and are part of the
+    /// remainder.
     pub(crate) fn has_memory(&self) -> bool {
         self.simulation.system().internal_variables() > 0
     }
 
-    /// Whether tools do work.
+    /// True if the scene has tools.
     pub(crate) fn has_tools(&self) -> bool {
         self.tools().is_some()
     }
 
-    /// Whether the body may be cut.
+    /// True if the body may be cut.
     pub(crate) fn has_cuts(&self) -> bool {
         self.simulation.is_cut()
     }
@@ -229,12 +233,12 @@ impl Balance {
         self.simulation.model().tools().map(|tools| &**tools)
     }
 
-    /// Whether it is known what the method takes.
+    /// True if the energy that the method takes is known in closed form.
     pub(crate) fn knows_method(&self) -> bool {
         self.form.is_some()
     }
 
-    /// Whether each step is looked at, of which a row needs not be due.
+    /// True if each step is checked, whether or not a row is due.
     pub(crate) fn looks_at_every_step(&self) -> bool {
         self.is_watched
     }
@@ -243,14 +247,15 @@ impl Balance {
         self.is_watched || self.has_rows_of_steps
     }
 
-    /// Whether what is missing was taken by the method or its clamp: neither by memory, nor by friction, which only steps tell.
+    /// True if missing energy can be attributed to the method or its clamp: the body has no memory, and friction at
+    /// tools is known, since every step is seen.
     fn tells_taken(&self, moment: &Moment<'_>) -> bool {
         (self.takes_energy || moment.work.saturated > 0)
             && !self.has_memory()
             && (self.sees_steps() || !self.has_tools())
     }
 
-    /// Goes on after a row that was written by an earlier run.
+    /// Continues after a row that was written by an earlier run.
     pub(crate) fn resumed(mut self, sums: Sums, last: LastRow) -> Result<Self, RecordRunError> {
         self.sums = sums;
         self.nodes = self.nodes(&last, Inputs::none())?;
@@ -376,10 +381,10 @@ impl Balance {
         })
     }
 
-    /// What loads, supports and damping do between two rows.
+    /// Work of loads, supports and damping between two rows.
     ///
-    /// Where the rows are a step apart that was cut into parts, it is that over both halves too, with the motion half way, and the error of the means, which falls by four with
-    /// the halves, is taken out.
+    /// If the rows are one step apart and that step was divided into substeps, the work over both halves is computed
+    /// too, with the motion half way, and the leading error of the means, which falls by a factor of four, is removed.
     fn work_between(
         &self,
         ends: [End<'_>; 2],
@@ -405,13 +410,13 @@ impl Balance {
         Ok(better.filter(Work::is_finite).unwrap_or(whole))
     }
 
-    /// Whether the step between two rows that are `span` (s) apart was cut into parts.
+    /// True if the step between two rows that are `span` (s) apart was divided into substeps.
     fn is_of_parts(&self, span: f64, state: &State) -> bool {
         let part = state.clock.last_step();
         self.has_rows_of_steps && part.is_some_and(|part| part < 0.75 * span)
     }
 
-    /// What loads, supports and damping do between two instants, by the mean of the forces at both.
+    /// Work of loads, supports and damping between two instants, with the mean of the forces at both.
     fn work_of_means(
         &self,
         [(last, before), (here, after)]: [End<'_>; 2],
@@ -434,7 +439,7 @@ impl Balance {
         })
     }
 
-    /// Whether a load or a support changed between the last two rows, or may have.
+    /// True if a load or a support changed between the last two rows, or may have.
     pub(crate) fn has_changed(&self) -> bool {
         let (Some(body), Some(last)) = (self.simulation.model().body(), &self.last) else {
             return true;
@@ -510,7 +515,8 @@ impl Balance {
         work([&forces, &forces], [&last.u, &here.u])
     }
 
-    /// Loads (N) of the degrees of freedom at two rows, whose mean has the impulse of the loads between them, jumps included.
+    /// Loads (N) on the degrees of freedom at two rows. Their mean has the impulse of the loads between the rows, jumps
+    /// included.
     fn loads_at_ends(
         &self,
         last: &LastRow,
@@ -578,8 +584,8 @@ impl Balance {
         Ok((nodes.kinetic[0], elastic))
     }
 
-    /// Work (J) of supports against damping at the components that they move, between two rows with these displacements (m) of all
-    /// nodes: `w_p' (D w)_p dt` with `w = du/dt`.
+    /// Work (J) of supports against damping at the components that they move, between two rows with these displacements
+    /// (m) of all nodes: `w_p' (D w)_p dt` with `w = du/dt`.
     fn damping_of_supports(
         &self,
         [last, here]: [&LastRow; 2],
@@ -618,8 +624,8 @@ impl Balance {
                 .sum::<f64>())
     }
 
-    /// Energy (J) that damping takes between two rows: `w' D w dt` with `w = du/dt`, and D half way between them; of a body with moved parts, whose
-    /// nodes have these displacements (m) then, with all its nodes.
+    /// Energy (J) that damping takes between two rows: `w' D w dt` with `w = du/dt`, and D half way between them. For a
+    /// body with moved parts all nodes count, with these displacements (m).
     fn damped(
         &self,
         [last, here]: [&LastRow; 2],
@@ -671,19 +677,20 @@ impl Balance {
     }
 }
 
-/// Whether a method takes energy by itself from a motion that nothing damps. What one that solves equations promises holds for linear ones.
+/// True if a method itself dissipates energy of an undamped motion. Energy properties of methods that solve equations
+/// hold for linear equations only.
 fn takes_energy(method: &dyn Stepper, simulation: &Simulation) -> bool {
     let Properties { energy, needs, .. } = method.properties();
     let falls = matches!(energy, EnergyBehaviour::Falls | EnergyBehaviour::NeverRises);
     falls || (needs == Needs::Tangents && simulation.system().as_linear().is_none())
 }
 
-/// Whether a machine runs its steps.
+/// True if the steps of a method run as a program of the machine.
 fn is_program(method: &dyn Stepper) -> bool {
     sinew_integrators::entry(method.id()).is_some_and(|entry| entry.programs)
 }
 
-/// Whether a component of a node is a degree of freedom.
+/// True if a component of a node is a degree of freedom.
 fn moves_by_itself(model: &Model, node: u32, axis: usize) -> bool {
     let dof = |cell: u32| 3 * cell as usize + axis;
     model

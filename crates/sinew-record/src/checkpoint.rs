@@ -19,7 +19,8 @@ const HEAD: &str = "sinew checkpoint 8";
 /// Bytes of the checksum at its end.
 const CHECKSUM: usize = 32;
 
-/// Everything from which a run goes on: a line of JSON, then what cuts left of the body, the state as `sinew-core` writes it, and numbers.
+/// Data from which a run continues: a line of JSON, then the cuts of the body, the state in the format of `sinew-core`,
+/// and numbers.
 #[derive(Debug)]
 pub(crate) struct Checkpoint {
     pub(crate) progress: Progress,
@@ -56,7 +57,8 @@ impl Checkpoint {
         Ok(folder.write(NAME, &bytes)?)
     }
 
-    /// Restores the world of the last checkpoint in a folder, whose frames are as they were; `None` if there is none yet.
+    /// Restores the world of the last checkpoint in a folder, after a check that its frames are unchanged; `None` if
+    /// there is none yet.
     pub(crate) fn restore(
         folder: &OwnedFolder,
         world: &mut World,

@@ -2,12 +2,12 @@
 
 /// Watches a run: shows how far it is, and may end it.
 pub trait Companion {
-    /// Whether the run is to stop, with a checkpoint where it leaves any; asked several times a second.
+    /// True if the run shall stop, with a checkpoint if it writes any; called several times a second.
     fn is_interrupted(&self) -> bool {
         false
     }
 
-    /// Told how many steps are taken and the time (s) of the state, several times a second.
+    /// Receives the number of steps taken and the time (s) of the state, several times a second.
     fn progress(&mut self, _steps: usize, _t: f64) {}
 }
 

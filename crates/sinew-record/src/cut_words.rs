@@ -1,8 +1,8 @@
-//! What was cut, in words.
+//! A description of the cuts of a run.
 
 use sinew_scene::CutTotals;
 
-/// A line about what was cut, and the pieces of the body in the end.
+/// A line that describes the cuts and the pieces of the body at the end.
 #[must_use]
 pub fn words_of_cuts(CutTotals { report, .. }: &CutTotals, pieces: usize) -> String {
     let mut text = format!(

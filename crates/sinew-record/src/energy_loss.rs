@@ -19,7 +19,8 @@ const STEPS_FOR_A_LOOK: usize = 20;
 /// Looks at a run of such a method, where it has as many steps.
 const LOOKS: usize = 100;
 
-/// A recorder that looks at each step of a method that takes energy by itself, or now and then at one with a clamp, and tells how much that was.
+/// A recorder that measures the energy taken by a dissipative method at each step, or by a clamp now and then, and
+/// reports it.
 pub struct EnergyLoss {
     simulation: Arc<Simulation>,
     /// None where nothing is looked at.
@@ -92,7 +93,7 @@ impl sinew_core::Recorder for EnergyLoss {
     }
 }
 
-/// Whether velocities of a run may be saturated.
+/// True if velocities of a run may be saturated.
 fn has_clamp(simulation: &Simulation) -> bool {
     let settings = simulation.settings();
     let entry = sinew_integrators::entry(&settings.integrator);

@@ -82,7 +82,7 @@ pub enum RecordRunError {
     TooMuch {
         /// Their number.
         asked: usize,
-        /// What is asked for.
+        /// The kind of results asked for.
         what: &'static str,
         /// The most that a folder holds.
         most: usize,

@@ -6,7 +6,8 @@ use sinew_scene::Simulation;
 /// Looks within half a wave of a sine from which on its work is known to 10 %.
 const LOOKS: f64 = 5.0;
 
-/// A sentence that energies do not tell what a method does to them, where they are looked at every `span` (s) and something turns faster.
+/// A sentence which says that checks of energy every `span` (s) are too rare to show the effect of the method, since a
+/// load or a motion varies faster; `None` otherwise.
 pub(crate) fn unseen(simulation: &Simulation, span: f64) -> Option<String> {
     let problem = &simulation.model().body()?.problem;
     let loads = problem.loads.iter().map(|load| &load.ramp);

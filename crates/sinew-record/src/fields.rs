@@ -96,14 +96,14 @@ pub(crate) struct Fields {
     tets: Tets,
     /// Region of each tetrahedron, counted from 1.
     regions: Vec<u8>,
-    /// Whether all regions have stress, which springs have not.
+    /// True if all regions have stress, which springs have not.
     stressed: bool,
-    /// The largest step (s) at which each tetrahedron alone would be stable; empty where it is not asked for.
+    /// The largest stable step (s) of each tetrahedron alone; empty if not asked for.
     step_limits: Vec<f32>,
 }
 
 impl Fields {
-    /// Those of a run in steps of `dt` (s).
+    /// Fields of a run in steps of `dt` (s).
     pub(crate) fn new(body: &Arc<BodyModel>, dt: f64, settings: OutputSettings) -> Self {
         let model = &body.model;
         let nodes = model.mesh().points.len();
@@ -247,9 +247,9 @@ impl Fields {
     }
 }
 
-/// The largest step (s) at which each tetrahedron alone, or with those over which its strain is averaged, with the masses of its nodes would
-/// be stable under central difference: 2/omega with its largest frequency. That of the body is below all of them (Rayleigh's
-/// principle); at small strain.
+/// The largest step (s) at which each tetrahedron alone, or with those over which its strain is averaged, with the
+/// masses of its nodes, is stable under central difference: 2/omega with its largest frequency. The largest frequency
+/// of the body is below all of them (Rayleigh's principle); at small strain.
 fn step_limits(model: &Model) -> Vec<f32> {
     let omegas = model.tet_omegas_squared();
     let limits = omegas

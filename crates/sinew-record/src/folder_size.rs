@@ -18,7 +18,7 @@ pub struct FolderSize {
     pub frames: usize,
     /// Bytes of a frame before compression, but for its text.
     pub frame_bytes: usize,
-    /// Whether frames are compressed, to a size that depends on the motion.
+    /// True if frames are compressed, to a size that depends on the motion.
     pub is_compressed: bool,
     /// Bytes of the tables, roughly: numbers are as long as they need to be.
     pub table_bytes: usize,

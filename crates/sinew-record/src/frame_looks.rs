@@ -1,4 +1,4 @@
-//! What frames would show of a motion, where none are written.
+//! Checks at the instants of frames, in runs that write none.
 
 use std::sync::Arc;
 
@@ -18,15 +18,16 @@ pub struct Looked {
 }
 
 impl Looked {
-    /// Warnings of deformations beyond small-strain theory, of tetrahedra inside out, and of parts or surfaces in each other.
+    /// Warnings of deformations beyond small-strain theory, of tetrahedra inside out, and of parts or surfaces in each
+    /// other.
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
         summary::warnings(&self.seen)
     }
 }
 
-/// A recorder that checks the deformation of a body, and its parts and surfaces for overlap, at the instants at which a folder has
-/// frames.
+/// A recorder that checks the deformation of a body, and its parts and surfaces for overlap, at the instants at which a
+/// folder has frames.
 #[derive(Debug)]
 pub struct FrameLooks {
     /// `None` for an oscillator.
@@ -75,7 +76,7 @@ impl FrameLooks {
         }
     }
 
-    /// What was looked at.
+    /// The extremes seen by the checks.
     #[must_use]
     pub fn into_looked(self) -> Looked {
         self.looked

@@ -16,18 +16,18 @@ use crate::seal::Seal;
 /// Snapshots in use: one that is written, and one that is taken meanwhile.
 const SNAPSHOTS: usize = 2;
 
-/// What was seen in the frames that are written.
+/// Extremes seen in the written frames, and their seals.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct SeenInFrames {
     pub(crate) seen: Seen,
-    /// Displacements (m) of the surface where one of them was largest so far.
+    /// Displacements (m) of the surface in the frame with the largest one so far.
     pub(crate) largest: Vec<f64>,
     /// Seals of the frames, from the first one of the run on.
     pub(crate) seals: Vec<Seal>,
 }
 
-/// Makes fields of snapshots and writes them, on a thread of its own, so that the run need not wait for them. Frames are
-/// written in order, so what is seen in them does not depend on when.
+/// Makes fields of snapshots and writes them on a thread of its own, so that the run need not wait for them. Frames are
+/// written in order, so the extremes do not depend on timing.
 pub(crate) struct FrameWriter<'a> {
     to_write: SyncSender<Work>,
     written: Receiver<Result<Snapshot, RecordRunError>>,

@@ -18,11 +18,12 @@ const STEPS_FOR_A_LOOK: usize = 100;
 /// Energy, as a multiple of what start and loads account for, from which on a motion is wrong.
 const FAR_BEYOND: f64 = 2.0;
 
-/// A recorder that looks at the energy of a body of large deformation a few times in a run, and tells where it is far beyond that of the start
-/// and the work of loads and tools.
+/// A recorder that checks the energy of a body in large deformation some times in a run, and reports it if it is far
+/// beyond the energy of the start plus the work of loads and tools.
 ///
-/// Work of loads is added up by component, without signs, and damping is left out: what is told is wrong for certain. Supports that move bring in
-/// work too, loads that come and go do between two looks, and what a deformed start stored in a memory comes back, so that such scenes are not looked at.
+/// Work of loads is summed by component, as absolute values, and damping is left out: an excess that is reported is
+/// real. Scenes are not checked in which other energy may come in unseen: work of moved supports, of loads that come
+/// and go between two checks, or energy that memory stored in a deformed start.
 #[derive(Debug)]
 pub struct EnergyGrowth {
     /// None where nothing is looked at.

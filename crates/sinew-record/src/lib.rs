@@ -1,21 +1,21 @@
-//! What a run of a scene leaves behind: fields, tables, summary, report, and a checkpoint from which it goes on.
+//! Results of a run of a scene: fields, tables, summary, report, and a checkpoint from which it can be continued.
 //!
 //! A run writes into a folder of its own ([`RunFolder`]). Everything in it is a function of the scene and the number of
-//! steps taken, except for one object in `summary.json` about the computer; so a run that was killed and went on leaves
-//! the same bytes as one that was not.
+//! steps taken, except for one object in `summary.json` about the computer; so a run that was killed and continued
+//! leaves the same bytes as one that was not.
 //!
 //! | file | content |
 //! | --- | --- |
-//! | `fields.pvd`, `fields/` | displacement, velocity, strain, stress, forces and pressures of tools at the instants that `[output]` asks for |
+//! | `fields.pvd`, `fields/` | displacement, velocity, strain, stress, tool forces and pressures, as `[output]` asks |
 //! | `surface.vtu` | the boundary at rest, with the groups of triangles on it |
 //! | `probes.csv` | displacements (m) of the probes |
 //! | `energy.csv` | the balance of energy (J) |
 //! | `reactions.csv` | forces (N) and moments (N m) of supports and moved parts |
-//! | `tools.csv` | where tools are, forces (N) and torques (N m) on them, their work (J) and contacts |
-//! | `summary.json` | how it ended, extremes, work, warnings, and all that is needed to repeat it |
+//! | `tools.csv` | positions of tools, forces (N) and torques (N m) on them, their work (J) and contacts |
+//! | `summary.json` | outcome, extremes, work, warnings, and all that is needed to repeat it |
 //! | `report.html` | warnings, pictures of the body, curves |
-//! | `run.json`, `scene.toml` | what was run |
-//! | `checkpoint.bin` | where an unfinished run stands |
+//! | `run.json`, `scene.toml` | the request and the scene of the run |
+//! | `checkpoint.bin` | the state of an unfinished run |
 //!
 //! `docs/run-folder.md` in the repository names every column, array and key.
 //!

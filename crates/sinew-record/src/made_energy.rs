@@ -1,17 +1,17 @@
-//! What is known of energy that comes from nothing.
+//! Energy that a motion gains from nothing: limits and remedies.
 
 use sinew_scene::{Simulation, TimeStep};
 
 /// Energy (J) of a degree of freedom in a body at room temperature: what is below is no motion.
 pub(crate) const THERMAL: f64 = 4e-21;
 
-/// Whether the start of a body with memory is deformed: what its memory stored then is in no energy that is known.
+/// True if the start of a body with memory is deformed: the energy that its memory stored then is not known.
 pub(crate) fn has_stored_energy(simulation: &Simulation) -> bool {
     let is_deformed = || simulation.initial_state().u.iter().any(|u| *u != 0.0);
     simulation.system().internal_variables() > 0 && is_deformed()
 }
 
-/// What helps where a motion has made energy.
+/// A remedy for a motion that has gained energy from nothing.
 pub(crate) fn remedy(simulation: &Simulation, saturates: bool) -> String {
     let settings = simulation.settings();
     let entry = sinew_integrators::entry(&settings.integrator);

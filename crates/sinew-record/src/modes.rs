@@ -33,8 +33,8 @@ const DRAWN: f64 = 0.1;
 pub struct NaturalMode {
     /// Angular frequency (rad/s); 0 for a rigid motion.
     pub omega: f64,
-    /// Share of the moving mass that takes part in motions along x, y and z: `(phi' M e)^2 / (e' M e)` with the shape phi
-    /// of modal mass 1 and e moving all as one (Bathe, Finite Element Procedures, section 9.3).
+    /// Share of the moving mass that takes part in motions along x, y and z: `(phi' M e)^2 / (e' M e)` with the shape
+    /// phi of modal mass 1 and e moving all as one (Bathe, Finite Element Procedures, section 9.3).
     pub effective_mass: [f64; 3],
     /// Share of the elastic energy under all loads at their full value, at rest: `(phi' F)^2 / omega^2` over the sum of
     /// all modes found; NaN where the scene has no loads or the motion is rigid.
@@ -51,8 +51,8 @@ impl NaturalMode {
     }
 }
 
-/// The modes of the lowest frequencies of a simulation, multiple ones and those that no load excites included. Those of a body of large
-/// deformation are of small motions about rest, so fast that no stress relaxes.
+/// The modes of the lowest frequencies of a simulation, multiple ones and those that no load excites included. For a
+/// body in large deformation they are those of small motions about rest, so fast that no stress relaxes.
 ///
 /// # Errors
 /// [`ModesError`] for a system without matrices, a matrix without a factor and an iteration that does not converge.
@@ -155,7 +155,8 @@ pub fn check_modes_folder(path: &Path, inputs: &[PathBuf]) -> Result<Tenant, Rec
     Ok(OwnedFolder::check(path, KIND, inputs)?)
 }
 
-/// Writes modes into a folder: a table, and for ParaView the shapes of a body as a series with a mode at each whole time.
+/// Writes modes into a folder: a table, and for ParaView the shapes of a body as a series with a mode at each whole
+/// time.
 ///
 /// # Errors
 /// [`RecordRunError`].
@@ -268,8 +269,8 @@ mod tests {
         }
     }
 
-    /// A cube that is alike in x and y has its swings in pairs, and a free body six motions without a spring: neither is
-    /// seen by its loads alone.
+    /// A cube with equal x and y directions has pairs of bending modes, and a free body six rigid-body modes: its loads
+    /// alone excite neither.
     #[test]
     fn multiple_modes_and_rigid_motions_are_found() {
         let cube = |support: &str| {
@@ -330,7 +331,8 @@ mod tests {
         assert_eq!(check_modes_folder(&out, &[]).unwrap(), Tenant::Earlier);
     }
 
-    /// All hyperelastic laws are the linear one about rest (Bonet and Wood, Nonlinear Continuum Mechanics, section 6.6).
+    /// All hyperelastic laws agree with the linear one about rest (Bonet and Wood, Nonlinear Continuum Mechanics,
+    /// section 6.6).
     #[test]
     fn large_deformation_has_the_modes_of_the_linear_law_about_rest() {
         let modes = |model: &str| {

@@ -1,8 +1,8 @@
-//! How often a run looks up from its steps.
+//! Interval between two checks of a run: for progress, and for a request to stop.
 
 use std::time::{Duration, Instant};
 
-/// Wall time between two looks.
+/// Wall time between two checks.
 const LOOK: Duration = Duration::from_millis(40);
 
 /// Says after how many steps a run looks up, to show where it is and to see whether it is to stop: several times a

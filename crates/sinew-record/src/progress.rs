@@ -1,4 +1,4 @@
-//! How far a run is, and what it has seen.
+//! Progress of a run, and the extremes that it has seen.
 
 use serde::{Deserialize, Serialize};
 use sinew_core::StepReport;
@@ -10,7 +10,7 @@ use crate::seal::Seal;
 use crate::taken_energy::Taken;
 use crate::tool_rows::Received;
 
-/// How far a run is, and what it has seen: all that later steps do not tell.
+/// Progress of a run, and the extremes that it has seen: all that cannot be computed from later steps.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Progress {
     /// Steps taken.
@@ -29,22 +29,22 @@ pub(crate) struct Progress {
     pub(crate) crept: Crept,
     #[serde(default)]
     pub(crate) taken: Taken,
-    /// What tools had received at their last row.
+    /// Impulses that tools had received at their last row.
     #[serde(default)]
     pub(crate) received: Received,
 }
 
-/// Energy (J) that comes in little by little, by the remainder of the balance while loads and supports stay as they are: work of those that change is a mean of two rows, and off by some
-/// per cent where these are far apart.
+/// Energy (J) that accumulates slowly, measured by the remainder of the balance while loads and supports stay constant:
+/// the work of changing ones is a mean of two rows, and wrong by some per cent if these are far apart.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Crept {
     /// Rows since a load or a support changed.
     rows: u32,
-    /// The largest remainder in the first of them: energies of a leapfrog swing from step to step.
+    /// The largest remainder in the first rows: the energy of a leapfrog oscillates from step to step.
     first: f64,
-    /// Mean remainder over the last ones.
+    /// Mean remainder over the last rows.
     mean: f64,
-    /// The most by which that was above the first.
+    /// The largest excess of that mean over the first rows.
     pub(crate) most: f64,
 }
 
@@ -77,7 +77,7 @@ pub(crate) struct Seals {
     pub(crate) energy: Seal,
     pub(crate) reactions: Seal,
     pub(crate) tools: Seal,
-    /// Of each frame of fields.
+    /// Seals of the frames of fields, one each.
     pub(crate) frames: Vec<Seal>,
 }
 
@@ -94,7 +94,7 @@ pub(crate) struct Seen {
     pub(crate) linear_rotation: Largest,
     /// Tetrahedra with a volume of 0 or below, the most at an instant.
     pub(crate) inverted: usize,
-    /// Where the body was deepest in itself.
+    /// Deepest overlap of the body with itself.
     #[serde(default)]
     pub(crate) overlap: Option<SeenOverlap>,
 }

@@ -25,7 +25,7 @@ const MOST_ROWS: usize = 10_000;
 /// Degrees of freedom up to which energies and reactions of every step cost next to nothing.
 const SMALL: usize = 30_000;
 
-/// What is written when.
+/// Schedules of all outputs of a run.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Schedules {
     /// Steps of the run.
@@ -41,7 +41,7 @@ impl Schedules {
         Self::of_steps(simulation, simulation.run().steps, simulation.dt())
     }
 
-    /// Those of a number of steps, of this length (s) on average.
+    /// Schedules of a number of steps, of this length (s) on average.
     pub(crate) fn of_steps(simulation: &Simulation, steps: usize, dt: f64) -> Self {
         let output = simulation.scene().output();
         let asked = |instants: Option<Instants>| match instants {

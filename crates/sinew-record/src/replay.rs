@@ -17,12 +17,12 @@ use crate::run_folder::{Beginning, End, RunFolder, cause, cut_record};
 use crate::stepping::Stepping;
 
 impl RunFolder {
-    /// Repeats a session by its log and leaves in a folder at `path` what a run leaves there: the motion since the last reset,
-    /// whose steps are counted from there on. Where steps change their length, rows and frames come after as many steps as fit
-    /// the mean length.
+    /// Replays a session by its log and writes into a folder at `path` the files of a run: the motion since the last
+    /// reset, with steps counted from there on. If the length of steps changes, the spacing of rows and frames in steps
+    /// follows from the mean length.
     ///
     /// # Errors
-    /// [`RecordRunError`] for a folder that may not be used, and for a session that takes another course than its log.
+    /// [`RecordRunError`] for a folder that may not be used, and for a session whose motion differs from its log.
     pub fn replay(
         path: &Path,
         replay: &mut Replay,

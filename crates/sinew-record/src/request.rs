@@ -1,4 +1,4 @@
-//! What was run: all that is needed to run it again.
+//! Record of a run: all that is needed to run it again.
 
 use std::path::{Path, PathBuf};
 
@@ -21,16 +21,16 @@ pub(crate) const LOG: &str = "session.log";
 /// Version of the files in a folder.
 const VERSION: u32 = 1;
 
-/// What a run was asked for beside its scene.
+/// Settings of a run that are not part of its scene.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Request {
     /// Largest number of threads, or "auto", in the place of the scene's.
     pub threads: Option<String>,
-    /// What is said before the run: it is kept in the summary.
+    /// Warnings given before the run: they are kept in the summary.
     pub warnings: Vec<String>,
-    /// Values that were set in the scene, which holds them already: they are kept for people.
+    /// Values that were set in the scene, which contains them already: they are kept for the reader.
     pub values: Vec<String>,
-    /// Whether a run in the folder that could be gone on with is thrown away.
+    /// True if a run in the folder that could be continued is discarded.
     pub again: bool,
 }
 
@@ -79,7 +79,7 @@ impl Record {
         Ok(folder.write(NAME, format!("{json}\n").as_bytes())?)
     }
 
-    /// What an earlier run in this folder was asked for, and its scene; its inputs are still the same.
+    /// Reads the request and the scene of an earlier run in this folder, and checks that its inputs are unchanged.
     pub(crate) fn read(folder: &OwnedFolder) -> Result<(Self, Scene), RecordRunError> {
         let missing = |name| unusable(folder, name, &"it is not there");
         let json = folder.read(NAME)?.ok_or_else(|| missing(NAME))?;

@@ -1,4 +1,4 @@
-//! How a run ended.
+//! End of a run.
 
 use sinew_scene::CutTotals;
 use sinew_scene::output::Replaced;
@@ -8,11 +8,11 @@ use crate::stepping::Stepping;
 /// The end of a run, in short.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RunEnd {
-    /// How it ended.
+    /// Reason for the end.
     pub ended: Ended,
     /// Steps taken, those of an earlier process included.
     pub steps: usize,
-    /// By what they were taken.
+    /// Methods and lengths of the steps.
     pub stepping: Stepping,
     /// Steps that this process took, and the wall time (s) of all that it did.
     pub own: (usize, f64),
@@ -26,13 +26,13 @@ pub struct RunEnd {
     pub retaken: u64,
     /// The largest displacement (m), its time (s) and the tag of its node, among the fields; 0 for an oscillator.
     pub largest: (f64, f64, u64),
-    /// What was cut, and the pieces in the end, where the body may be cut.
+    /// Totals of the cuts, and the number of pieces at the end, if the body may be cut.
     pub cuts: Option<(CutTotals, usize)>,
-    /// What the integrator remarks at the end, one sentence each: of a run that went on, since the checkpoint.
+    /// Remarks of the integrator at the end, one sentence each: of a continued run, since the checkpoint.
     pub remarks: Vec<String>,
-    /// What the motion warns of, one sentence each.
+    /// Warnings about the motion, one sentence each.
     pub warnings: Vec<String>,
-    /// What became of the results that the folder held before.
+    /// Fate of the results that the folder held before.
     pub replaced: Replaced,
 }
 

@@ -81,17 +81,17 @@ pub(crate) struct End<'a> {
     pub(crate) times: &'a [f64],
     pub(crate) resumed: bool,
     pub(crate) begun: Instant,
-    /// What was cut, where the body may be cut.
+    /// Record of the cuts, if the body may be cut.
     pub(crate) cuts: Option<CutRecord>,
 }
 
 impl RunFolder {
-    /// Checks, before long work, that a run of this scene, or a replay of its session by a file with the log, may write into a folder at `path`. Changes
-    /// nothing but what [`RunFolder::settle`] completes.
+    /// Checks, before long work, that a run of this scene, or a replay of its session by a file with the log, may write
+    /// into a folder at `path`. Changes nothing except that it completes a finished run, see [`RunFolder::settle`].
     ///
     /// # Errors
-    /// [`RecordRunError::Output`] for a folder that holds other things, what is to be read among them, or cannot be written, and
-    /// [`RecordRunError::Resumable`] for one whose run can be gone on with, unless it is to be run `again`.
+    /// [`RecordRunError::Output`] for a folder that holds other things, the inputs included, or cannot be written, and
+    /// [`RecordRunError::Resumable`] for one whose run can be continued, unless it is to be run `again`.
     pub fn check(
         path: &Path,
         scene: &Scene,
@@ -137,11 +137,12 @@ impl RunFolder {
         Ok(true)
     }
 
-    /// Makes the folder of a new run. The results of an earlier run in it are kept beside it, under its name with `.old`, until the new ones are complete.
+    /// Creates the folder of a new run. The results of an earlier run in it are kept next to it, under its name with
+    /// `.old`, until the new ones are complete.
     ///
     /// # Errors
-    /// [`RecordRunError`] for a folder that may not be used, as [`RunFolder::check`] says, for more frames than a folder holds, and for inputs that cannot be
-    /// read any more.
+    /// [`RecordRunError`] for a folder that may not be used, see [`RunFolder::check`], for more frames than a folder
+    /// holds, and for inputs that cannot be read any more.
     pub fn create(
         path: &Path,
         simulation: &Simulation,
@@ -223,7 +224,7 @@ impl RunFolder {
         Ok((Self { folder, record }, scene))
     }
 
-    /// Whether the run in it has come to its end.
+    /// True if the run in this folder has come to its end.
     ///
     /// # Errors
     /// [`RecordRunError`] for a summary that cannot be read.

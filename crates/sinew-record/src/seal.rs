@@ -62,7 +62,8 @@ impl<W: Write> Write for Sealing<W> {
 }
 
 impl Seal {
-    /// Reads a file of a folder, as far as it was sealed, and checks that it is as it was; then what goes on with its seal.
+    /// Reads the sealed part of a file in a folder and checks that it is unchanged; returns it with a seal that can be
+    /// continued.
     ///
     /// # Errors
     /// [`RecordRunError::Altered`] with the difference.

@@ -1,14 +1,14 @@
-//! By what the steps of a run were taken.
+//! Methods and lengths of the steps of a run.
 
 use serde_json::Value;
 use sinew_core::Options;
 use sinew_scene::{Simulation, options_json};
 use sinew_world::Course;
 
-/// What is written for the name of a method where there were several.
+/// Text written in place of the name of a method if there were several.
 const SEVERAL: &str = "several";
 
-/// By which methods the steps of a run were taken, and how long they were: both may change where a session is repeated.
+/// Methods and lengths of the steps of a run: both may change in a session that is replayed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stepping {
     /// Ids and options, in the order of their first steps.
@@ -18,7 +18,7 @@ pub struct Stepping {
 }
 
 impl Stepping {
-    /// That of a run, which keeps to its scene.
+    /// Stepping of a run, which keeps to its scene.
     pub(crate) fn of_scene(simulation: &Simulation) -> Self {
         Self {
             methods: vec![(
@@ -30,7 +30,7 @@ impl Stepping {
         }
     }
 
-    /// That of a session.
+    /// Stepping of a session.
     pub(crate) fn of_session(course: &Course, simulation: &Simulation) -> Self {
         let methods = course.methods.iter();
         let methods = methods.map(|(id, options)| (id.clone(), simulation.options_of(id, options)));
@@ -56,7 +56,7 @@ impl Stepping {
         }
     }
 
-    /// Who took them, as "`newmark`".
+    /// Names of the methods, as "`newmark`".
     #[must_use]
     pub fn methods_in_words(&self) -> String {
         let ids = self.ids();

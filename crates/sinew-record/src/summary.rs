@@ -24,7 +24,7 @@ const LARGEST_ROTATION: f64 = 15.0;
 /// Share of its largest kinetic energy below which a body counts as at rest.
 const AT_REST: f64 = 1e-6;
 
-/// All that a summary is made of.
+/// All data that a summary is made from.
 pub(crate) struct Summary<'a> {
     pub(crate) simulation: &'a Simulation,
     pub(crate) record: &'a Record,
@@ -37,24 +37,24 @@ pub(crate) struct Summary<'a> {
     pub(crate) schedules: &'a Schedules,
     pub(crate) parts: &'a [HeldPart],
     pub(crate) integrator: &'a dyn Stepper,
-    /// What the integrator remarks at the end.
+    /// Remarks of the integrator at the end.
     pub(crate) remarks: &'a [String],
     /// Wall time (s) of this process.
     pub(crate) wall: f64,
     pub(crate) resumed: bool,
-    /// What the motion itself warns of.
+    /// Warnings about the motion itself.
     pub(crate) warnings: &'a [String],
-    /// What was cut, where the body may be cut.
+    /// Record of the cuts, if the body may be cut.
     pub(crate) cuts: Option<&'a CutRecord>,
 }
 
-/// What was cut in a run.
+/// Cuts of a run.
 #[derive(Debug, Clone)]
 pub(crate) struct CutRecord {
     pub(crate) totals: CutTotals,
-    /// What strokes left that their sheets do not show.
+    /// Defects that strokes left and that their sheets do not show.
     rough: RoughStrokes,
-    /// That in sentences.
+    /// Description of these defects, in sentences.
     pub(crate) left: Vec<String>,
     /// Mass (kg) of the body in the beginning and in the end.
     mass: [f64; 2],
@@ -63,7 +63,7 @@ pub(crate) struct CutRecord {
 }
 
 impl CutRecord {
-    /// What a cutter did to a body that had this mass (kg).
+    /// Record of a cutter's work on a body that had this mass (kg).
     pub(crate) fn of(cutter: &Cutter, mass: f64) -> Self {
         Self {
             totals: *cutter.totals(),
@@ -103,7 +103,7 @@ impl CutRecord {
     }
 }
 
-/// What a motion warns of: deformations beyond small-strain theory, and bodies that pass through each other.
+/// Warnings about a motion: deformations beyond small-strain theory, and bodies that pass through each other.
 ///
 /// A rotation by an angle theta is a strain of `1 - cos theta` to the linear theory, .034 at 15 degrees; at a strain of
 /// 10 % the quadratic terms that it leaves out are about as large as 10 % of those that it keeps.
@@ -140,11 +140,13 @@ pub(crate) fn warnings(seen: &Seen) -> Vec<String> {
     warnings
 }
 
-/// Share beyond which a motion is wrong whose balance has so much too much: of what was put in, at any row, and of the largest energy, as a mean over some rows while loads and supports stay as they are.
+/// Limit of the excess energy relative to the supplied energy, at any row, and relative to the largest energy, as a
+/// mean over some rows with constant loads and supports; beyond it a motion is wrong.
 const MADE_ENERGY: f64 = 0.1;
 const CREPT_ENERGY: f64 = 0.01;
 
-/// A warning where a motion of large deformation, or one that is saturated, has more energy than it was given. What a method takes is no such sign.
+/// A warning if a motion in large deformation, or a saturated one, has more energy than was supplied. Energy taken by a
+/// method is no such sign.
 pub(crate) fn made_energy(simulation: &Simulation, progress: &Progress) -> Option<String> {
     let ([most, made], given) = (progress.balance, progress.taken.given);
     let saturates = progress.work.saturated > 0;

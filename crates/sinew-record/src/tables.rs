@@ -36,8 +36,8 @@ pub(crate) fn probes_head(simulation: &Simulation) -> String {
     text
 }
 
-/// The line of column names; the work of tools has one where there are tools, the energy of cuts where there may be cuts, what the method takes where it is known,
-/// and what memory takes is part of the remainder.
+/// The line of column names. The work of tools has a column if there are tools, the energy of cuts if there may be
+/// cuts, and the energy that the method takes if it is known; the energy that memory takes is part of the remainder.
 pub(crate) fn energy_head(balance: &Balance) -> String {
     let column = |is_there: bool, name: &'static str| if is_there { name } else { "" };
     let tools = column(balance.has_tools(), "work_of_tools_J,");
@@ -133,8 +133,8 @@ impl Reactions {
         text
     }
 
-    /// A row, with the times (s) to those before and after it: of a moved part's speed that changes in an instant, each row has its
-    /// share, so that all together have the whole impulse.
+    /// A row, with the times (s) between it and its two neighbours. If the speed of a moved part jumps, each row
+    /// includes its share, so that all rows together have the whole impulse.
     pub(crate) fn row(
         &mut self,
         out: &mut String,

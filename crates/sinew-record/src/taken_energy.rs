@@ -28,7 +28,8 @@ impl Taken {
         self.span = self.span.max(row.span);
     }
 
-    /// A warning of what the method took, where that is much, with one that keeps it. `methods` names who took the steps.
+    /// A warning if the method took much energy, with a method that conserves it. `methods` names the methods of the
+    /// steps.
     pub(crate) fn in_words(
         self,
         simulation: &Simulation,

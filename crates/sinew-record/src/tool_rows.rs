@@ -1,4 +1,4 @@
-//! Rows of tools: where they are, and what holds them back.
+//! Rows of tools: positions, and the forces that resist them.
 
 use std::fmt::Write;
 use std::sync::Arc;
@@ -12,7 +12,8 @@ use crate::tables;
 
 pub(crate) const NAME: &str = "tools.csv";
 
-/// What tools had received at the last row: the time (s), and of each its impulse (N s) and angular impulse (N m s).
+/// Impulses received by tools up to the last row: the time (s), and for each tool its impulse (N s) and angular impulse
+/// (N m s).
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Received {
     t: f64,
@@ -20,7 +21,8 @@ pub(crate) struct Received {
 }
 
 impl Received {
-    /// The mean force (N) and torque (N m) on a tool from the last row to a time (s); of the first row those of the step before.
+    /// The mean force (N) and torque (N m) on a tool from the last row to a time (s); for the first row those of the
+    /// step before.
     fn means(&self, t: f64, index: usize, report: &ToolReport) -> [[f64; 3]; 2] {
         let span = t - self.t;
         let Some(before) = self.impulses.get(index).filter(|_| span > 0.0) else {
@@ -136,7 +138,7 @@ impl ToolRows {
     }
 }
 
-/// Whether a tool may be turned at some time.
+/// True if a tool may be turned at some time.
 fn turns(tool: &Tool) -> bool {
     tool.body.is_some() || is_turned(&tool.motion)
 }

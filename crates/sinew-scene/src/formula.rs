@@ -4,11 +4,12 @@ use std::fmt;
 
 /// A number as a formula of the place x, y, z (m), such as `75 * sin(pi * z / 0.24) * (y - 0.01)`.
 ///
-/// It has numbers, `x`, `y`, `z`, `pi`, `+ - * / ^` with their usual order, round brackets, and `sin`, `cos`, `exp`, `sqrt` and `abs`.
+/// It may contain numbers, `x`, `y`, `z`, `pi`, `+ - * / ^` with their usual order, round brackets, and `sin`, `cos`,
+/// `exp`, `sqrt` and `abs`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Formula {
     text: String,
-    /// What is to be done with a stack of numbers.
+    /// Operations on a stack of numbers.
     operations: Vec<Operation>,
 }
 
@@ -42,7 +43,7 @@ const FUNCTIONS: [(&str, Function); 5] = [
     ("abs", Function::Abs),
 ];
 
-/// Most characters of a formula, which also bounds how deep its brackets are.
+/// Most characters of a formula, which also bounds the depth of its brackets.
 const LONGEST: usize = 1000;
 
 /// A text that is no formula.
@@ -53,7 +54,7 @@ pub struct FormulaError {
     pub at: usize,
     /// The word, number or character there, in quotes, or "the end".
     pub found: String,
-    /// What could stand there.
+    /// Description of the text expected there.
     pub expected: &'static str,
 }
 
@@ -161,7 +162,7 @@ impl Parser<'_> {
         self.rest.chars().next()
     }
 
-    /// Whether the next character is this one, which is then behind.
+    /// Skips the next character if it is this one; true if it was.
     fn takes(&mut self, character: char) -> bool {
         let is_it = self.peek() == Some(character);
         if is_it {

@@ -9,9 +9,9 @@ use crate::scene::DOCUMENT;
 use crate::source::SceneSource;
 
 impl SceneSource {
-    /// The scene with other values: `KEY=VALUE` each, the key's parts parted by dots, tables of a list by their numbers
-    /// from 1 on. A value is TOML, or else a string. A key that its table does not have is added to it, and so is a table of scenes, at the end of its list where
-    /// it is one; all else of the text stays as it is.
+    /// The scene with other values: `KEY=VALUE` each, the parts of a key separated by dots, tables of a list by their
+    /// numbers from 1 on. A value is TOML, or else a string. A key that its table does not have is added to it, and so
+    /// is a missing table, at the end of its list if it is one of a list; the rest of the text is unchanged.
     ///
     /// ```
     /// use sinew_scene::SceneSource;
@@ -26,7 +26,7 @@ impl SceneSource {
     /// ```
     ///
     /// # Errors
-    /// [`OverrideError`] for the first that cannot be set. Whether a value fits is found where the scene is read.
+    /// [`OverrideError`] for the first that cannot be set. Whether a value is valid is checked when the scene is read.
     pub fn with_values<T: AsRef<str>>(&self, values: &[T]) -> Result<Self, OverrideError> {
         if values.is_empty() {
             return Ok(self.clone());
@@ -144,7 +144,7 @@ struct Inner {
     is_list: bool,
 }
 
-/// What a key of a described table holds, where that is a table or a list of tables.
+/// The table or list of tables that a key of a described table holds, if it holds one.
 fn tables_of(within: &'static TableDescription, part: &str) -> Option<Inner> {
     fn of_shape(shape: &Shape) -> Option<Inner> {
         match shape {
@@ -158,7 +158,7 @@ fn tables_of(within: &'static TableDescription, part: &str) -> Option<Inner> {
     of_shape(&key.describe().shape)
 }
 
-/// Whether a table is the whole scene.
+/// True if a table is the whole scene.
 fn is_top(description: Option<&'static TableDescription>) -> bool {
     description.is_some_and(|description| description.name == DOCUMENT.name)
 }

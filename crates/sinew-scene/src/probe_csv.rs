@@ -11,8 +11,8 @@ use crate::probe_rows::{BEGIN, ProbeRows, is_column};
 use crate::schedule::Schedule;
 use crate::simulation::Simulation;
 
-/// Writes what probes write down after the steps of a [`Schedule`], in the columns of [`ProbeRows`]. Numbers are written so that reading
-/// them gives the same bits.
+/// Writes the values of probes after the steps of a [`Schedule`], in the columns of [`ProbeRows`]. Numbers are written
+/// so that reading them gives the same bits.
 ///
 /// A file has a temporary name until [`ProbeCsv::finish`], so that a file under its final name is
 /// always complete; dropped before that, it leaves nothing behind. Where the output is a pipe and its
@@ -47,7 +47,7 @@ impl ProbeCsv {
         }
     }
 
-    /// Whether a file is such a table, or that of a run's folder, and nothing else.
+    /// True if a file is such a table, or that of a run's folder, and nothing else.
     ///
     /// # Errors
     /// The system's reason for which it cannot be read.
@@ -196,7 +196,7 @@ mod tests {
         ]
     }
 
-    /// Of the degrees of freedom 3, 5, 0, 8, 9 and 11.
+    /// Displacements of the degrees of freedom 3, 5, 0, 8, 9 and 11.
     const MOVING: [f64; 6] = [1e-7, 0.3, 0.1, 0.5, 4.0, 1.0];
 
     #[test]

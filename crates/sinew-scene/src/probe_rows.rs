@@ -12,7 +12,7 @@ use crate::simulation::{BodyModel, Probe, ProbeNode, Simulation};
 /// The first column's name: the time.
 pub(crate) const BEGIN: &str = "t_s";
 
-/// Whether a name is one of a probe's column.
+/// True if a name is that of a column of a probe.
 pub(crate) fn is_column(name: &str) -> bool {
     const AXES: [&str; 6] = ["x", "y", "z", "xx", "yy", "zz"];
     let of = |letter: &str, unit: &str| {
@@ -102,7 +102,7 @@ impl ProbeRows {
         columns
     }
 
-    /// Whether a row takes the whole state, as for velocities and stresses.
+    /// True if a row needs the whole state, as for velocities and stresses.
     #[must_use]
     pub fn need_moments(&self) -> bool {
         let others = |probe: &Probe| probe.quantity != Quantity::Displacement;

@@ -40,8 +40,8 @@ impl Schedule {
         }
     }
 
-    /// The steps of rows of probes: at the instants that the scene asks for, else every step as far as `most` rows, and a table of readable length, have room
-    /// for them.
+    /// The steps of rows of probes: at the instants that the scene asks for, else every step, up to `most` rows or the
+    /// number of rows of a table of readable length.
     #[must_use]
     pub fn of_probes(
         asked: Option<Instants>,
@@ -70,13 +70,13 @@ impl Schedule {
         found.map(|step| step.min(self.steps))
     }
 
-    /// Whether a step is one of them.
+    /// True if a step is one of them.
     #[must_use]
     pub fn is_due(&self, step: usize) -> bool {
         self.next(step) == Some(step)
     }
 
-    /// Whether all steps are among them.
+    /// True if all steps are among them.
     #[must_use]
     pub fn is_every_step(&self) -> bool {
         self.spacing == 1.0

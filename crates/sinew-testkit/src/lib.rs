@@ -1,5 +1,5 @@
-//! What the tests of several crates share: bodies at random, matrices written out in full, and scenes. Only
-//! tests depend on it.
+//! Shared code of the tests of several crates: random bodies, matrices in dense form, and scenes. Only tests depend on
+//! it.
 
 #![allow(
     clippy::unwrap_used,

@@ -1,4 +1,4 @@
-//! What a hand can do to a running scene.
+//! Commands of a user to a running scene.
 
 use sinew_core::{OptionError, Options, StepError};
 use sinew_scene::{CuttingError, DrivenLoadError};
@@ -7,8 +7,8 @@ use sinew_scene::{CuttingError, DrivenLoadError};
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Command {
-    /// The pose of a tool at the end of the next step: it goes there straight within that step, and stays until another pose comes. Until
-    /// the first one it follows the scene.
+    /// The pose of a tool at the end of the next step: it moves there in a straight line within that step, and stays
+    /// until another pose comes. Until the first one it follows the scene.
     Pose {
         /// Name of the tool.
         tool: String,
@@ -17,14 +17,14 @@ pub enum Command {
         /// Its rotation vector (rad).
         rotation_vector: [f64; 3],
     },
-    /// A factor of a load, beside its own course over time; 1 at the beginning.
+    /// A factor of a load, in addition to its own course over time; 1 at the beginning.
     LoadFactor {
-        /// Name of the load: that of the scene, `load 2` for the second where it has none, or `gravity`.
+        /// Name of the load: that of the scene, `load 2` for the second if it has none, or `gravity`.
         load: String,
         /// The factor.
         factor: f64,
     },
-    /// Another integrator, which goes on from the state.
+    /// Another integrator, which continues from the state.
     Integrator {
         /// Its id.
         id: String,
@@ -33,10 +33,12 @@ pub enum Command {
     },
     /// Another step (s).
     Dt(f64),
-    /// The initial state, integrator and step again, with tools and loads as the scene has them. Steps are counted on.
+    /// The initial state, integrator and step again, with tools and loads as the scene has them. The count of steps
+    /// continues.
     Reset,
-    /// A cut by the sheet that a blade sweeps from one place to another, its two ends (m) before and after, in the configuration at the beginning of
-    /// the next step. One that does not begin where the last one ended lifts the blade before. The scene needs `[cutting]`.
+    /// A cut by the sheet that a blade sweeps from one position to another (its two ends, m, before and after), in the
+    /// configuration at the beginning of the next step. A cut that does not begin where the last one ended lifts the
+    /// blade first. The scene needs `[cutting]`.
     Cut {
         /// The ends before.
         from: [[f64; 3]; 2],
@@ -45,7 +47,7 @@ pub enum Command {
     },
 }
 
-/// Reasons for which a command is refused; the session goes on as if it had not come.
+/// Reasons for which a command is refused; the session continues as if it had not come.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum CommandError {

@@ -15,11 +15,11 @@ pub struct Course {
     pub steps: usize,
     /// The mean length (s) of its steps.
     pub dt: f64,
-    /// Whether all its steps have that length.
+    /// True if all its steps have that length.
     pub has_one_length: bool,
-    /// The integrators that took its steps, in the order of their first ones, with the options that were asked for. There is one at least.
+    /// The integrators that took its steps, in the order of their first ones, with the options as given; at least one.
     pub methods: Vec<(String, Options)>,
-    /// Whether loads are turned up or down in it.
+    /// True if commands scale loads in it.
     pub drives_loads: bool,
 }
 
@@ -31,7 +31,7 @@ struct Leg {
 }
 
 impl Course {
-    /// The motion up to where a session has taken so many steps.
+    /// The motion up to the point where a session has taken this many steps.
     pub(crate) fn of(log: &Log, simulation: &Simulation, steps: usize) -> Self {
         let before = log.up_to_last_reset();
         let first = before.last().map_or(0, |reset| reset.step);
@@ -62,14 +62,15 @@ impl Course {
         }
     }
 
-    /// Whether one method takes all its steps, of one length.
+    /// True if one method takes all its steps, of one length.
     #[must_use]
     pub fn is_even(&self) -> bool {
         self.has_one_length && self.methods.len() == 1
     }
 }
 
-/// What took so many steps after the `first` ones, with these commands since. Where there are no steps, the one leg has none.
+/// The legs of `steps` steps after the `first` ones, with these commands since. If there are no steps, the one leg has
+/// none.
 fn legs(since: &[Entry], simulation: &Simulation, first: usize, steps: usize) -> Vec<Leg> {
     let settings = simulation.settings();
     let mut method = (settings.integrator.clone(), settings.options.clone());

@@ -36,11 +36,12 @@ pub enum WorldError {
     File(#[from] InputFileError),
 }
 
-/// Reasons for which a step fails. Only a reset goes on from there.
+/// Reasons for which a step fails. Only a reset continues from there.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum WorldStepError {
-    /// A displacement that is not finite, or beyond [`sinew_scene::Simulation::divergence_limit`]. The step was taken, and counts.
+    /// A displacement that is not finite, or beyond [`sinew_scene::Simulation::divergence_limit`]. The step was taken,
+    /// and counts.
     #[error("the motion diverged at t = {t} s: {place} is too far away")]
     Diverged {
         /// Time (s).

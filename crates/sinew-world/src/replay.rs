@@ -10,7 +10,8 @@ use crate::log::{Header, Log};
 use crate::recorder::{Recorder, Shown};
 use crate::world::{Ended, World};
 
-/// A session that is repeated by its log, step by step and bit for bit, from its last reset on: what came before left no trace but its number of steps.
+/// A session that is repeated by its log, step by step and bit for bit, from its last reset on: earlier motion has no
+/// effect except for its number of steps.
 ///
 /// ```
 /// use sinew_scene::{Scene, SceneSource};
@@ -48,7 +49,7 @@ pub enum ReplayError {
         "the log is that of another scene: {what}; give the scene, and the values of the command line, with which the session ran"
     )]
     OtherScene {
-        /// What differs.
+        /// Description of the difference.
         what: String,
     },
     /// A command that is refused, which it was not in the session.
@@ -120,7 +121,7 @@ impl Replay {
         Ok(replay)
     }
 
-    /// Sentences where another version of the program wrote the log, so that bits may differ, and where its end is missing.
+    /// Sentences if another version of the program wrote the log, so that bits may differ, and if its end is missing.
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
         let (theirs, own) = (&self.log.header().program, env!("CARGO_PKG_VERSION"));
@@ -196,13 +197,13 @@ impl Replay {
         Course::of(&self.log, self.world.simulation(), self.log.steps())
     }
 
-    /// As much of [`Replay::course`] as is repeated.
+    /// The part of [`Replay::course`] that is already repeated.
     #[must_use]
     pub fn course_so_far(&self) -> Course {
         Course::of(&self.log, self.world.simulation(), self.world.steps())
     }
 
-    /// Repeats what is left, and shows it to a recorder. Time rises in it.
+    /// Repeats the rest, and shows it to a recorder. Time rises in it.
     ///
     /// # Errors
     /// [`FollowError`] for a motion that takes another course than its log, and for a recorder that fails.

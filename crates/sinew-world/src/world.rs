@@ -27,12 +27,13 @@ const STRONGEST: f64 = 1e6;
 
 /// A scene in motion: the only thing that takes its steps.
 ///
-/// It holds the scene as it was built, the body as cuts left it, state, integrator, tools and inputs. A [`Recorder`] sees
-/// the motion of [`World::advance`]; [`Command`]s between steps steer tools, turn loads up and down, cut, and switch methods.
+/// It holds the scene as it was built, the body after its cuts, state, integrator, tools and inputs. A [`Recorder`]
+/// observes the motion of [`World::advance`]; [`Command`]s between steps steer tools, scale loads, cut, and switch
+/// methods.
 ///
-/// A world of [`World::new`] takes commands, and its [`Log`] repeats it bit for bit. Without commands it takes the steps of
-/// [`World::following`], with the same bits, unless a tool is smaller than the surface triangles somewhere off its path: it may be
-/// steered there, and meets triangles from the beginning.
+/// A world of [`World::new`] takes commands, and its [`Log`] repeats it bit for bit. Without commands it takes the
+/// steps of [`World::following`], with the same bits, unless a tool is smaller than the surface triangles somewhere off
+/// its path: it may be steered there, and meets triangles from the beginning.
 ///
 /// ```
 /// use sinew_scene::{Scene, SceneSource};
@@ -52,15 +53,15 @@ const STRONGEST: f64 = 1e6;
 pub struct World {
     /// The scene as it was built.
     scene: Arc<Simulation>,
-    /// The scene on the body as cuts left it, with its loads as it has them.
+    /// The scene on the body after its cuts, with its own loads.
     body: Arc<Simulation>,
-    /// The scene as it runs: from the first factor of a load on with loads that follow inputs. Until then they are known
-    /// beforehand, which some methods need, and every sum has the bits of a run.
+    /// The scene as it runs: its loads follow inputs from the first load factor on. Until then they are known in
+    /// advance, which some methods need, and every sum has the bits of a run.
     simulation: Arc<Simulation>,
     cutter: Option<Cutter>,
     /// Sheets that the next step begins with.
     sheets: Vec<Sheet>,
-    /// The last place of the blade of the last sheet.
+    /// The last position of the blade of the last sheet.
     blade: Option<[[f64; 3]; 2]>,
     /// The cut at the beginning of the last step.
     change: Option<BodyCut>,
@@ -103,7 +104,7 @@ pub enum Ended {
 /// All that the motion of a world continues from.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Saved {
-    /// What was cut; empty if nothing can cut.
+    /// The cutter, as bytes; empty if nothing can cut.
     pub cuts: Vec<u8>,
     /// The state, see [`State::to_bytes`].
     pub state: Vec<u8>,
@@ -121,20 +122,20 @@ struct Method {
     stable_step: OnceCell<Option<f64>>,
 }
 
-/// A tool in a hand.
+/// A tool that commands may steer.
 struct Hand {
     steering: Steering,
-    /// Position (m) and rotation vector (rad) where it goes, and then stays; `None` while it follows the scene.
+    /// Position (m) and rotation vector (rad) to which it moves, and where it stays; `None` while it follows the scene.
     target: Option<([f64; 3], [f64; 3])>,
-    /// Whether it was given a pose.
+    /// True if it was given a pose.
     is_steered: bool,
 }
 
-/// A load that is turned up and down.
+/// A load that commands may scale.
 struct Knob {
     name: String,
     channel: Channel,
-    /// The factor that it is to have from the next step on.
+    /// The factor that applies from the next step on.
     next: Option<f64>,
 }
 
@@ -276,7 +277,8 @@ impl World {
         self
     }
 
-    /// The scene as it is driven: mesh, tools, loads, title. Another one from the first factor of a load on, with the same mesh and tools, and after each cut.
+    /// The scene as it is driven: mesh, tools, loads, title. It is replaced at the first factor of a load, with the
+    /// same mesh and tools, and after each cut.
     #[must_use]
     pub fn simulation(&self) -> &Arc<Simulation> {
         &self.simulation
@@ -288,7 +290,7 @@ impl World {
         self.body.with_driven_loads(&channels)
     }
 
-    /// Inputs from outside as they were given so far.
+    /// External inputs as given so far.
     #[must_use]
     pub fn inputs(&self) -> &Inputs {
         &self.inputs
@@ -297,7 +299,7 @@ impl World {
     /// Checks a command, which takes effect with the next step, and keeps it in the log.
     ///
     /// # Errors
-    /// [`CommandError`] for a command that cannot be followed: the session goes on as before.
+    /// [`CommandError`] for a command that cannot be followed: the session continues as before.
     pub fn command(&mut self, command: Command) -> Result<(), CommandError> {
         if self.failure.is_some() && command != Command::Reset {
             return Err(CommandError::Failed);
@@ -347,7 +349,8 @@ impl World {
         Ok(())
     }
 
-    /// Stands, in the beginning, where the last of these commands, a reset, left a session: all that it did before is told by the log alone.
+    /// Begins in the state in which the last of these commands, a reset, left a session: the motion before it is only
+    /// in the log.
     pub(crate) fn begin_at_reset(&mut self, commands: &[Entry]) -> Result<(), CommandError> {
         self.command(Command::Reset)?;
         self.log.begin_with(commands);
@@ -355,8 +358,9 @@ impl World {
         Ok(())
     }
 
-    /// Checks what can be told of a command before it is given: its names, its numbers and, for the first factor of a load, whether the method takes
-    /// loads that are not known beforehand. Whether a step can be taken by another method shows when that is given.
+    /// Checks a command as far as possible before it is given: its names, its numbers and, for the first factor of a
+    /// load, whether the method supports loads that are not known in advance. Whether another method can take a step is
+    /// found only when it is given.
     ///
     /// # Errors
     /// [`CommandError`] for a command that [`World::command`] refuses as well.
@@ -463,12 +467,12 @@ impl World {
         Ok(())
     }
 
-    /// Whether loads follow inputs.
+    /// True if loads follow inputs.
     fn drives_loads(&self) -> bool {
         !Arc::ptr_eq(&self.simulation, &self.body)
     }
 
-    /// The scene with loads that follow inputs, and the method, which can take a step of it.
+    /// The scene with loads that follow inputs, and the method, after a check that it can take a step.
     fn driven_method(&self) -> Result<(Arc<Simulation>, Method), CommandError> {
         let driven = Arc::new(self.driven()?);
         let (id, options) = &self.method.asked;
@@ -503,8 +507,8 @@ impl World {
     /// Takes one step of [`World::dt`].
     ///
     /// # Errors
-    /// [`WorldStepError`] where the motion diverges, a law refuses a state or a method finds no solution: only [`Command::Reset`]
-    /// continues from there, and every other step gives the same error.
+    /// [`WorldStepError`] if the motion diverges, a law refuses a state or a method finds no solution: only
+    /// [`Command::Reset`] continues from there, and every other step gives the same error.
     pub fn step(&mut self) -> Result<StepReport, WorldStepError> {
         self.guarded(|world| {
             world.begin_step()?;
@@ -827,7 +831,8 @@ impl World {
         &*self.method.integrator
     }
 
-    /// The largest stable step (s) of the integrator on the body at rest, found at the first request; `None` where every step is stable or none is known.
+    /// The largest stable step (s) of the integrator on the body at rest, computed at the first request; `None` if
+    /// every step is stable or no limit is known.
     #[must_use]
     pub fn stable_step(&self) -> Option<f64> {
         *self.method.stable_step.get_or_init(|| {
@@ -855,32 +860,32 @@ impl World {
         self.reached
     }
 
-    /// The failure of the last step, from which only a reset goes on.
+    /// The failure of the last step, from which only a reset continues.
     #[must_use]
     pub fn failure(&self) -> Option<&WorldStepError> {
         self.failure.as_ref()
     }
 
-    /// What was cut since the last reset; `None` where the scene has no `[cutting]`.
+    /// Totals of the cuts since the last reset; `None` if the scene has no `[cutting]`.
     #[must_use]
     pub fn cuts(&self) -> Option<&CutTotals> {
         self.cutter.as_ref().map(Cutter::totals)
     }
 
-    /// What cuts the body, where something may.
+    /// The cutter of the body, if it may be cut.
     #[must_use]
     pub fn cutter(&self) -> Option<&Cutter> {
         self.cutter.as_ref()
     }
 
-    /// The change of the body at the beginning of the last step; `None` where it stayed as it was.
+    /// The change of the body at the beginning of the last step; `None` if it did not change.
     #[must_use]
     pub fn change(&self) -> Option<&BodyCut> {
         self.change.as_ref()
     }
 
-    /// Where parts or surfaces of the body are deepest in each other now, which nothing keeps from it. A look costs some microseconds for each triangle of
-    /// the surface: a session takes none by itself.
+    /// Deepest overlap now of parts or surfaces of the body, between which there is no contact. A check costs some
+    /// microseconds per triangle of the surface: a session makes none automatically.
     #[must_use]
     pub fn overlap(&self) -> Option<Overlap> {
         let mut watch = OverlapWatch::new(self.simulation.model().body()?);

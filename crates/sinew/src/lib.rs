@@ -1,8 +1,9 @@
 //! Soft-tissue dynamics for surgical simulation: all sinew crates under one name.
 //!
-//! Each crate also works alone. The default feature `cli` builds the `sinew` command; a program that does not
-//! need it depends on `sinew = { version = "..", default-features = false }`, which leaves out the command's
-//! libraries, and adds the features `implicit` (implicit methods), `rayon` (threads) and `haptics` (devices with force feedback) where it wants them.
+//! Each crate also works alone. The default feature `cli` builds the `sinew` command; a program that does not need it
+//! depends on `sinew = { version = "..", default-features = false }`, which leaves out the command's libraries, and
+//! adds the features `implicit` (implicit methods), `rayon` (threads) and `haptics` (devices with force feedback) as
+//! needed.
 //!
 //! ```
 //! use sinew::prelude::*;

@@ -1,13 +1,12 @@
 //! A run that is stopped half-way and continued by another process, to the same bits.
 //!
-//! A [`State`] is all that a method must remember, whatever the method: a velocity half a step behind,
-//! an acceleration, the energy with which a guarded motion began. [`State::to_bytes`] writes it down and
-//! [`State::from_bytes`] reads it for a system built anew in the same way. The method itself is built anew
-//! too; its caches follow from system and step. What acts from outside is a record, [`Inputs`], which is
-//! written and read in the same way.
+//! A [`State`] contains all history of a method, whatever the method: a velocity half a step behind, an acceleration,
+//! the energy with which a guarded motion began. [`State::to_bytes`] writes it and [`State::from_bytes`] reads it for a
+//! system that is built again in the same way. The method itself is built again too; its caches follow from system and
+//! step. External forces are a record, [`Inputs`], which is written and read in the same way.
 //!
-//! Bytes that are cut off or damaged are refused, and so is the state of another body: it carries a
-//! fingerprint of the masses and matrices with which it was written. Loads are not part of that.
+//! Bytes that are cut off or damaged are refused, and so is the state of another body: it carries a fingerprint of the
+//! masses and matrices with which it was written. Loads are not part of that.
 //!
 //! ```sh
 //! cargo run --release
@@ -38,9 +37,9 @@ const RECORD: &str = "inputs";
 struct Method {
     id: &'static str,
     option: Option<(&'static str, &'static str)>,
-    /// Whether a hand pulls; a guard of energies needs all forces beforehand.
+    /// True if a user's force pulls; a guard of energies needs all forces in advance.
     is_pulled: bool,
-    /// What the state keeps for it besides displacement and velocity at one time.
+    /// History of the method in the state, besides displacement and velocity at one time.
     keeps: &'static str,
 }
 
@@ -157,7 +156,7 @@ fn finish(method: &Method, folder: &Path) -> Result<(), Box<dyn Error>> {
     Ok(std::fs::write(file, state.to_bytes(&model))?)
 }
 
-/// What a hand does to a corner of the top: another force in every tenth step.
+/// Force of a user on a corner of the top: another one in every tenth step.
 fn pull(model: &Model) -> Result<Inputs, Box<dyn Error>> {
     let (corner, _) = model.mesh().nearest_node([0.1, 0.1, 0.1]);
     let mut record = Inputs::new();

@@ -5,8 +5,8 @@ use sinew_core::{
     SetupError, StableStep, State, StepError, StepReport, Stepped, System,
 };
 
-/// When each stage takes forces, as a share of the step, and the weight of its Euler step against
-/// the state at the beginning of the step (Shu and Osher, J. Comput. Phys. 77, 1988).
+/// Time at which each stage takes forces, as a share of the step, and the weight of its Euler step relative to the
+/// state at the beginning of the step (Shu and Osher, J. Comput. Phys. 77, 1988).
 const STAGES: [(f64, f64); 3] = [(0.0, 1.0), (1.0, 1.0 / 4.0), (0.5, 2.0 / 3.0)];
 
 /// Three Euler steps, each averaged with the state at the beginning of the step.
@@ -44,7 +44,7 @@ impl Integrator for SspRk3 {
         Ok(StepReport::default())
     }
 
-    /// Where the fastest motion `exp(lambda t)` leaves the region `|R(lambda dt)| <= 1`: at
+    /// Stability limit: the step at which the fastest motion `exp(lambda t)` leaves the region `|R(lambda dt)| <= 1`,
     /// `sqrt 3/omega_max` without damping.
     fn stable_step_about(
         &self,

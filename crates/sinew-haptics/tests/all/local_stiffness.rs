@@ -49,7 +49,7 @@ impl Press {
         }
     }
 
-    /// What is published at a depth (m) when all is at rest, after this many iterations for the stiffness.
+    /// Result published at a depth (m) when all is at rest, after this many iterations for the stiffness.
     fn to(&mut self, depth: f64, iterations: usize) -> Published {
         let from = self.depth;
         self.depth = depth;

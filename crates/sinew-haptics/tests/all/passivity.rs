@@ -1,13 +1,14 @@
-//! What a device gets out of couplings and simulations that are late or wrong, in simulated time. Those that are neither are in the verification.
+//! Energy that a device takes out of couplings and of simulations that are late or wrong, in simulated time.
+//! Simulations that are neither are part of the verification.
 
 use std::f64::consts::TAU;
 
 use sinew_haptics::{Coupling, Device, Lockstep, Published, RigidWall, Simulated, SoftwareDevice};
 
-/// Energy (J) that a device may get out: that of no path, with room for what its encoder does not see.
+/// Energy (J) that a device may take out: that of no path, with a margin for motion that its encoder does not see.
 const MOST: f64 = 1e-6;
 
-/// What a hand met in a run.
+/// Peak force (N) and energy (J) in a run, from the view of the hand.
 #[derive(Debug, Default)]
 struct Felt {
     peak: f64,
@@ -121,7 +122,8 @@ fn nothing_that_a_simulation_says_gives_energy() {
     }
 }
 
-/// The energy (J) that a device gets out of a coupling to where a tool was last and how it moved, without regard to energy: what the loop of this crate does not do.
+/// The energy (J) that a device takes out of a coupling to a tool that is extrapolated from its last position and
+/// velocity, without regard to energy: the method that the loop of this crate avoids.
 fn taken_out_of_a_plain_coupling<S: Simulated>(
     mut simulation: S,
     coupling: Coupling,

@@ -69,7 +69,7 @@ pub(super) fn compare(
 /// Differences of the frames that were seen.
 #[derive(Default)]
 struct Found {
-    /// Where a point at rest was farthest from its counterpart.
+    /// Largest distance between a point at rest and its counterpart.
     points: Option<Difference>,
     /// The first frame whose cells differ, in how many of them.
     cells: Option<Difference>,

@@ -1,4 +1,4 @@
-//! What a comparison finds, and why there is none.
+//! Result of a comparison, and the reasons for which there may be none.
 
 use std::path::{Component, Path, PathBuf};
 
@@ -13,7 +13,7 @@ pub struct Difference {
     pub unit: String,
     /// The largest difference; of vectors its length.
     pub largest: f64,
-    /// That over the largest value of the quantity in the first result; 0 where both are 0.
+    /// `largest` over the largest value of the quantity in the first result; 0 if both are 0.
     pub relative: f64,
     /// Its time (s).
     pub t: f64,
@@ -24,9 +24,9 @@ pub struct Difference {
 /// The differences between two results.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Comparison {
-    /// Of each quantity that both have.
+    /// One difference for each quantity that both results have.
     pub differences: Vec<Difference>,
-    /// What could not be compared, one sentence each.
+    /// Quantities that could not be compared, one sentence each.
     pub left_out: Vec<String>,
 }
 
@@ -53,7 +53,7 @@ pub enum CompareError {
     Damaged {
         /// The file.
         path: PathBuf,
-        /// What is wrong.
+        /// Description of the damage.
         reason: String,
     },
 }

@@ -53,7 +53,7 @@ fn point(place: &str) -> Option<[f64; 3]> {
     numbers.ok()?.try_into().ok()
 }
 
-/// The largest distance of points (m) from their counterparts; `None` where it is within this share of their coordinates.
+/// The largest distance of points (m) from their counterparts; `None` if it is within this share of their coordinates.
 pub(super) fn apart(
     of: &'static str,
     same: f64,

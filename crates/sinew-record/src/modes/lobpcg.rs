@@ -41,7 +41,8 @@ pub enum ModesError {
 /// Rounds of the iteration.
 const MOST_ROUNDS: usize = 500;
 
-/// Preconditioned residual of a mode, relative to its length, at which it is found: its eigenvalue is then exact to the square.
+/// Preconditioned residual of a mode, relative to its length, at which it counts as converged: the error of its
+/// eigenvalue is then the square of that.
 const CONVERGED: f64 = 1e-6;
 
 /// Share of the largest stiffness over mass by which the matrix is shifted, so that a free body has a factor.
@@ -53,12 +54,12 @@ const RIGID: f64 = 1e-10;
 /// Part of its length below which what is left of a vector is rounding of those before it.
 const DEPENDENT: f64 = 1e-8;
 
-/// The modes of the smallest eigenvalues (1/s^2) of M^-1 K, with their shapes of modal mass 1, by LOBPCG (Knyazev, Toward
-/// the optimal preconditioned eigensolver, SIAM J. Sci. Comput. 23, 2001) with more vectors than modes: no mode is left out
-/// for being one of several of a frequency, or for being orthogonal to loads. The preconditioner is a factor, or two grids where
-/// there is no memory for one.
+/// The modes of the smallest eigenvalues (1/s^2) of M^-1 K, with their shapes of modal mass 1, by LOBPCG (Knyazev,
+/// Toward the optimal preconditioned eigensolver, SIAM J. Sci. Comput. 23, 2001) with more vectors than modes: no mode
+/// is missed because its frequency is multiple, or because it is orthogonal to loads. The preconditioner is a factor,
+/// or two grids if there is no memory for one.
 ///
-/// A body that can move as a whole has no factor: its matrix is shifted by a part of M.
+/// A body with rigid-body modes has no factor: its matrix is shifted by a part of M.
 pub(super) fn lowest(
     operators: &LinearOperators,
     count: usize,
@@ -76,7 +77,7 @@ pub(super) fn lowest(
     outcome
 }
 
-/// Whether a motion along an axis meets no spring.
+/// True if a translation of all nodes along an axis strains no spring.
 fn moves_as_a_whole(operators: &LinearOperators, root: &[f64], stiffest: f64) -> bool {
     let layers = operators.stiffness().layers().count();
     (0..layers).any(|axis| {
@@ -233,7 +234,8 @@ impl Basis {
         true
     }
 
-    /// Eigenvalues of the matrix on the space of the vectors, the smallest first, and its eigenvectors by their shares of the vectors.
+    /// Eigenvalues of the matrix on the space of the vectors, the smallest first, and its eigenvectors by their shares
+    /// of the vectors.
     fn eigen(&self) -> Result<(Vec<f64>, Mat<f64>), ModesError> {
         let size = self.vectors.len();
         // The lower triangle alone is read.

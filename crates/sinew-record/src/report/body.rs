@@ -88,7 +88,7 @@ pub(super) fn section(
     beside::figures(page, &drawn);
 }
 
-/// Whether a triangle shows its outside.
+/// True if a triangle shows its outside to the viewer.
 fn faces([a, b, c]: &[[f64; 3]; 3]) -> bool {
     let edge = |to: &[f64; 3]| -> [f64; 3] { std::array::from_fn(|axis| to[axis] - a[axis]) };
     let (p, q) = (edge(b), edge(c));

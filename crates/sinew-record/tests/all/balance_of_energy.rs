@@ -66,8 +66,8 @@ fn gravity_and_springs_with_dashpots_are_in_it() {
     assert!(worst < 1e-10 * damped, "{worst:e} {damped:e}");
 }
 
-/// Methods that damp by themselves: what they take is known, grows where nothing is fed in, and leaves rounding. It stays
-/// so over an interruption, and is not said where a row is several steps from the last.
+/// Dissipative methods: the energy that they take is known and never falls while none is supplied, and only rounding
+/// remains. It is known after an interruption too, and is not reported if rows are several steps apart.
 #[test]
 fn methods_that_take_energy_say_how_much() {
     let damped = format!("{PRESSED}[damping]\nmass = 5.0\nstiffness = 0.002\n");
@@ -122,7 +122,7 @@ fn central_differences_swing_about_it() {
     assert!(fine < 0.02, "{fine}");
 }
 
-/// What a support in motion does is the work of its reaction, jumps of its speed included.
+/// Work of a moved support is the work of its reaction, jumps of its speed included.
 #[test]
 fn supports_in_motion_do_work() {
     let moved = "[[fixed]]\ngroup = \"bottom\"\n[[move]]\ngroup = \"top\"\n";
@@ -138,8 +138,8 @@ fn supports_in_motion_do_work() {
     }
 }
 
-/// A body that is carried by its base and gains speed evenly: the base pushes with the mass of all of it, its own nodes' too, whether its way
-/// is a formula or a table, and however far the rows are apart.
+/// A body that its base accelerates uniformly: the force on the base is that of the whole mass, including the base's
+/// own nodes, whether the motion is smooth or a table, and for any spacing of the rows.
 #[test]
 fn a_base_pushes_with_the_whole_mass_whatever_its_way() {
     let (acceleration, end) = (4.0, 0.4);
@@ -172,7 +172,8 @@ fn a_base_pushes_with_the_whole_mass_whatever_its_way() {
     }
 }
 
-/// A body that its base carries without strain feels none of its damping, and neither does the base, whatever a method sets beside whose speed.
+/// A body that its base moves without strain has no damping force, and neither has the base, whatever times a method
+/// uses for the velocities of cells and of supports.
 #[test]
 fn damping_adds_nothing_to_the_push_of_a_base() {
     let (acceleration, edge, end) = (4.0, 0.02, 0.08_f64);
@@ -235,7 +236,8 @@ fn dashpots_at_moved_supports_are_in_it() {
     assert!(fine < 2e-3 && coarse > 3.0 * fine, "{coarse} {fine}");
 }
 
-/// Stiffness damping of tissue in large deformation, between a part that is moved and the rest: what damping took never falls, and with it the balance closes.
+/// Stiffness damping of tissue in large deformation, between a part that is moved and the rest: the dissipated energy
+/// never falls, and with it the balance closes.
 #[test]
 fn stiffness_damping_at_moved_supports_of_soft_tissue_is_in_it() {
     let text = |law: &str, dt: &str| {
@@ -276,7 +278,7 @@ fn stiffness_damping_at_moved_supports_of_soft_tissue_is_in_it() {
     }
 }
 
-/// What a run warns of that has to do with energy that a method took.
+/// The warning of a run about energy that a method took.
 fn told(simulation: &sinew_scene::Simulation) -> Option<String> {
     let place = tempfile::tempdir().unwrap();
     let end = run(&place.path().join("out"), simulation, &mut ());
@@ -328,7 +330,8 @@ fn what_implicit_euler_takes_from_an_oscillator_is_told_with_its_share() {
     }
 }
 
-/// With rows for every step or only some, on linear bodies and others, whatever puts the energy in; and the method that it names keeps it.
+/// Warnings are given with rows for every step or only some, on linear bodies and others, whatever supplies the energy;
+/// and the method that they name conserves it.
 #[test]
 fn methods_that_take_much_energy_are_told_with_one_that_keeps_it() {
     let body = |model: &str, more: &str, run: &str| {
@@ -394,7 +397,8 @@ fn methods_that_take_much_energy_are_told_with_one_that_keeps_it() {
     }
 }
 
-/// What damping takes, what memory dissipates, and a motion that is slow beside the steps are no loss by the method.
+/// Energy taken by damping or memory, and a motion that is slow relative to the steps, are not reported as a loss by
+/// the method.
 #[test]
 fn energy_that_tissue_takes_is_not_told_as_the_methods() {
     let body = |region: &str, more: &str, run: &str| {
@@ -432,7 +436,8 @@ fn energy_that_tissue_takes_is_not_told_as_the_methods() {
     }
 }
 
-/// A row comes after several parts of a step, with the motion between them: the balance closes as with a fixed step that is as long as parts at rest.
+/// A row comes after several substeps, with the motion between them: the balance closes as with a fixed step that is as
+/// long as substeps at rest.
 #[test]
 fn steps_that_are_taken_again_leave_what_a_fixed_step_leaves_of_the_work_of_supports() {
     for (ratio, rise) in [(0.45, 0.05), (0.3, 0.06)] {
@@ -485,7 +490,7 @@ fn steps_of_several_parts_leave_little_of_what_damping_takes() {
     assert!(of_parts < 1e-3 + 2.0 * whole, "{of_parts} {whole}");
 }
 
-/// What a run says of energy, in a folder and beside its probes alone.
+/// Messages of a run about energy, with a folder and with its probes alone.
 fn said_both_ways(text: &str) -> [Vec<String>; 2] {
     let simulation = crate::common::build(text);
     let place = tempfile::tempdir().unwrap();
@@ -561,7 +566,8 @@ fn energy_that_a_clamp_takes_is_told_with_its_share() {
     }
 }
 
-/// Newmark's method promises the energy of linear tissue only. The warnings name a method that keeps it here, which does.
+/// Newmark's method conserves the energy of linear tissue only. The warnings name a method that conserves it here, as
+/// is checked.
 #[test]
 fn energy_that_newmark_loses_or_makes_on_thrown_soft_tissue_is_told_with_a_remedy() {
     for (dt, words) in [

@@ -199,8 +199,8 @@ fn velocities_and_stresses_are_compared_as_a_whole() {
     }
 }
 
-/// Every array, the points and the cells are read: a bit that fell over anywhere in a frame is a difference, a damaged file or an array that has no
-/// counterpart.
+/// Every array, the points and the cells are read: a flipped bit anywhere in a frame is a difference, a damaged file or
+/// an array that has no counterpart.
 #[test]
 fn no_bit_of_a_frame_falls_over_unseen() {
     let place = tempfile::tempdir().unwrap();

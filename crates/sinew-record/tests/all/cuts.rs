@@ -280,7 +280,7 @@ fn sheets_from_outside_are_repeated_bit_for_bit_and_recorded() {
     );
 }
 
-/// Elements that average strain change their energy as a body that is stretched is cut, whether a part of it is moved or not.
+/// Elements that average strain change their energy when a stretched body is cut, whether a part of it is moved or not.
 #[test]
 fn energy_of_a_cut_is_known_where_supports_move() {
     let strokes = "stroke,t_s,ax_m,ay_m,az_m,bx_m,by_m,bz_m\n1,0.06,0.0103,-0.03,-0.02,0.0103,-0.03,0.04\n1,0.08,0.0103,0.05,-0.02,0.0103,0.05,0.04\n";

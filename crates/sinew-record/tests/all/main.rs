@@ -1,4 +1,4 @@
-//! What the folder of a run holds.
+//! Contents of the folder of a run.
 
 #![cfg(test)]
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]

@@ -224,7 +224,8 @@ fn arrays(text: &str, has_groups: bool) -> BTreeSet<String> {
     points
 }
 
-/// Keys of an object and of those within it; lists of numbers, what is kept of a request and the options of a method are values.
+/// Keys of an object and of those within it; lists of numbers, the stored request and the options of a method are
+/// values.
 fn add_keys(value: &Value, key: String, keys: &mut BTreeSet<String>) {
     match value {
         Value::Null => {}

@@ -1,4 +1,4 @@
-//! What is written of sessions that are repeated by their logs.
+//! Results of sessions that are replayed by their logs.
 
 use std::fs;
 use std::path::Path;
@@ -50,7 +50,8 @@ fn a_session_without_commands_leaves_the_tables_and_frames_of_the_run() {
     assert!(said.contains("with which no run can go on"), "{said}");
 }
 
-/// Loads that are turned up and down, another step, and a reset before: the balance of mean acceleration is closed but for rounding.
+/// Loads scaled by commands, another step, and a reset before: the balance of mean acceleration is closed except for
+/// rounding.
 #[test]
 fn a_driven_session_is_recorded_since_its_last_reset_and_its_energy_adds_up() {
     let place = tempfile::tempdir().unwrap();

@@ -115,7 +115,8 @@ fn compressed_fields_are_the_same_and_steps_of_tetrahedra_are_above_that_of_the_
     );
 }
 
-/// What a plan says of the size of a folder is what a run writes: frames to their text, tables to how long numbers are.
+/// Sizes of a folder that a plan predicts are those that a run writes: of frames except for their text, of tables
+/// except for the length of numbers.
 #[test]
 fn the_size_of_a_folder_is_told_before() {
     let place = tempfile::tempdir().unwrap();
@@ -210,7 +211,8 @@ fn supports_that_share_nodes_share_no_force() {
     }
 }
 
-/// A step far too long turns tetrahedra inside out, of which the law has no force and so no acceleration. No row of the energy is due there, which would be refused before.
+/// A step far too long inverts tetrahedra, for which the law has no force and so no acceleration. No row of the energy
+/// is due there, which would be refused before.
 #[test]
 fn a_run_ends_by_name_where_a_frame_asks_for_an_acceleration_that_the_law_refuses() {
     let place = tempfile::tempdir().unwrap();

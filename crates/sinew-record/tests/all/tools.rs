@@ -1,4 +1,4 @@
-//! What is written of tools.
+//! Results about tools.
 
 use std::fs;
 use std::path::Path;
@@ -13,7 +13,8 @@ use crate::tables_and_fields::singles;
 /// Young's modulus times area over length (N/m) of the bar.
 const STIFFNESS: f64 = 3000.0 * 0.1 * 0.1 / 0.1;
 
-/// The height (m) of the plate: down by 5 mm within 0.1 s, with a soft beginning and end, so that little is lost where nodes meet it.
+/// The height (m) of the plate: down by 5 mm within 0.1 s, with a smooth beginning and end, so that little energy is
+/// lost when nodes meet it.
 fn height(t: f64) -> f64 {
     let share = (t / 0.1).min(1.0);
     0.1 - 0.005 * (std::f64::consts::FRAC_PI_2 * share).sin().powi(2)
@@ -41,7 +42,8 @@ fn pressed(folder: &Path, duration: f64, more: &str) -> Simulation {
     simulation
 }
 
-/// A row at t = 0 and one for each step; once at rest the force is E A d/L, and no node is inside the plate at any time.
+/// A row at t = 0 and one for each step; once at rest the force is E A d/L, and no node is inside the plate at any
+/// time.
 #[test]
 fn a_plate_feels_hookes_law() {
     let place = tempfile::tempdir().unwrap();
@@ -74,7 +76,8 @@ fn a_plate_feels_hookes_law() {
     assert!(last("plate_torque_x_Nm").abs() < 1e-9 * force);
 }
 
-/// What goes in is the work of the plate: it stands in the bar, was damped, or was lost where nodes met the plate.
+/// Energy supplied is the work of the plate: it is stored in the bar, was damped, or was lost where nodes met the
+/// plate.
 #[test]
 fn the_work_of_tools_is_part_of_the_balance() {
     let place = tempfile::tempdir().unwrap();
@@ -96,7 +99,8 @@ fn the_work_of_tools_is_part_of_the_balance() {
     );
 }
 
-/// The pressure under the plate is E d/L wherever it touches, at edges and corners too, and its forces sum up to what the plate feels.
+/// The pressure under the plate is E d/L wherever it touches, at edges and corners too, and its forces sum up to the
+/// force on the plate.
 #[test]
 fn fields_have_forces_and_pressures_of_contact() {
     let place = tempfile::tempdir().unwrap();

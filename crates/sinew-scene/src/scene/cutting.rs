@@ -11,20 +11,20 @@ use crate::decode::{
 };
 use crate::error::{Fault, SceneError};
 
-/// What cuts the body.
+/// Cutting of the body: the table `[cutting]`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Cutting {
     /// Share of its shortest edge within which a node is moved onto the cut.
     pub snap: f64,
-    /// Energy (J/m^2) that new surface takes from the blade's work.
+    /// Energy (J/m^2) of the blade's work per area of new surface.
     pub toughness: f64,
     /// The blade.
     pub blade: Blade,
-    /// The tool (0-based) that takes away the tetrahedra inside it.
+    /// The tool (0-based) that removes the tetrahedra inside it.
     pub remove: Option<usize>,
-    /// What becomes of pieces that nothing holds.
+    /// Treatment of pieces that nothing holds.
     pub pieces: LoosePieces,
-    /// What the lips of a cut do to each other.
+    /// Interaction of the two faces of a cut.
     pub lips: Lips,
 }
 
@@ -39,28 +39,28 @@ pub enum Blade {
     Tool(usize),
 }
 
-/// What becomes of pieces that nothing holds or moves.
+/// Treatment of pieces that nothing holds or moves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LoosePieces {
-    /// They move on.
+    /// They continue to move.
     Fall,
-    /// They rest where they came off, and nothing touches them; another cut may go through them.
+    /// They rest where they came off, and nothing touches them; another cut may pass through them.
     Freeze,
-    /// They are taken away with their mass.
+    /// They are removed with their mass.
     Remove,
 }
 
-/// What the lips of a cut do to each other.
+/// Interaction of the two faces of a cut.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Lips {
-    /// While they face each other, they do not pass each other.
+    /// Contact: while they face each other, they do not pass through each other.
     Contact,
-    /// Nothing.
+    /// No interaction.
     Free,
 }
 
 impl Cutting {
-    /// Whether a tool (0-based) cuts or removes, so that it touches nothing.
+    /// True if a tool (0-based) cuts or removes, so that it touches nothing.
     #[must_use]
     pub fn is_by(&self, tool: usize) -> bool {
         self.blade == Blade::Tool(tool) || self.remove == Some(tool)

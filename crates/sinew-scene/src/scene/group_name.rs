@@ -61,7 +61,8 @@ impl Values for GroupName {
 }
 
 impl GroupName {
-    /// Reads the group that a table must name, as [`sinew_mesh::TetMesh::group`] takes it: with a dimension after a colon.
+    /// Reads the group that a table must name, as [`sinew_mesh::TetMesh::group`] takes it: with a dimension after a
+    /// colon.
     pub(super) fn required(table: &Table<'_>, key: &Key<GroupName>) -> Result<String, SceneError> {
         named(table, key.name, table.read(key)?)
     }

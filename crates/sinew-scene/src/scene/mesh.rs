@@ -39,7 +39,7 @@ pub enum MeshSource {
 /// Changes on the way from the source to the body, made in this order.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct MeshChanges {
-    /// Whether cells of second and higher order are taken by their corners.
+    /// True if cells of second and higher order are reduced to their corners.
     pub linear: bool,
     /// Factor of all coordinates.
     pub scale: Option<f64>,

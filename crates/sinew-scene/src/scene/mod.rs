@@ -94,7 +94,7 @@ pub struct Body {
     pub motions: Vec<Motion>,
     /// Rigid tools that press on it.
     pub tools: Vec<Tool>,
-    /// What cuts it; `None` for a body that stays whole.
+    /// Cutting of the body; `None` if it stays whole.
     pub cutting: Option<Cutting>,
     /// The CSV file of the factor of each load of `problem`, as written, if it is in one. `problem` has the factor once
     /// the scene is built.
@@ -224,7 +224,7 @@ impl Scene {
         &self.subject
     }
 
-    /// Whether a tool (0-based) cuts its body or takes parts of it away, so that it touches nothing.
+    /// True if a tool (0-based) cuts its body or removes parts of it, so that it touches nothing.
     pub(crate) fn is_cut_by(&self, tool: usize) -> bool {
         match &self.subject {
             Subject::Body(body) => body.is_cut_by(tool),
@@ -238,7 +238,7 @@ impl Scene {
         &self.settings
     }
 
-    /// What a run of it writes into its folder.
+    /// The outputs of a run of it.
     #[must_use]
     pub fn output(&self) -> &OutputSettings {
         &self.output
@@ -423,7 +423,7 @@ impl Body {
         }
     }
 
-    /// Whether a tool (0-based) cuts the body or takes parts of it away, so that it touches nothing.
+    /// True if a tool (0-based) cuts the body or removes parts of it, so that it touches nothing.
     #[must_use]
     pub fn is_cut_by(&self, tool: usize) -> bool {
         let cutting = self.cutting.as_ref();

@@ -15,12 +15,12 @@ use crate::error::SceneError;
 pub struct Motion {
     /// The group whose nodes are moved.
     pub group: String,
-    /// Whether x, y and z are prescribed; the other directions stay free.
+    /// True for each of x, y and z that is prescribed; the other directions stay free.
     pub axes: [bool; 3],
-    /// The way it goes.
+    /// The prescribed motion.
     pub way: Way,
-    /// The CSV file of the factor of a displacement, as written, if it is in one. `way` has the factor once the scene is
-    /// built.
+    /// The CSV file of the factor of a displacement, as written, if it is in one. `way` has the factor once the scene
+    /// is built.
     pub ramp_file: Option<PathBuf>,
 }
 

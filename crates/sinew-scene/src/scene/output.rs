@@ -1,37 +1,39 @@
-//! `[output]`: what a run writes into its folder, and how often.
+//! `[output]`: the outputs of a run, and their instants.
 
 use crate::decode::{
     Count, Flag, Inner, Key, Needs, Number, Optional, Or, Table, TableDescription, Usual,
 };
 use crate::error::SceneError;
 
-/// What a run writes into its folder, and how often.
+/// The outputs of a run, and their instants.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OutputSettings {
     /// Instants of the fields of the whole body.
     pub fields: Instants,
-    /// Instants of the rows of probes and tools; every step, as far as a table has room, where none are given.
+    /// Instants of the rows of probes and tools; if none are given, every step, up to the largest number of rows of a
+    /// table.
     pub probes: Option<Instants>,
-    /// Instants of the rows of energies and reactions; every step up to 10,000 of them; at the instants of the fields for bodies of more than 30,000 degrees of freedom where none are given.
+    /// Instants of the rows of energies and reactions; if none are given, every step, up to 10,000 rows; the instants
+    /// of the fields for bodies of more than 30,000 degrees of freedom.
     pub energy: Option<Instants>,
     /// Wall time (s) after which a run writes a checkpoint.
     pub checkpoint: f64,
-    /// Whether fields are those of the surface alone.
+    /// True if fields cover the surface only.
     pub surface_only: bool,
-    /// Whether fields have accelerations too.
+    /// True if fields include accelerations.
     pub acceleration: bool,
-    /// Whether fields have the largest step at which each tetrahedron alone would be stable.
+    /// True if fields include the largest stable step of each tetrahedron alone.
     pub step_limit: bool,
-    /// Whether fields are compressed.
+    /// True if fields are compressed.
     pub compress: bool,
 }
 
 /// Evenly spaced instants of a run, its beginning and its end among them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Instants {
-    /// So many seconds apart.
+    /// Instants at this interval (s).
     Every(f64),
-    /// So many intervals.
+    /// Number of intervals.
     Frames(usize),
 }
 

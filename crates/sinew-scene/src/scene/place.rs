@@ -327,7 +327,7 @@ fn bounds(
     Ok(Some(given.map(|bound| bound.unwrap_or(none))))
 }
 
-/// Whether a direction can be made of a vector: components so small or large that its length is 0 or infinite make none.
+/// True if a vector has a direction: its components are not so small or large that its length is 0 or infinite.
 fn has_length(vector: &[f64; 3]) -> bool {
     let length = vector.iter().map(|x| x * x).sum::<f64>().sqrt();
     length > 0.0 && length.is_finite()

@@ -8,14 +8,14 @@ use crate::decode::{
 };
 use crate::error::SceneError;
 
-/// A place of which something is written down.
+/// A place at which a quantity is recorded.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ProbePoint {
     /// Its name, which also begins the names of its columns.
     pub name: String,
     /// The place.
     pub at: ProbeAt,
-    /// What is written down of it.
+    /// Quantity that is recorded there.
     pub quantity: Quantity,
 }
 
@@ -28,7 +28,7 @@ pub enum ProbeAt {
     Mean(String),
 }
 
-/// What a probe writes down.
+/// Quantity that a probe records.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Quantity {
     /// Displacement (m).
@@ -170,7 +170,7 @@ fn read(table: &Table<'_>, selections: &mut Selections) -> Result<Vec<ProbePoint
     Ok((0..count).map(probe).collect())
 }
 
-/// Whether a name needs no quotes in a CSV file.
+/// True if a name needs no quotes in a CSV file.
 fn is_plain(name: &str) -> bool {
     let plain = |c: char| c.is_alphanumeric() || matches!(c, '-' | '_' | '.');
     name.chars().all(plain)

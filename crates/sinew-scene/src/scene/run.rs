@@ -26,9 +26,9 @@ pub struct RunSettings {
     pub integrator: String,
     /// The step as the scene asks for it.
     pub dt: TimeStep,
-    /// The most memory (MB) that factors may take; what the computer has left where none is given.
+    /// The most memory (MB) that factors may take; if none is given, the free memory of the computer.
     pub memory: Option<f64>,
-    /// Whether it is meant that nothing holds the body or a part of it.
+    /// True if the user intends that nothing holds the body or a part of it.
     pub free_flight: bool,
     /// The integrator's own options.
     pub options: Options,

@@ -36,7 +36,7 @@ pub enum Members {
 /// The way a part is chosen.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Choice {
-    /// By conditions on its nodes.
+    /// Conditions on its nodes.
     Where(Selection),
     /// The tetrahedra that no other region has.
     Rest,

@@ -1,4 +1,4 @@
-//! What tissue has beside an isotropic law, in `[[region]]`.
+//! Properties of tissue that an isotropic law does not have, in `[[region]]`.
 
 use std::ops::Bound;
 
@@ -145,7 +145,8 @@ pub(super) const MODULI: Key<Words<Moduli>, Or<Moduli>> = Key::or(
 )
 .only(&[Condition::with(PRONY.name, "goes with `prony` only")]);
 
-/// What the table of a region with this law of large deformation says, and the name of the data that give the direction of fibres.
+/// Reads the tissue in the table of a region with this law of large deformation, and the name of the data that contain
+/// the direction of fibres.
 pub(super) fn read(region: &Table<'_>, law: &str) -> Result<(Tissue, Option<String>), SceneError> {
     let fibres = region.table(&FIBRES_OF_REGION)?;
     let (fibres, data) = fibres.as_ref().map(fibre_family).transpose()?.unzip();

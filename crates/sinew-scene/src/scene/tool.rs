@@ -29,7 +29,7 @@ pub struct Tool {
     pub friction: f64,
     /// The group whose nodes it can touch; `None` for the surface of the body.
     pub touches: Option<String>,
-    /// What happens where it begins inside the body.
+    /// Treatment of a tool that begins inside the body.
     pub starts_inside: StartsInside,
     /// The time for which it seizes what it touches.
     pub grasp: Option<Grasp>,
@@ -57,7 +57,7 @@ pub struct ToolStart {
     pub rotation: [f64; 3],
 }
 
-/// What happens where a tool begins inside the body.
+/// Treatment of a tool that begins inside the body.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum StartsInside {
     /// The scene is refused.
@@ -67,7 +67,7 @@ pub enum StartsInside {
 }
 
 impl Tool {
-    /// Whether its shape is a blade, which cuts and touches nothing.
+    /// True if its shape is a blade, which cuts and touches nothing.
     #[must_use]
     pub fn is_blade(&self) -> bool {
         let is_blade = |part: &ToolPart| matches!(part.shape, ToolShape::Blade { .. });
@@ -376,7 +376,7 @@ fn grasp(table: &Table<'_>) -> Result<Grasp, SceneError> {
     Ok(Grasp { from, to })
 }
 
-/// Whether a name can head columns of a CSV file and stand in a key.
+/// True if a name is suitable as the start of CSV column names and as part of a key.
 fn is_plain(name: &str) -> bool {
     let plain = |c: char| c.is_alphanumeric() || matches!(c, '-' | '_');
     name.chars().all(plain)

@@ -62,7 +62,7 @@ pub(super) fn build(
     })
 }
 
-/// What cuts a body, its table read.
+/// The cutting of a body, with the table of its blade read.
 pub(super) fn cut_plan(body: &Body, places: &Places) -> Result<Option<Arc<CutPlan>>, SceneError> {
     let Some(cutting) = &body.cutting else {
         return Ok(None);

@@ -8,7 +8,7 @@ use super::cutter::CuttingError;
 use crate::scene::Blade;
 
 impl CutPlan {
-    /// Whether the scene cuts after a time (s).
+    /// True if the scene cuts after a time (s).
     fn cuts_after(&self, t: f64) -> bool {
         let last = self.strokes.as_ref().and_then(sinew_cutting::Strokes::span);
         let by_tool = self.cutting.remove.is_some() || matches!(self.cutting.blade, Blade::Tool(_));
@@ -17,14 +17,14 @@ impl CutPlan {
 }
 
 impl Simulation {
-    /// Whether the scene cuts its body after the beginning of the motion: it is none of a single body then.
+    /// True if the scene cuts its body after the beginning of the motion, so that the body changes during the motion.
     #[must_use]
     pub fn is_cut_later(&self) -> bool {
         let t = self.initial.t();
         self.cutting.as_ref().is_some_and(|plan| plan.cuts_after(t))
     }
 
-    /// The scene on the body that is cut by all strokes which end by the beginning of the motion, and by nothing later on.
+    /// The scene on the body as cut by all strokes that end by the beginning of the motion; nothing cuts it later.
     ///
     /// # Errors
     /// [`CuttingError`].

@@ -4,13 +4,13 @@ use std::sync::Arc;
 
 use sinew_mesh::{CutMesh, TetMesh};
 
-/// Where the parts of a body that was cut come from.
+/// Origin of the parts of a body that was cut.
 #[derive(Debug)]
 pub struct CutFrom {
     /// The mesh of the body before all cuts.
     pub uncut: Arc<TetMesh>,
-    /// The mesh of what is left, and where its parts come from.
+    /// The mesh of the remaining body, and the origin of its parts.
     pub cut: CutMesh,
-    /// The places, among the loads of the scene, of those that still act on something.
+    /// Indices, among the loads of the scene, of those that still act on something.
     pub(super) loads: Vec<usize>,
 }

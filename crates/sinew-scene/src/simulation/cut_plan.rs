@@ -1,10 +1,10 @@
-//! What cuts a body, its files read.
+//! The cutting of a body, with its files read.
 
 use sinew_cutting::Strokes;
 
 use crate::scene::Cutting;
 
-/// What cuts a body, its files read.
+/// The cutting of a body, with its files read.
 #[derive(Debug)]
 pub(super) struct CutPlan {
     pub(super) cutting: Cutting,

@@ -18,43 +18,43 @@ use super::{Simulation, tool};
 use crate::number::length;
 use crate::scene::{Blade, Cutting, LoosePieces, Subject};
 
-/// What was cut since a motion began.
+/// Totals of all cuts since a motion began.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct CutTotals {
     /// Faces, area, nodes, mass and energy of all cuts.
     pub report: CutReport,
-    /// Times that the body became another one.
+    /// Number of changes of the body.
     pub changes: u64,
     /// Work (J) of the blade: the toughness times the area.
     pub blade_work: f64,
-    /// What strokes that were lifted left that their sheets do not show.
+    /// Defects of lifted strokes that their sheets do not show.
     pub rough: RoughStrokes,
 }
 
 impl CutTotals {
-    /// Energy (J) that all changes brought in; 0 where the model tells none.
+    /// Energy (J) added by all changes; 0 if the model computes none.
     #[must_use]
     pub fn energy(&self) -> f64 {
         self.report.energy_gained.map_or(0.0, Energy::total)
     }
 }
 
-/// Reasons for which a body cannot be cut on.
+/// Reasons for which a body cannot be cut further.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CuttingError {
-    /// The body, or what is left of it.
+    /// The body, or its remainder.
     #[error(transparent)]
     Body(#[from] CutModelError),
-    /// Tools that do not fit what is left of it.
+    /// Tools that do not fit the remaining body.
     #[error(transparent)]
     Tools(#[from] ToolsError),
 }
 
 /// Cuts the body of a scene while it moves: by the blade and the tool that the scene names, and by sheets from outside.
 ///
-/// A blade is followed over each step in the configuration at the step's beginning. Where the body becomes another one, so does the
-/// scene: [`Cutter::follow`] gives the scene that goes on, and carries the state over.
+/// A blade is followed over each step in the configuration at the step's beginning. If the body changes, so does the
+/// scene: [`Cutter::follow`] returns the scene to continue with, and transfers the state to it.
 ///
 /// ```
 /// use sinew_core::{Inputs, System};
@@ -97,9 +97,9 @@ pub struct Cutter {
     pub(super) followed: Option<f64>,
     /// Time (s) of the last sheet that touched the body.
     swept: f64,
-    /// Whether the tool that is the blade was in the tissue when it was followed last.
+    /// True if the tool that is the blade was in the tissue when it was followed last.
     is_in: bool,
-    /// What tools kept before what is cut at the moment.
+    /// Contacts of tools before the current cut.
     before: Before,
     pub(super) totals: CutTotals,
 }
@@ -108,7 +108,7 @@ pub struct Cutter {
 const HEAD: usize = 15;
 
 impl Simulation {
-    /// What cuts its body, which is whole; `None` where the scene has no `[cutting]`. Assembles the body once more.
+    /// The cutter of its body, which is uncut; `None` if the scene has no `[cutting]`. Assembles the body once more.
     ///
     /// # Errors
     /// [`CuttingError`] for a body that cannot be cut, which building the scene rules out.
@@ -131,7 +131,7 @@ impl Simulation {
         }))
     }
 
-    /// Whether its body may be cut while it moves.
+    /// True if the body may be cut while it moves.
     #[must_use]
     pub fn is_cut(&self) -> bool {
         self.cutting.is_some()
@@ -139,13 +139,13 @@ impl Simulation {
 }
 
 impl Cutter {
-    /// What was cut so far.
+    /// Totals of all cuts so far.
     #[must_use]
     pub fn totals(&self) -> &CutTotals {
         &self.totals
     }
 
-    /// Mass (kg) of the body as it is.
+    /// Current mass (kg) of the body.
     #[must_use]
     pub fn mass(&self) -> f64 {
         self.cut.model().node_masses().iter().sum()
@@ -170,11 +170,12 @@ impl Cutter {
         next.map_or(f64::INFINITY, |next| next.max(t))
     }
 
-    /// Cuts what the scene's blade and the tool that removes come through up to `end` (s), in the configuration of the state, before
-    /// the step that ends then. Where the body changes: the scene as it goes on, and the state is carried over to it.
+    /// Cuts along the path of the scene's blade up to `end` (s), and removes the tetrahedra that are inside the
+    /// removing tool then, in the configuration of the state, before the step that ends then. If the body changes,
+    /// returns the scene to continue with, and transfers the state to it.
     ///
     /// # Errors
-    /// [`CuttingError`]; the run cannot go on then.
+    /// [`CuttingError`]; the run cannot continue then.
     pub fn follow(
         &mut self,
         simulation: &Simulation,
@@ -231,11 +232,11 @@ impl Cutter {
         self.go_on(epoch, simulation, state, inputs)
     }
 
-    /// Cuts what a blade passes from one place to another (its two ends, m), in the configuration of the state. Where the
-    /// body changes: the scene as it goes on, and the state is carried over to it.
+    /// Cuts along the path of a blade from one position to another (its two ends, m), in the configuration of the
+    /// state. If the body changes, returns the scene to continue with, and transfers the state to it.
     ///
     /// # Errors
-    /// [`CuttingError`]; the run cannot go on then.
+    /// [`CuttingError`]; the run cannot continue then.
     pub fn cut(
         &mut self,
         poses: [[[f64; 3]; 2]; 2],
@@ -248,20 +249,22 @@ impl Cutter {
         self.go_on(epoch, simulation, state, inputs)
     }
 
-    /// Lifts a blade from outside: its next sheet goes on with no tetrahedron that it left entered in part.
+    /// Lifts a blade that does not belong to the scene: its next sheet does not continue in tetrahedra that it left
+    /// partly entered.
     pub fn lift(&mut self) {
         self.totals.rough = self.rough_strokes();
         self.cut.lift();
     }
 
-    /// What strokes left that their sheets do not show, the stroke at hand included: of that, uncut area only where its blade is out of the body.
+    /// Defects of strokes that their sheets do not show, those of the current stroke included: of it, uncut area only
+    /// if its blade is out of the body.
     #[must_use]
     pub fn rough_strokes(&self) -> RoughStrokes {
         let at_hand = RoughStrokes::of(self.cut.body(), self.swept);
         self.totals.rough.and(at_hand)
     }
 
-    /// A sentence about each thing that strokes left: uncut area, chips, no cut at all.
+    /// A sentence about each defect of strokes: uncut area, chips, no cut at all.
     #[must_use]
     pub fn left_by_strokes(&self) -> Vec<String> {
         let rough = self.rough_strokes();
@@ -277,7 +280,7 @@ impl Cutter {
         left
     }
 
-    /// All that it needs to go on, as bytes.
+    /// All that it needs to continue, as bytes.
     #[must_use]
     pub fn to_bytes(&self) -> Vec<u8> {
         let CutTotals {
@@ -320,7 +323,8 @@ impl Cutter {
         bytes
     }
 
-    /// Becomes what [`Cutter::to_bytes`] was called on, of the same scene, whose body is whole in `simulation`; the scene as it goes on, where the body was cut.
+    /// Restores the cutter from [`Cutter::to_bytes`] of the same scene, whose uncut body is in `simulation`; returns
+    /// the scene to continue with, if the body was cut.
     ///
     /// # Errors
     /// [`CuttingError`] for other bytes.
@@ -380,7 +384,8 @@ impl Cutter {
         Ok(())
     }
 
-    /// Notes what tools keep before anything is cut, and leaves what they have hold of where it is at rest; the epoch of the body.
+    /// Saves the contacts of tools before a cut, and keeps the rest positions of the nodes that they hold, which are
+    /// not snapped onto the cut; returns the epoch of the body.
     fn begin(&mut self, simulation: &Simulation, state: &State) -> u64 {
         let before = &mut self.before;
         before.nodes = self.cut.body().nodes();
@@ -390,7 +395,7 @@ impl Cutter {
         self.cut.epoch()
     }
 
-    /// The scene as it goes on, where the body is another one than in this epoch.
+    /// The scene to continue with, if the body has changed since this epoch.
     fn go_on(
         &mut self,
         epoch: u64,
@@ -527,17 +532,17 @@ fn edge(tools: &Tools, blade: usize, t: f64, inputs: &Inputs) -> Option<[[f64; 3
     Some([-0.5, 0.5].map(|share| pose.to_world([0.0, 0.0, share * length])))
 }
 
-/// What tools kept before a cut.
+/// Contacts of tools before a cut.
 #[derive(Default)]
 struct Before {
-    /// Number of nodes of the body, gone ones included.
+    /// Number of nodes of the body, removed ones included.
     nodes: usize,
     contact: Vec<f64>,
-    /// Nodes of the body that tools had hold of.
+    /// Nodes of the body that tools held.
     held: Vec<u32>,
 }
 
-/// The nodes in the body of the cells that tools have hold of in a state.
+/// The nodes in the body of the cells that tools hold in a state.
 fn held_by_tools(simulation: &Simulation, state: &State) -> Vec<u32> {
     let tools = simulation.model().tools().into_iter();
     let held = tools.flat_map(|tools| tools.held(&state.contact, state.t()));

@@ -32,8 +32,9 @@ pub enum DrivenLoadError {
 const FORCE: &str = "force";
 
 impl Simulation {
-    /// Lets inputs steer its tools, each of which follows the scene until then; their channels, in the order of the tools. As they may be led anywhere,
-    /// each meets the triangles of the surface where any of these is coarser than the tool.
+    /// Lets inputs steer its tools, each of which follows the scene until then; returns their channels, in the order of
+    /// the tools. Since they may be steered anywhere, each meets the triangles of the surface if any of these is larger
+    /// than the tool.
     ///
     /// # Errors
     /// [`ToolsError`] for tools that do not fit the surface.
@@ -62,8 +63,8 @@ impl Simulation {
         Ok(steering)
     }
 
-    /// The names by which its loads can be driven: those of the scene, `load 2` for the second where it has none, `gravity` where there is one; `force` for an
-    /// oscillator's.
+    /// The names by which its loads can be driven: those of the scene, `load 2` for the second if it has none,
+    /// `gravity` if there is one; `force` for that of an oscillator.
     #[must_use]
     pub fn load_names(&self) -> Vec<String> {
         let Subject::Body(body) = self.scene.subject() else {
@@ -84,7 +85,8 @@ impl Simulation {
         }
     }
 
-    /// Adds a channel of factors for each of [`Simulation::load_names`], by which [`Simulation::with_driven_loads`] drives them.
+    /// Adds a channel of factors for each of [`Simulation::load_names`], by which [`Simulation::with_driven_loads`]
+    /// drives them.
     ///
     /// # Errors
     /// [`DrivenLoadError::Ramp`] for a load that is driven already.
@@ -105,11 +107,11 @@ impl Simulation {
         Ok(channels.collect::<Result<_, _>>()?)
     }
 
-    /// The same scene, whose loads have the factors of these channels, beside their own courses over time. Its matrices are shared; no force differs until a
-    /// factor is given.
+    /// The same scene, with loads that are multiplied by the factors of these channels, in addition to their own
+    /// courses over time. Its matrices are shared; no force changes until a factor is given.
     ///
     /// # Errors
-    /// [`DrivenLoadError`] where the system refuses its loads.
+    /// [`DrivenLoadError`] if the system refuses its loads.
     pub fn with_driven_loads(&self, channels: &[Channel]) -> Result<Self, DrivenLoadError> {
         let driven = |place: usize| channels.get(place).map(|channel| Ramp::Input(*channel));
         let model = match &self.model {

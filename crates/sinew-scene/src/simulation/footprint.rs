@@ -12,8 +12,8 @@ pub struct Footprint {
     pub nodes: usize,
     /// Tetrahedra.
     pub tets: usize,
-    /// Blocks of the stiffness matrix: one for each node that moves, and two for each pair of such nodes that are coupled,
-    /// by an edge or because strain is averaged over their neighbourhood.
+    /// Blocks of the stiffness matrix: one for each node that moves, and two for each pair of such nodes that are
+    /// coupled, by an edge or because strain is averaged over their neighbourhood.
     pub blocks: usize,
     /// Memory (bytes) of the matrices.
     pub matrix_bytes: usize,
@@ -43,7 +43,8 @@ impl Footprint {
         let takes_data = regions.any(|region| !region.from_mesh.is_empty());
         let data = mesh.data.iter().filter(|_| takes_data);
         let data: usize = data.map(|data| data.values.len()).sum();
-        // Corners, tags and region of each tetrahedron; place and tag of each node; data, and what is made of them for the body and for loops.
+        // Corners, tags and region of each tetrahedron; position and tag of each node; data, and the values derived
+        // from them for the body and for loops.
         let of_mesh = tets * 28 + nodes * 32 + 3 * data * size_of::<f64>();
         Self {
             nodes,
@@ -55,7 +56,8 @@ impl Footprint {
     }
 }
 
-/// Whether each node is held or moved in all directions. Groups that the mesh does not have are left to those who need them.
+/// For each node, true if it is held or moved in all directions. Groups that the mesh does not have are skipped: they
+/// are reported elsewhere.
 fn held(body: &Body, mesh: &TetMesh) -> Vec<bool> {
     let mut held = vec![[false; 3]; mesh.points.len()];
     let fixed = body.problem.fixed.iter();

@@ -59,7 +59,8 @@ impl fmt::Display for LoadRemedy {
     }
 }
 
-/// A load that comes and goes within one step, or swings within four: its impulse arrives, but its course is not followed.
+/// A load that comes and goes within one step, or oscillates within four: its impulse is right, but its course is not
+/// resolved.
 #[derive(Debug, Clone, PartialEq)]
 pub struct UnresolvedLoad {
     /// The load in the terms of the scene.
@@ -68,7 +69,7 @@ pub struct UnresolvedLoad {
     pub from: f64,
     /// Time between the two changes or quarter of a period (s), which is a step that follows the load.
     pub length: f64,
-    /// The period (s) of a load that swings.
+    /// The period (s) of a load that oscillates.
     pub period: Option<f64>,
     /// The step (s).
     pub dt: f64,

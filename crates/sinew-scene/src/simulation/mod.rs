@@ -64,7 +64,7 @@ pub struct Simulation {
     probes: Arc<[Probe]>,
     dt: f64,
     stable_step: OnceLock<Result<StableStep, StableStepError>>,
-    /// What cuts the body; `None` where nothing does.
+    /// The cutting of the body, if anything cuts it.
     cutting: Option<Arc<CutPlan>>,
 }
 
@@ -105,7 +105,8 @@ impl Simulation {
         self.dt
     }
 
-    /// Refuses a step that is longer than the duration, of which a run makes one step that ends with it: what goes on beyond would be taken in such steps.
+    /// Refuses a step that is longer than the duration. A run takes one step that ends with the duration instead; a
+    /// session, which continues beyond, would take the long steps.
     ///
     /// # Errors
     /// [`SceneError`] at the step of the scene.
@@ -150,20 +151,22 @@ impl Simulation {
         sinew_integrators::build(&self.settings().integrator, &self.options())
     }
 
-    /// The options of the integrator: those of the scene, and where [`Simulation::follows_stiffness`] the cut of its steps.
+    /// The options of the integrator: those of the scene, and the substeps that are added if
+    /// [`Simulation::follows_stiffness`].
     #[must_use]
     pub fn options(&self) -> Options {
         let settings = self.settings();
         self.options_of(&settings.integrator, &settings.options)
     }
 
-    /// The options of another integrator than the scene's, to which where [`Simulation::follows_stiffness`] the cut of its steps is added.
+    /// The options of an integrator other than the scene's, with the substeps that are added if
+    /// [`Simulation::follows_stiffness`].
     #[must_use]
     pub fn options_of(&self, integrator: &str, options: &Options) -> Options {
         step::options((integrator, options), self.follows_stiffness())
     }
 
-    /// Whether steps are cut by the current stiffness: dt = "auto" on a body that is not linear.
+    /// True if the current stiffness determines the substeps: dt = "auto" on a body that is not linear.
     #[must_use]
     pub fn follows_stiffness(&self) -> bool {
         step::follows_stiffness(self.settings(), self.system())
@@ -179,14 +182,14 @@ impl Simulation {
         self.stable_step.get_or_init(found).clone()
     }
 
-    /// A sentence where the scene's step is longer than the stable one about a state of a body that is not linear. Of a linear body's, which
-    /// is the same in all states, its warnings tell.
+    /// A sentence if the scene's step is longer than the stable one about a state of a body that is not linear. For a
+    /// linear body, whose stable step is the same in all states, its warnings say so.
     #[must_use]
     pub fn outrun(&self, integrator: &dyn Stepper, state: &State) -> Option<String> {
         step::outrun(self.system(), self.dt, integrator, state)
     }
 
-    /// Sentences of what tools and the lips of cuts could not do, up to this state.
+    /// Sentences about failures of contact with tools and between the faces of cuts, up to this state.
     #[must_use]
     pub fn left_by_tools(&self, state: &State) -> Vec<String> {
         let size = self.system().extent().unwrap_or(0.0);
@@ -213,8 +216,9 @@ impl Simulation {
         }
     }
 
-    /// The displacement (m) at which a body counts as diverged: 100 of its sizes. Of a body that may fly off, since no support holds it along an axis or
-    /// cuts may take pieces off, 1e6: a fall is no divergence, and what grows at every step gets there soon all the same.
+    /// The displacement (m) at which a body counts as diverged: 100 times its size. For a body that may fly off, since
+    /// no support holds it along an axis or cuts may detach pieces, 1e6 times: free fall is no divergence, and a motion
+    /// that grows at every step gets there soon all the same.
     #[must_use]
     pub fn divergence_limit(&self) -> Option<f64> {
         let extent = self.system().extent()?;

@@ -31,9 +31,9 @@ pub struct BodyModel {
     pub problem: sinew_fem::Problem,
     /// The system to integrate.
     pub model: sinew_fem::Model,
-    /// The tools and lips of cuts that touch it, of which the model knows; `None` where there are none.
+    /// The tools and the cut faces that touch it, which the model knows too; `None` if there are none.
     pub tools: Option<Arc<Tools>>,
-    /// Where its parts come from, once it was cut.
+    /// Origin of its parts, once it was cut.
     pub cut: Option<Arc<CutFrom>>,
     /// See [`BodyModel::surface`].
     pub(super) surface: OnceLock<Arc<BoundarySurface>>,
@@ -79,7 +79,7 @@ impl SceneModel {
         self.body()?.scene_tools()
     }
 
-    /// The tools and lips of cuts that touch a body, where there are any.
+    /// The tools and the cut faces that touch a body, if any.
     #[must_use]
     pub fn contact(&self) -> Option<&Arc<Tools>> {
         self.body()?.tools.as_ref()
@@ -113,7 +113,8 @@ impl BodyModel {
         }
     }
 
-    /// Takes off the forces (N) of supports on all nodes what tools push into held directions in a state: the supports bear it.
+    /// Subtracts from the forces (N) of supports on all nodes the forces of tools in held directions in a state: the
+    /// supports bear them.
     pub fn subtract_contact(&self, state: &State, reactions: &mut [[f64; 3]]) {
         let Some(tools) = &self.tools else {
             return;

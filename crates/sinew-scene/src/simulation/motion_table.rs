@@ -65,7 +65,7 @@ impl MotionTableError {
         self.line
     }
 
-    /// What is wrong.
+    /// The fault.
     #[must_use]
     pub fn fault(&self) -> &MotionTableFault {
         &self.fault
@@ -90,7 +90,7 @@ pub enum MotionTableFault {
     /// A row with more or fewer numbers than columns.
     #[error("expected {} numbers, {}, found {found}", columns.len(), columns.join(","))]
     Count {
-        /// How many there are.
+        /// Number of entries found.
         found: usize,
         /// The names of the columns.
         columns: &'static [&'static str],
@@ -108,7 +108,7 @@ pub enum MotionTableFault {
     Order {
         /// The time (s).
         t: f64,
-        /// That of the row before (s).
+        /// Time (s) of the row before.
         last: f64,
     },
     /// A third row of factors at one time.
@@ -229,8 +229,8 @@ fn read<T>(
 }
 
 impl Rows {
-    /// The rows of a text with one of these sets of columns, up to `at_once` of which may have one time, or the line that
-    /// is at fault.
+    /// The rows of a text with one of these sets of columns, or the line with a fault. Up to `at_once` rows may have
+    /// the same time.
     fn parse(
         text: &str,
         accepted: &[&'static [&'static str]],

@@ -10,12 +10,12 @@ use crate::error::{Fault, SceneError};
 use crate::number::short;
 use crate::scene::{Places, ProbeAt, ProbePoint, Quantity};
 
-/// A node, a part of the body, or the mass of an oscillator, of which something is written down.
+/// A node, a part of the body, or the mass of an oscillator, with a quantity that is recorded.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Probe {
     /// Its name.
     pub name: String,
-    /// What is written down.
+    /// Quantity that is recorded.
     pub quantity: Quantity,
     /// Its node; `None` for an oscillator, for a mean over a group, and for stress.
     pub node: Option<NearestNode>,
@@ -23,9 +23,9 @@ pub struct Probe {
     pub nodes: Vec<ProbeNode>,
     /// The tetrahedra (0-based) whose stress it is the mean of, with shares that add up to 1; none for motions.
     pub tets: Vec<(u32, f64)>,
-    /// Its place in words.
+    /// Description of its place.
     pub place: String,
-    /// Whether all of that was cut away: it has no value any more.
+    /// True if all of its nodes and tetrahedra were cut away: it has no value any more.
     pub is_gone: bool,
 }
 
@@ -80,8 +80,8 @@ impl ProbeNode {
 }
 
 impl Probe {
-    /// The same probe, which is one of the uncut body, on what is left of it: it stays with its own nodes, of which a copy stands for one that lost its
-    /// tetrahedra, and with its own tetrahedra. Where all are gone it has no value.
+    /// This probe of the uncut body, on the remaining body: it keeps its own nodes, with a copy in place of one that
+    /// lost its tetrahedra, and its own tetrahedra. If all are gone it has no value.
     ///
     /// `node_of` gives the first node of the mesh that is one of the uncut mesh or a copy of it.
     pub(super) fn after_cut(

@@ -108,9 +108,9 @@ impl Simulation {
         fixed.chain(moves).map(place).collect()
     }
 
-    /// The forces of the scene's supports and motions in a state, in the order of the scene; none for an
-    /// oscillator. See [`sinew_fem::Model::reactions`], also for single nodes. Of a moved part's speed that changes in an instant they have
-    /// the mean over a step on both sides.
+    /// The forces of the scene's supports and motions in a state, in the order of the scene; none for an oscillator.
+    /// See [`sinew_fem::Model::reactions`], also for single nodes. If the speed of a moved part jumps, its impulse is
+    /// included as a mean over the steps on both sides.
     ///
     /// # Errors
     /// [`ReactionError`] when the state is that of another system.

@@ -21,11 +21,11 @@ pub enum RefinementError {
 }
 
 impl Simulation {
-    /// The same scene on its mesh with each tetrahedron cut into eight. Groups of the mesh take the same part of the body as
-    /// before; places of the scene (`where`) are selected anew, and may follow the body more closely.
+    /// The same scene on its mesh with each tetrahedron divided into eight. Groups of the mesh take the same part of
+    /// the body as before; places of the scene (`where`) are selected again, and may follow the body more closely.
     ///
     /// # Errors
-    /// [`RefinementError`] for an oscillator, and where the finer mesh cannot be made or used.
+    /// [`RefinementError`] for an oscillator, and if the finer mesh cannot be made or used.
     pub fn refined(&self) -> Result<Self, RefinementError> {
         let body = self.model().body().ok_or(RefinementError::NoMesh)?;
         let mut mesh = body.mesh.refined()?;

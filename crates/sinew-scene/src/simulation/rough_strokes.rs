@@ -1,25 +1,25 @@
-//! What strokes left that ran finer than the mesh.
+//! Defects of strokes whose paths have details smaller than the mesh.
 
 use sinew_cutting::{Chips, CuttableBody, Missed, Uncut};
 
 use crate::number::{count, short};
 
-/// What strokes left that their sheets do not show, each with the time (s) of the first one that left it.
+/// Defects of strokes that their sheets do not show, each with the time (s) of the first stroke that left it.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct RoughStrokes {
-    /// What was left uncut of a body that strokes came through.
+    /// Uncut area in a body that strokes passed through.
     pub uncut: Option<Uncut>,
-    /// Chips that came off beside the pieces that were parted.
+    /// Chips that came off in addition to the pieces that were separated.
     pub chips: Option<(f64, Chips)>,
     /// Strokes that entered the body and cut nothing.
     pub missed: Option<(f64, Missed)>,
 }
 
 impl RoughStrokes {
-    /// Words of their bytes.
+    /// Number of 8-byte words in their binary form.
     pub(super) const WORDS: usize = 17;
 
-    /// What the stroke at hand left, the last sheet of which came at a time (s).
+    /// Defects of the current stroke, whose last sheet came at a time (s).
     pub(super) fn of(body: &CuttableBody, t: f64) -> Self {
         Self {
             uncut: body.uncut(),
@@ -28,7 +28,7 @@ impl RoughStrokes {
         }
     }
 
-    /// Both of two, of which this was the first.
+    /// Sum of these defects and later ones.
     pub(super) fn and(self, other: Self) -> Self {
         fn both<T>(one: Option<T>, other: Option<T>, and: impl FnOnce(T, T) -> T) -> Option<T> {
             match (one, other) {
@@ -89,7 +89,7 @@ impl RoughStrokes {
         [uncut, chips, missed].into_iter().flatten().collect()
     }
 
-    /// As numbers; what there is not is not a number.
+    /// Numbers of the binary form; NaN for defects that are absent.
     pub(super) fn to_numbers(self) -> [f64; Self::WORDS] {
         let none = [f64::NAN; 3];
         let uncut = self.uncut.map(|uncut| (uncut.area, uncut.place));

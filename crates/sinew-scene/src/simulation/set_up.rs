@@ -27,7 +27,7 @@ impl Simulation {
     }
 }
 
-/// What an integrator of these settings, with other options, refuses about a system.
+/// The refusal of a system by an integrator of these settings, with other options.
 pub(super) fn refusal(
     settings: &RunSettings,
     options: &Options,
@@ -38,7 +38,8 @@ pub(super) fn refusal(
     method.prepare(system, dt).err()
 }
 
-/// The refusal at the first option without which there is none of its kind; at the integrator where there is no such option.
+/// The refusal, at the first option whose removal avoids a refusal of this kind; at the integrator if there is no such
+/// option.
 pub(super) fn at_key(
     run: &Place,
     options: &Options,

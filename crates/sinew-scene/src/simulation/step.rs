@@ -17,12 +17,12 @@ pub(super) fn stable(
     Ok(integrator.stable_step(system)?)
 }
 
-/// Whether steps are cut by the current stiffness: dt = "auto" on a system that is not linear.
+/// True if the current stiffness determines the substeps: dt = "auto" on a system that is not linear.
 pub(super) fn follows_stiffness(settings: &RunSettings, system: &dyn System) -> bool {
     settings.dt == TimeStep::Auto && system.as_linear().is_none()
 }
 
-/// The options of an integrator by its id, whose steps are to be cut by the current stiffness, or not.
+/// The options of an integrator by its id, with substeps that follow the current stiffness, or without.
 pub(super) fn options((id, options): (&str, &Options), follows_stiffness: bool) -> Options {
     let cuts = sinew_integrators::entry(id).is_some_and(|entry| entry.substeps);
     if cuts && follows_stiffness && options.get(Substeps::KEY).is_none() {
@@ -31,7 +31,7 @@ pub(super) fn options((id, options): (&str, &Options), follows_stiffness: bool) 
     options.clone()
 }
 
-/// The step (s) that a scene asks for; `stable` is called only where it leaves it to the integrator.
+/// The step (s) that a scene asks for; `stable` is called only if the scene leaves it to the integrator.
 pub(super) fn seconds(
     settings: &RunSettings,
     system: &dyn System,
@@ -58,7 +58,7 @@ pub(super) fn seconds(
     }
 }
 
-/// What is to be said where a step (s) is beyond the stable one of the deformed body.
+/// A message if a step (s) is longer than the stable one of the deformed body.
 pub(super) fn outrun(
     system: &dyn System,
     dt: f64,

@@ -93,7 +93,8 @@ pub(super) fn added_to(
     Ok(built.touched_by(Arc::new(tools)))
 }
 
-/// Tools that touch these nodes of a body each, and the surface where they are fine; with the cut faces whose lips touch each other.
+/// Tools that each touch these nodes of a body, and the surface if they are smaller than its triangles; with the pairs
+/// of cut faces that touch each other.
 fn on_nodes(
     mut tools: Vec<sinew_tools::Tool>,
     are_fine: &[bool],
@@ -131,7 +132,8 @@ fn on_nodes(
     tools.with_cut_faces(faces.collect())
 }
 
-/// The cut faces of a body whose lips touch each other: those of which no corner is moved by the scene or rests elsewhere.
+/// Pairs of cut faces of a body that touch each other: those of which the scene moves no corner and no corner rests
+/// elsewhere.
 fn cut_faces(body: &Body, built: &BodyModel) -> Vec<[[u32; 3]; 2]> {
     let touches = body
         .cutting
@@ -146,7 +148,8 @@ fn cut_faces(body: &Body, built: &BodyModel) -> Vec<[[u32; 3]; 2]> {
     faces
 }
 
-/// Lets tools that touched a body touch it as it is now; they meet triangles as before, so that nothing is laid upon a tool which was not there.
+/// Rebuilds the contact of tools with a body that has changed. Tools meet triangles if they did before, so that no
+/// triangle is suddenly added inside a tool.
 pub(super) fn touching_anew(
     built: BodyModel,
     body: &Body,
@@ -160,7 +163,7 @@ pub(super) fn touching_anew(
     touched_by(built, body, tools, &are_fine)
 }
 
-/// Lets tools that are led in another way touch a body.
+/// Rebuilds the contact of tools that are steered in another way.
 pub(super) fn led_anew(
     built: BodyModel,
     body: &Body,
@@ -208,7 +211,8 @@ fn nodes(
     Ok(met)
 }
 
-/// The nodes that a tool of a body meets, and those that it does not: see [`nodes_of`]. One that cuts or removes meets none.
+/// The nodes that a tool of a body meets, and those that it does not: see [`nodes_of`]. A tool that cuts or removes
+/// meets none.
 pub(super) fn touchable(
     body: &Body,
     index: usize,
@@ -294,7 +298,7 @@ fn motion(tool: &Tool, place: &Place) -> Result<Motion, SceneError> {
     })
 }
 
-/// How deep a tool begins in the body: tag and depth (m) of the deepest node, where one is deeper than by a rounding.
+/// Depth of a tool in the body at the beginning: tag and depth (m) of the deepest node, if it exceeds rounding.
 pub(super) fn inside(
     tools: &Tools,
     index: usize,
@@ -315,7 +319,7 @@ pub(super) fn inside(
 /// Share of the body's size below which a tool is too thin for the rounding of places.
 const THINNEST: f64 = 1e-9;
 
-/// The part of a tool that is too thin, and what is to be said about it.
+/// Refuses a tool with a part that is too thin; the error has the index of the part and the fault.
 fn check_width(tool: &sinew_tools::Tool, built: &BodyModel) -> Result<(), (usize, ToolFault)> {
     let Some(body) = built.model.extent() else {
         return Ok(());

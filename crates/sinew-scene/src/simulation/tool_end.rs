@@ -1,4 +1,4 @@
-//! What tools could not do in a run.
+//! Failures of contact with tools in a run.
 
 use sinew_core::State;
 use sinew_tools::{ToolReport, Tools};
@@ -7,14 +7,14 @@ use super::model::BodyModel;
 use super::tool::ROUNDING;
 use crate::number::short;
 
-/// The largest residual of an iteration for contacts that counts as its end. Where contacts on one triangle are nearly equal a thousandth is left, and forces and balances are
-/// sound to that.
+/// The largest residual at which an iteration for contacts counts as converged. If contacts on one triangle are nearly
+/// equal a residual of a thousandth remains; forces and balances are valid to that accuracy.
 const CONVERGED: f64 = 1e-2;
 
-/// Depth, over the body's size, at which contacts that act on each other are left unsaid.
+/// Depth, over the body's size, below which penetration at coupled contacts is not reported.
 const LEFT_BY_ITERATION: f64 = 1e-6;
 
-/// Sentences about tools of a body of this size (m), up to a state. One that cuts touches nothing.
+/// Sentences about tools of a body of this size (m), up to a state. A tool that cuts touches nothing.
 pub(super) fn sentences(
     tools: &Tools,
     size: f64,

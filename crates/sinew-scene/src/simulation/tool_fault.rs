@@ -1,4 +1,4 @@
-//! What is wrong with a tool.
+//! Faults of tools.
 
 use sinew_fem::FieldError;
 use sinew_tools::{ShapeError, TableError, ToolsError};

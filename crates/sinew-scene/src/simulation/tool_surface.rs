@@ -11,10 +11,11 @@ use crate::number::length;
 /// Share of the body's size by which a tool's reach goes beyond its path at rest: tissue moves too.
 const BEYOND: f64 = 0.1;
 
-/// Instants at which a path is looked at, besides those of its table.
+/// Instants at which a path is checked, besides those of its table.
 const LOOKS: u32 = 64;
 
-/// Whether each tool is finer than the surface within its reach in a time (s), which cuts may enlarge by any face of the body.
+/// For each tool, true if it is smaller than a surface triangle within its reach in a time (s), and does not meet all
+/// of them with faces at least as wide. If the body may be cut, any face of its tetrahedra counts.
 pub(super) fn are_fine(
     tools: &[Tool],
     built: &BodyModel,
@@ -44,8 +45,8 @@ fn all_faces(mesh: &TetMesh) -> Vec<[u32; 3]> {
     mesh.tets.iter().flat_map(of_tet).collect()
 }
 
-/// Gives fine tools the triangles of the surface, as far as they touch their corners (`nodes_of` each) or these are held; all triangles that
-/// any of them touches, whose corners are places among `touched`.
+/// Assigns to small tools the triangles of the surface whose corners they touch (`nodes_of` each) or are held; returns
+/// all triangles that any of them touches, whose corners are indices into `touched`.
 pub(super) fn under_tips(
     tools: &mut [Tool],
     are_fine: &[bool],
@@ -77,7 +78,8 @@ pub(super) fn under_tips(
     triangles
 }
 
-/// The triangles of the surface of which no corner is moved: where these are is no matter of the degrees of freedom alone.
+/// The triangles of the surface of which no corner is moved: the position of a moved corner depends on more than the
+/// degrees of freedom.
 fn without_moved(built: &BodyModel) -> Vec<[u32; 3]> {
     let moved = moved_nodes(built);
     let is_moved = |node: &u32| moved.binary_search(node).is_ok();
@@ -118,9 +120,10 @@ fn longest_edge(
     longest
 }
 
-/// Whether a tool that is led meets each triangle that it comes towards, within its reach, by what is at least as wide as that: a plate may be thin and press with its face.
+/// True if no part of a tool on a prescribed path is narrower than a triangle that it moves towards within its reach,
+/// measured across its normal: a plate may be thin and press with its face.
 ///
-/// Of a tool that stays or is a body of its own it is not known from where tissue comes towards it.
+/// For a tool that stays, is steered or is a body of its own, the direction from which tissue approaches is unknown.
 fn meets_with_wide_faces(
     tool: &Tool,
     surface: &[[u32; 3]],
@@ -172,10 +175,10 @@ fn meets_with_wide_faces(
     })
 }
 
-/// Most ways between poses that are looked at for what a tool comes towards.
+/// Largest number of motions between poses that are checked for triangles ahead of a tool.
 const MOST_WAYS: usize = 512;
 
-/// Cosine of the angle between way and surface below which a tool moves along the surface.
+/// Cosine of the angle between motion and surface normal below which a tool moves along the surface.
 const ALONG: f64 = 1e-3;
 
 /// The longest edge (m) of a triangle.

@@ -12,10 +12,11 @@ use crate::decode::Place;
 use crate::error::SceneError;
 use crate::scene::RunSettings;
 
-/// A step (s) that is stable on the stand-in.
+/// A step (s) that is stable on the test cube.
 const STEP: f64 = 1e-6;
 
-/// Refuses a method that tools cannot push, at the key that makes it one: on a body of one cube, since that is a matter of the method and its options.
+/// Refuses a method without support for contact, at the key that makes it one: tested on a body of one cube, since this
+/// depends only on the method and its options.
 pub(super) fn check(settings: &RunSettings, run: &Place) -> Result<(), SceneError> {
     let Some(stand_in) = stand_in() else {
         return Ok(());

@@ -1,4 +1,4 @@
-//! What holds of every scene of the repository.
+//! Properties of every scene of the repository.
 
 use std::path::Path;
 

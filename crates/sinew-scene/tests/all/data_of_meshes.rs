@@ -104,7 +104,7 @@ fn moduli_at_once_and_in_the_long_term_span_the_data() {
     insta::assert_snapshot!(lines.last().unwrap(), @"at small strain E = 2000 to 8000 Pa, nu = 0.3 at once, E = 1000 to 4000 Pa, nu = 0.3 in the long term");
 }
 
-/// The parts of a tetrahedron have its data: mass and mean modulus stay, and so does what the static force of a stretch takes.
+/// The children of a tetrahedron have its data: mass and mean modulus stay, and so does the static force of a stretch.
 #[test]
 fn a_refined_mesh_has_the_data_of_the_one_it_was_made_from() {
     let simulation = bar(LINES).unwrap();

@@ -83,7 +83,7 @@ fn build(mesh: &Mesh, order: &str) -> Simulation {
     Scene::load(path).and_then(Scene::build).unwrap()
 }
 
-/// What is told of a body whose nodes are displaced so (m).
+/// Overlap reported for a body with this displacement (m) of its nodes.
 fn told_of(simulation: &Simulation, by: impl Fn([f64; 3]) -> [f64; 3]) -> Option<Overlap> {
     let body = simulation.model().body().unwrap();
     let displacements: Vec<[f64; 3]> = body.mesh.points.iter().map(|point| by(*point)).collect();
@@ -183,7 +183,8 @@ fn coarse_bodies_of_one_cell_are_told_as_well() {
         together([part("lower", [cells; 3], [[0.0; 3], [0.1; 3]]), upper])
     };
     let down = |by: f64| move |point: [f64; 3]| [0.0, 0.0, if point[2] > 0.11 { -by } else { 0.0 }];
-    // All nodes are on the sides of the other one, but not what is between them. No node at zero gap tells the parts apart by its place.
+    // All nodes of a part lie on the sides of the other part, but its interior does not. At zero gap, the position of a
+    // node does not show to which part it belongs.
     let split = |by: f64| {
         let simulation = build(&cubes(1).to_mesh(), "");
         let body = simulation.model().body().unwrap();

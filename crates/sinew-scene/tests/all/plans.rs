@@ -280,7 +280,7 @@ dt = 0.001
     assert!(!plan.contains("probes"), "{plan}");
 }
 
-/// What computes bodies that fast machines leave alone, and what a plan says of a precision that none of them offers.
+/// Plain loops for bodies that fast machines do not support, and the plan for a precision that none of them offers.
 #[test]
 fn plain_loops_are_named_with_their_reason() {
     let tissue = "[mesh]\ncube = { cells = 2, edge = 0.1 }\n[[region]]\ndensity = 1000.0\nmodel = \"neo-hookean\"\n\

@@ -1,4 +1,4 @@
-//! What probes write down: displacements, velocities and stresses, at points, on lines and over groups.
+//! Records of probes: displacements, velocities and stresses, at points, on lines and over groups.
 
 use std::collections::BTreeMap;
 
@@ -6,8 +6,8 @@ use sinew_mesh::GroupMembers;
 use sinew_scene::output::{Delivery, Destination};
 use sinew_scene::{ProbeCsv, ProbeRows, Scene, SceneSource};
 
-/// A bar of nu = 0 that is held at its bottom and pulled at its top by 30 Pa, at rest: the stress is the pull everywhere,
-/// and the displacement `30/E z`.
+/// A bar of nu = 0 that is held at its bottom and pulled at its top by 30 Pa, at rest: the stress is the pull
+/// everywhere, and the displacement `30/E z`.
 const PULLED: &str = "[mesh]\nblock = { cells = [2, 2, 6], size = [0.02, 0.02, 0.06] }\n[[region]]\ndensity = 1000.0\n\
                       model = \"linear\"\nyoungs_modulus = 3000.0\npoissons_ratio = 0.0\n[[fixed]]\ngroup = \"bottom\"\n\
                       [[load]]\nname = \"pull\"\ngroup = \"top\"\ntraction = [0.0, 0.0, 30.0]\n[run]\nduration = 0.02\n";
@@ -203,8 +203,8 @@ fn a_probe_of_several_nodes_is_their_mean() {
     }
 }
 
-/// In a linear field the mean is the field at the centroid: of areas for triangles, of volumes for tetrahedra, whose sizes
-/// differ much in a mesh of an organ.
+/// In a linear field the mean is the field at the centroid: of areas for triangles, of volumes for tetrahedra, whose
+/// sizes differ much in a mesh of an organ.
 #[test]
 fn means_of_a_linear_field_are_its_values_at_the_centroid() {
     let text = "[mesh]\nfile = \"../../meshes/organ.msh\"\n[[region]]\ndensity = 1000.0\nmodel = \"linear\"\n\

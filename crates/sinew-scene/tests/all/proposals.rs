@@ -31,8 +31,8 @@ fn built(mesh: &TetMesh) -> (String, Simulation) {
     (text, simulation)
 }
 
-/// The force is one that moves the body by 2 % of its length at rest, up to its one digit; a sudden load overshoots to twice
-/// that at most.
+/// The force is one that moves the body by 2 % of its length at rest, up to its one digit; a sudden load overshoots to
+/// twice that at most.
 #[test]
 fn the_first_scene_of_every_mesh_runs_without_a_warning() {
     let meshes = meshes();

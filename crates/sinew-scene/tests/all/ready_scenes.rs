@@ -136,8 +136,8 @@ fn the_pressed_organ_sags_by_its_weight_at_nearly_its_volume() {
     is_near(volume(&moved), volume(model.mesh()), 0.02);
 }
 
-/// The motion at the start has the energy rho w^2 a^4/12 int sin^2(pi z/2h) dz = rho w^2 a^4 h/24. Nothing takes of it: it is there as long as
-/// the column moves, in the motion or the tissue. The column turns by more than a half before it comes back.
+/// The motion at the start has the energy rho w^2 a^4/12 int sin^2(pi z/2h) dz = rho w^2 a^4 h/24. Nothing dissipates
+/// it: as long as the column moves it is kinetic or elastic. The column turns by more than a half before it comes back.
 #[test]
 fn the_column_winds_up_by_more_than_half_a_turn_and_keeps_its_energy() {
     let simulation = ready("twisted-column");
@@ -188,8 +188,8 @@ fn the_organ_with_fibres_sags_by_less_with_its_weight_on_its_base() {
     assert!((-0.0045..-0.003).contains(&sag), "{sag} m");
 }
 
-/// A tapered bar gives way by the integral of F/(A E) (Timoshenko and Gere, Mechanics of Materials, section 2.3); fibres add four times their
-/// modulus to E. The outline is an ellipse of half axes 60 and 15 mm.
+/// A tapered bar extends by the integral of F/(A E) (Timoshenko and Gere, Mechanics of Materials, section 2.3); fibres
+/// add four times their modulus to E. The outline is an ellipse of half axes 60 and 15 mm.
 #[test]
 fn the_muscle_starts_stretched_as_a_tapered_bar() {
     let simulation = ready("muscle");
@@ -209,8 +209,8 @@ fn the_muscle_starts_stretched_as_a_tapered_bar() {
     is_near(force, -pull, 1e-5);
 }
 
-/// `1/(E (1 - g)) (1 - g exp(-(1 - g) t/tau))` times the stress: the standard linear solid under a constant stress (Christensen, Theory of
-/// Viscoelasticity, 1982).
+/// `1/(E (1 - g)) (1 - g exp(-(1 - g) t/tau))` times the stress: the standard linear solid under a constant stress
+/// (Christensen, Theory of Viscoelasticity, 1982).
 #[test]
 fn the_bar_creeps_as_the_standard_linear_solid() {
     let simulation = ready("creep");
@@ -223,7 +223,7 @@ fn the_bar_creeps_as_the_standard_linear_solid() {
     is_near(z, stress * length * compliance, 0.015);
 }
 
-/// F L^3/(3 E I) + F L/(k G A) with k = 10 (1 + nu)/(12 + 11 nu) (Cowper 1966), times the 83 % that the scene speaks of.
+/// F L^3/(3 E I) + F L/(k G A) with k = 10 (1 + nu)/(12 + 11 nu) (Cowper 1966), times the 83 % that the scene states.
 #[test]
 fn the_beam_starts_bent_as_far_as_it_says() {
     let simulation = ready("beam");
@@ -248,8 +248,8 @@ fn the_vessel_widens_as_lames_tube() {
     is_near(x, expected, 0.03);
 }
 
-/// Layers that cannot get wider are springs in series: u = -p (h1/M1 + h2/M2 + h3/M3), linear in each layer, which linear
-/// tetrahedra hold exactly.
+/// Laterally confined layers are springs in series: u = -p (h1/M1 + h2/M2 + h3/M3), linear in each layer, which linear
+/// tetrahedra represent exactly.
 #[test]
 fn the_layers_are_pressed_as_springs_in_series() {
     let simulation = ready("layers");
@@ -263,7 +263,7 @@ fn the_layers_are_pressed_as_springs_in_series() {
     is_near(probe(&simulation, &state, 1)[2], -muscle, 1e-5);
 }
 
-/// What pushes the needle is what holds the tissue below.
+/// The force on the needle is the force that holds the tissue at its bottom.
 #[test]
 fn the_needle_takes_the_force_that_the_bottom_gives() {
     let simulation = ready("needle");
@@ -327,7 +327,7 @@ fn the_incision_hangs_on_its_bottom_by_its_weight_alone() {
     assert!(probe(&simulation, &state, 0)[0] > 1e-5, "the cut opens");
 }
 
-/// What a tool and the support give and take is in balance once the cube lies still under the ball, and no node is in it.
+/// Forces of tool and support are in balance once the cube is at rest under the ball, and no node is inside the ball.
 #[test]
 fn the_ball_presses_on_the_cube_as_the_cube_on_its_bottom() {
     let simulation = ready("press");

@@ -47,7 +47,8 @@ fn a_group_is_all_that_a_tool_touches() {
     assert!(tools.touched_cells().iter().all(|cell| cell.rest[2] == 0.1));
 }
 
-/// Where a node is that is moved in one direction is no matter of its degrees of freedom, so tools leave it out.
+/// The position of a node that is moved in one direction depends on more than its degrees of freedom, so tools leave it
+/// out.
 #[test]
 fn moved_nodes_and_held_directions_are_told_apart() {
     let text = ball(
@@ -158,7 +159,7 @@ fn a_tool_that_begins_on_the_surface_is_not_inside() {
     }
 }
 
-/// What a plate that leans presses along a held axis goes into the support of that axis.
+/// The force of a tilted plate along a held axis is borne by the support of that axis.
 #[test]
 fn supports_bear_what_tools_push_into_held_directions() {
     let text = scene(
@@ -285,7 +286,8 @@ fn a_thin_tip_presses_where_there_is_no_node() {
     assert!(said(&far).is_empty());
 }
 
-/// A plate that is thinner than an edge of the surface presses with its face, which no triangle gets round; on edge it is a blade.
+/// A plate that is thinner than an edge of the surface presses with its face, around which no triangle can pass; on
+/// edge it is a blade.
 #[test]
 fn a_thin_plate_meets_triangles_where_it_comes_with_its_edge() {
     let plate = |way: &str| {
@@ -311,7 +313,8 @@ fn a_thin_plate_meets_triangles_where_it_comes_with_its_edge() {
     assert!(triangles("start = [0.05, 0.05, 0.106]\nhold = true") > 0);
 }
 
-/// A network moves displacements by a clamped velocity: where a cell was is told by that, not by the velocity that it keeps.
+/// A network updates displacements with a clamped velocity: the previous position of a cell follows from that one, not
+/// from the velocity in the state.
 #[test]
 fn what_flies_away_faster_than_a_network_saturates_is_caught_by_no_tool() {
     let text = "[mesh]\ncube = { cells = 3, edge = 0.1 }\n[[region]]\ndensity = 1060.0\nmodel = \"linear\"\nyoungs_modulus = 3500.0\n\

@@ -346,8 +346,8 @@ const E: f64 = 1e5;
 #[cfg(feature = "implicit")]
 const FORCE: f64 = 0.01;
 
-/// The mean displacement of its end along the force as a share of Timoshenko's, F L^3/(3 E I) + F L/(k G A) with k = 10 (1 + nu)/(12 + 11 nu) (Cowper 1966), and
-/// across the force as a share of that along it (both %).
+/// The mean displacement of its end along the force as a share of Timoshenko's, F L^3/(3 E I) + F L/(k G A) with k = 10
+/// (1 + nu)/(12 + 11 nu) (Cowper 1966), and across the force as a share of that along it (both %).
 #[cfg(feature = "implicit")]
 fn deflection(simulation: &Simulation, nu: f64, axis: usize) -> [f64; 2] {
     let (length, side) = (0.1_f64, 0.01_f64);

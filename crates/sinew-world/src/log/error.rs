@@ -22,12 +22,12 @@ pub enum LogError {
         path: PathBuf,
         /// The line, counted from 1.
         line: usize,
-        /// What is wrong.
+        /// The fault.
         fault: LogFault,
     },
 }
 
-/// What is wrong with a line of a log.
+/// A fault in a line of a log.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum LogFault {
@@ -50,7 +50,7 @@ pub enum LogFault {
     Word {
         /// The word.
         found: String,
-        /// What is needed, in words.
+        /// Description of the expected text.
         expected: &'static str,
     },
     /// A step before that of the line above.

@@ -7,17 +7,17 @@ use std::path::{Path, PathBuf};
 use super::Log;
 use super::text::{end, head, push_entry};
 
-/// A file that is kept up to date with the log of a session, so that one that is killed is not lost: [`Log::read`] takes it as far
-/// as its last command.
+/// A file that is kept up to date with the log of a session, so that the log of a killed session is not lost:
+/// [`Log::read`] reads it up to its last command.
 #[derive(Debug)]
 pub struct Journal {
     path: PathBuf,
     file: File,
-    /// Commands in the file; `None` as long as nothing stands in it.
+    /// Commands in the file; `None` as long as it is empty.
     entries: Option<usize>,
     /// Bytes of the file that are whole lines.
     length: u64,
-    /// Whether something could not be written, so that the file may end within a line.
+    /// True if something could not be written, so that the file may end within a line.
     has_failed: bool,
     text: String,
 }
@@ -56,10 +56,10 @@ impl JournalError {
 }
 
 impl Journal {
-    /// Creates the file. One that exists must be empty: it is what a session leaves that was killed before its first command.
+    /// Creates the file. An existing one must be empty, as left by a session that was killed before its first command.
     ///
     /// # Errors
-    /// [`JournalError`] where there is one with something in it, or it cannot be created.
+    /// [`JournalError`] if there is one that is not empty, or it cannot be created.
     pub fn create(path: PathBuf) -> Result<Self, JournalError> {
         match open(&path) {
             Ok(Some(file)) => Ok(Self {
@@ -81,7 +81,7 @@ impl Journal {
         &self.path
     }
 
-    /// Forgets what stands in the file, for the log of another session.
+    /// Empties the file, for the log of another session.
     ///
     /// # Errors
     /// [`JournalError`].
@@ -91,8 +91,8 @@ impl Journal {
         emptied.map_err(|source| self.error(source))
     }
 
-    /// Adds the commands that are new in a log, up to the last step: poses after it may give way to later ones. What could not be written is tried again, and is
-    /// told the first time.
+    /// Adds the commands that are new in a log, except those after the last step: poses among them may be replaced by
+    /// later ones. Commands that could not be written are tried again, and the failure is reported once.
     ///
     /// # Errors
     /// [`JournalError`].
@@ -120,7 +120,7 @@ impl Journal {
         written.map_err(|source| self.error(source))
     }
 
-    /// Adds the commands up to a place in a log.
+    /// Adds the commands up to an index in a log.
     fn add(&mut self, log: &Log, until: usize) -> Result<(), JournalError> {
         self.text.clear();
         if self.entries.is_none() {

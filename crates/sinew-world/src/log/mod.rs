@@ -14,7 +14,7 @@ use sinew_scene::Scene;
 use crate::command::Command;
 use crate::input_file::{InputFile, InputFileError, sha256};
 
-/// What a log belongs to.
+/// Identity of the program and the scene of a log.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Header {
     /// Version of the program.
@@ -23,15 +23,15 @@ pub struct Header {
     pub scene: String,
     /// The other files that the scene reads.
     pub inputs: Vec<InputFile>,
-    /// Values that were set in the scene's file to get its text, as `KEY=VALUE`, for those who repeat it.
+    /// Values that were set in the scene's file to get its text, as `KEY=VALUE`, for the user who repeats it.
     pub values: Vec<String>,
 }
 
 impl Header {
-    /// That of a scene and this program.
+    /// Header of a scene and this program.
     ///
     /// # Errors
-    /// [`InputFileError`] where a file of the scene cannot be read.
+    /// [`InputFileError`] if a file of the scene cannot be read.
     pub fn of(scene: &Scene) -> Result<Self, InputFileError> {
         // The scene is known by its text.
         let others = scene.input_files().into_iter().skip(1);
@@ -101,13 +101,13 @@ impl Log {
         &self.entries[..last.map_or(0, |last| last + 1)]
     }
 
-    /// Has these commands in the place of its own, of a session that has taken as many steps as came before the last of them.
+    /// Replaces its commands by these, of a session that has taken as many steps as there are before the last of them.
     pub(crate) fn begin_with(&mut self, entries: &[Entry]) {
         self.entries = entries.to_vec();
         self.steps = entries.last().map_or(0, |last| last.step);
     }
 
-    /// The session has taken so many steps.
+    /// Sets the number of steps of the session.
     pub(crate) fn ends_after(&mut self, steps: usize) {
         self.steps = steps;
     }
@@ -116,13 +116,13 @@ impl Log {
         self.header.values = values;
     }
 
-    /// Whether its end is missing, as where the session was killed: it goes as far as its last command then.
+    /// True if its end is missing, for example because the session was killed: it ends with its last command then.
     #[must_use]
     pub fn is_cut_off(&self) -> bool {
         self.is_cut_off
     }
 
-    /// What it belongs to.
+    /// Identity of the program and the scene that it belongs to.
     #[must_use]
     pub fn header(&self) -> &Header {
         &self.header

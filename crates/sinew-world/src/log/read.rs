@@ -10,14 +10,14 @@ use super::{Entry, Header, Log};
 use crate::command::Command;
 use crate::input_file::InputFile;
 
-/// What commands there are.
+/// Names of the commands.
 const COMMANDS: &str = "pose, factor, integrator, dt, reset, cut or end";
 
 impl Log {
     /// Reads a file that [`Log::to_text`] gave.
     ///
     /// # Errors
-    /// [`LogError`] with file and line of what is wrong.
+    /// [`LogError`] with file and line of the fault.
     pub fn read(path: &Path) -> Result<Self, LogError> {
         let text = fs::read_to_string(path).map_err(|source| LogError::File {
             path: path.to_owned(),
@@ -29,7 +29,7 @@ impl Log {
     /// Reads a text that [`Log::to_text`] gave; messages name it by a path.
     ///
     /// # Errors
-    /// [`LogError::Line`] with the line of what is wrong.
+    /// [`LogError::Line`] with the line of the fault.
     pub fn parse(path: &Path, text: &str) -> Result<Self, LogError> {
         let mut reader = Reading::default();
         let at = |(line, fault)| LogError::Line {
@@ -38,7 +38,8 @@ impl Log {
             fault,
         };
         let mut last = 0;
-        // A line of which a part was written says something else, or nothing; without an end of the line only the last one of all is whole.
+        // A line that was written in part has another meaning, or none; of lines without a line break only the final
+        // `end` is complete.
         let (whole, rest) = text.split_at(text.rfind('\n').map_or(0, |end| end + 1));
         let rest = (whole.is_empty() || rest.trim().ends_with("end")).then_some(rest);
         for (number, line) in (1..).zip(whole.lines().chain(rest)) {
@@ -54,7 +55,7 @@ impl Log {
 /// A log as far as it is read.
 #[derive(Default)]
 struct Reading {
-    /// Whether the first line is that of a log.
+    /// True if the first line is that of a log.
     is_log: bool,
     program: Option<String>,
     scene: Option<String>,

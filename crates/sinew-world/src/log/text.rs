@@ -82,8 +82,8 @@ fn push_numbers<'n>(out: &mut String, numbers: impl IntoIterator<Item = &'n f64>
 impl Log {
     /// The log as text, from which [`Log::parse`] reads all commands back without loss.
     ///
-    /// First lines say what it belongs to; then there is a line for each command: the steps taken before it, the time (s) of the state then, and
-    /// the command; the last line has the number of all steps.
+    /// The first lines identify program and scene; then there is a line for each command: the steps taken before it,
+    /// the time (s) of the state then, and the command; the last line has the number of all steps.
     #[must_use]
     pub fn to_text(&self) -> String {
         let mut text = head(&self.header);

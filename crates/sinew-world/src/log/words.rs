@@ -55,7 +55,7 @@ fn push_value(out: &mut String, value: &OptionValue) {
     }
 }
 
-/// What is left of a line.
+/// Rest of a line.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Words<'a>(&'a str);
 

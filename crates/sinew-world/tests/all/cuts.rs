@@ -290,7 +290,7 @@ fn a_loose_piece_is_taken_away_where_the_scene_says_so_and_a_held_one_is_not() {
     assert!((ended.mass[1] / ended.mass[0] - 1.0).abs() < 1e-14);
 }
 
-/// What comes before t = 0 cuts the body that the motion starts with, and makes a scene of one body.
+/// Strokes before t = 0 cut the body that the motion starts with, and the scene can be built on that body alone.
 #[test]
 fn strokes_before_the_motion_cut_the_body_that_it_starts_with() {
     let folder = tempfile::tempdir().unwrap();
@@ -339,7 +339,7 @@ fn a_frozen_piece_stays_where_it_came_off_and_keeps_its_mass() {
     assert_eq!(frozen.state.u, removed.state.u);
 }
 
-/// What the load would have done to it falls on nothing that moves, as where the piece is taken away with its load.
+/// Loads on a frozen piece move nothing, as if the piece were removed with its load.
 #[test]
 fn a_frozen_piece_keeps_the_loads_that_were_on_it() {
     let folder = tempfile::tempdir().unwrap();
@@ -364,7 +364,7 @@ fn a_frozen_piece_keeps_the_loads_that_were_on_it() {
     }
 }
 
-/// What of a force fell on nodes that were frozen, or that are gone, does not fall on the others.
+/// The part of a force on nodes that were frozen or removed is not redistributed to the others.
 #[test]
 fn the_share_of_a_force_on_each_node_stays_as_pieces_come_off() {
     for pieces in ["freeze", "remove"] {
@@ -477,7 +477,8 @@ fn a_grasp_outlives_a_cut() {
     }
 }
 
-/// Steps so short that most of them touch nothing of a tetrahedron: the blade is in all the same, also for who takes the cutter over from its bytes.
+/// Steps so short that most of them reach no edge or face of a tetrahedron: the blade still counts as in the tissue,
+/// also in a cutter that is restored from its bytes.
 #[test]
 fn a_tool_cuts_in_any_steps_what_a_table_cuts() {
     let folder = tempfile::tempdir().unwrap();
@@ -514,7 +515,8 @@ fn a_tool_cuts_in_any_steps_what_a_table_cuts() {
     assert!(cutter.totals().report.faces > 0);
 }
 
-/// A blade of the scene that is out of the tissue is not lifted over and over: what a hand has entered in part stays entered.
+/// A blade of the scene outside the tissue is not lifted again and again: tetrahedra that a user's blade has entered in
+/// part stay so.
 #[test]
 fn a_blade_in_the_air_leaves_the_cut_of_a_hand_alone() {
     let area = |tables: &str| {
@@ -542,7 +544,8 @@ fn a_blade_in_the_air_leaves_the_cut_of_a_hand_alone() {
     assert_eq!(area(scalpel), alone);
 }
 
-/// A node that a jaw has hold of would be thrown where it was moved at rest: snapping leaves it where it is, and its copy is held as well.
+/// A node that a jaw holds would be accelerated if its rest position were moved: snapping does not move it, and its
+/// copy is held as well.
 #[test]
 fn what_a_jaw_holds_is_not_snapped() {
     let folder = tempfile::tempdir().unwrap();
@@ -700,7 +703,8 @@ fn the_certificate_counts_steps_before_and_after_cuts() {
     assert!(said.contains("in 40 steps it rose by"), "{said}");
 }
 
-/// Before the cut the strip has the stress of its law with nu = 0, P = mu (l - 1/l); after it the slit is open and the strip softer.
+/// Before the cut the strip has the stress of its law with nu = 0, P = mu (l - 1/l); after it the slit is open and the
+/// strip softer.
 #[test]
 fn the_strip_is_pulled_as_its_law_says_and_its_slit_opens() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/ready/slit.toml");

@@ -41,14 +41,14 @@ const DAMPED: &str = "[damping]\nmass = 40.0\nstiffness = 0.0\n";
 const DOWN: &str = "gravity = [0.0, 0.0, -9.81]\n";
 const TIP: &str = "[[probe]]\nname = \"tip\"\npoint = [0.02, 0.02, 0.06]\n";
 
-/// What is told of surfaces in each other at the end of a run.
+/// Overlap of surfaces at the end of a run.
 fn overlap(run: &World) -> Option<Overlap> {
     let mut watch = OverlapWatch::new(run.simulation().model().body().unwrap());
     watch.look_at_state(run.state()).unwrap();
     watch.into_deepest()
 }
 
-/// The mean displacement (m) of the top along z at the end of a run, and what of it ran.
+/// The mean displacement (m) of the top along -z at the end of a run, and the world then.
 fn sunk(scene: Simulation) -> (f64, World) {
     let steps = scene.run().steps;
     let mut run = following(scene);
@@ -158,7 +158,7 @@ impl Energy {
         scale: 0.0,
     };
 
-    /// That after one more step of `dt` (s), which is not more.
+    /// Energy after one more step of `dt` (s), which must not be higher.
     fn that_fell(self, run: &World, dt: f64) -> Self {
         let body = run.simulation().model().body().unwrap();
         let (model, State { u, v, .. }) = (&body.model, run.state());

@@ -122,7 +122,8 @@ fn what_a_hand_leaps_over_is_told_with_its_area_and_place() {
     assert_eq!(restored.left_by_strokes(), [said]);
 }
 
-/// A blade that goes down at x through a cube of four cells of 25 mm an edge that moves to the side, and what is said of it.
+/// A blade that moves down at x through a cube, four cells of 25 mm along an edge, that moves sideways: the pieces, and
+/// the messages about strokes.
 fn side_stroke(x: f64, split: &str) -> (usize, Vec<String>) {
     let scene = cube(
         "[[initial]]\nvelocity = [0.0, 0.2, 0.0]\n[cutting]\ntable = \"strokes.csv\"\nsnap = 0.0\n",

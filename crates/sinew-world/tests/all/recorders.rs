@@ -126,7 +126,8 @@ fn a_motion_in_parts_is_one_motion() {
     assert_eq!((whole.rows, whole.steps), (parts.rows, parts.steps));
 }
 
-/// A recorder is notified of each cut between the last step on the body before and the first on the body after, and watches the new body.
+/// A recorder is notified of each cut between the last step on the body before and the first on the body after, and
+/// watches the new body.
 #[test]
 fn a_recorder_follows_the_body_through_its_cuts() {
     let text = "[mesh]\ncube = { cells = 2, edge = 0.02 }\n[[region]]\ndensity = 1000.0\nmodel = \"linear\"\n\

@@ -67,7 +67,8 @@ fn command(dice: &mut Dice) -> Command {
     }
 }
 
-/// All that determines the motion. Which loads led to a state is no part of that, and a command that turns them changes it between two steps.
+/// All data that determine the motion. The loads that led to a state are not among them, and a command changes them
+/// between two steps.
 fn bytes(session: &World) -> Vec<u8> {
     let mut state = session.state().clone();
     state.loads = None;

@@ -50,14 +50,14 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
 
 /// The results of a run.
 enum Results {
-    /// In a folder of the user's.
+    /// Results in a folder of the user.
     Kept(PathBuf),
-    /// In a folder that goes with this value.
+    /// Results in a temporary folder, which is deleted with this value.
     Passing(TempDir),
 }
 
 impl Results {
-    /// Those in a folder, or those of a scene, which is run.
+    /// The results in a folder, or those of a scene, which is run.
     fn of(path: &Path, interruption: &Interruption) -> Result<Self, Failure> {
         let is_scene = path
             .extension()

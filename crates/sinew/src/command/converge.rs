@@ -67,7 +67,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     Ok(())
 }
 
-/// What it will take.
+/// A description of the predicted cost.
 fn cost(prediction: &Prediction) -> String {
     let mut table = ruled::table();
     table.set_header([
@@ -172,7 +172,7 @@ fn in_words(found: &Convergence) -> String {
     text
 }
 
-/// Which of the two errors counts.
+/// A sentence about which of the two errors dominates.
 fn answer(found: &Convergence) -> String {
     let runs = found.quantities.iter();
     let runs = runs.filter(|quantity| quantity.when == When::Run);

@@ -76,7 +76,7 @@ pub(crate) enum Failure {
     /// Warnings where none are wanted.
     #[error("{count} {}, which --strict makes {}", plural(*count, "warning"), if *count == 1 { "an error" } else { "errors" })]
     Warnings {
-        /// How many there are.
+        /// Number of warnings.
         count: usize,
     },
     /// A scene for which there is no advice.
@@ -203,7 +203,7 @@ pub(crate) enum Failure {
         t: f64,
         /// The degree of freedom in the system's words.
         place: String,
-        /// What is known of the reason.
+        /// Known reasons and remedies, as the rest of the message.
         remedy: String,
     },
     /// A run that ended because a law refused a state, or a step found no equilibrium.
@@ -214,12 +214,12 @@ pub(crate) enum Failure {
         /// The element and the reason.
         reason: String,
     },
-    /// A run that someone ended before its time.
+    /// A run that the user ended early.
     #[error("interrupted at t = {t:.6} s{remedy}")]
     Interrupted {
         /// Time (s).
         t: f64,
-        /// What goes on with it; empty where nothing does.
+        /// Way to continue the run, as the rest of the message; empty if there is none.
         remedy: String,
     },
     /// Results that differ by more than was allowed.

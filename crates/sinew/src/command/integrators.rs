@@ -15,7 +15,7 @@ pub(crate) struct Arguments {
     name: Option<String>,
 }
 
-/// Which one to take, before what each is.
+/// A guide to the choice of an integrator, printed before their descriptions.
 const WHICH: &str = "\
 Which one do I take?
   most scenes, an error near 1 %      central-difference with dt = \"auto\": the cheapest of its kind

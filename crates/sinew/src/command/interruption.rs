@@ -1,4 +1,4 @@
-//! Ctrl-C and its relatives: a run ends in order.
+//! Ctrl-C and similar signals: a run ends in order.
 
 use std::io;
 use std::sync::Arc;
@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use signal_hook::consts::TERM_SIGNALS;
 
-/// Whether someone asked this process to end. A second request ends it at once.
+/// A flag, set once this process is asked to end. A second request ends it at once.
 #[derive(Clone, Debug)]
 pub(crate) struct Interruption(Arc<AtomicBool>);
 
@@ -29,7 +29,7 @@ impl Interruption {
         self.0.load(Ordering::Relaxed)
     }
 
-    /// Takes what was asked for as done: the next request is the first again.
+    /// Clears the request once it is served: the next request is the first again.
     #[cfg(feature = "live")]
     pub(crate) fn is_followed(&self) {
         self.0.store(false, Ordering::Relaxed);

@@ -10,24 +10,24 @@ use sinew_world::Recorder;
 
 use super::interruption::Interruption;
 
-/// Time between two changes of what is shown.
+/// Time between two updates of the display.
 const REFRESH: Duration = Duration::from_millis(100);
 
-/// Shows how far a run is and ends it when asked to. The bar is hidden where standard error is no terminal.
+/// Shows the progress of a run and ends it on request. The bar is hidden if standard error is no terminal.
 pub(crate) struct Onlooker {
     interruption: Interruption,
     bar: ProgressBar,
     duration: f64,
     begun: Instant,
-    /// Where this process began: steps and time (s).
+    /// Time (s) of the motion at which this process began; `None` before the first report.
     from: Option<f64>,
     shown: Instant,
-    /// For runs that nobody else cuts into batches.
+    /// Pace of runs that are not divided into batches elsewhere.
     pace: Pace,
 }
 
 impl Onlooker {
-    /// Of a run of so many steps over `duration` (s).
+    /// Onlooker for a run of `steps` steps over `duration` (s).
     pub(crate) fn new(interruption: Interruption, steps: usize, duration: f64) -> Self {
         let bar = ProgressBar::new(steps as u64);
         let style = ProgressStyle::with_template("{bar:30} {percent:>3} % {msg} {eta} left");

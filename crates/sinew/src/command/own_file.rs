@@ -44,7 +44,7 @@ impl Force {
     }
 }
 
-/// Whether a file has this content.
+/// True if a file has this content.
 pub(crate) fn holds(path: &Path, content: &[u8]) -> bool {
     let length = fs::metadata(path).map(|found| found.len());
     length.is_ok_and(|length| length == content.len() as u64)

@@ -69,7 +69,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     simulation.end_at_duration();
     let mut integrator = integrator(&simulation, arguments.threads.as_ref())?;
-    // What ends a first step with an error will end the run with it. The folder does not keep a warning that depends on the computer.
+    // An error of the first step will end the run too, so it is not reported here. The folder does not keep a warning
+    // that depends on the computer.
     if let Ok(Some(forecast)) = Forecast::of_long_run(&simulation, &mut *integrator, LONG) {
         let long = Warning::long_run(forecast.run_s(), forecast.steps, forecast.dt);
         complain(&format!("warning: {long}"));
@@ -78,7 +79,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         }
     }
     let mut world = World::following(simulation, integrator)?;
-    // Before a folder is made, so that what cannot run leaves none.
+    // Before a folder is created, so that a run that cannot begin leaves none.
     world.set_up()?;
     match (destination, &arguments.out) {
         (None, Some(path)) => {
@@ -98,7 +99,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
 }
 
-/// Checks that a run of a scene, or a replay by a log, may write into a folder, and says where it replaces an earlier one.
+/// Checks that a run of a scene, or a replay by a log, may write into a folder, and prints a message if it replaces an
+/// earlier one.
 pub(crate) fn check_folder(
     path: &Path,
     scene: &Scene,
@@ -137,7 +139,7 @@ pub(crate) fn in_folder(
     })
 }
 
-/// Of a whole run.
+/// Onlooker for a whole run.
 fn onlooker(simulation: &Simulation, interruption: Interruption) -> Onlooker {
     let (steps, duration) = (simulation.run().steps, simulation.settings().duration);
     Onlooker::new(interruption, steps, duration)

@@ -28,7 +28,7 @@ pub(crate) struct Values {
 }
 
 impl Values {
-    /// What the command line sets, a sentence each for messages.
+    /// Assignments of the command line to keys of the scene, as `key=value`.
     pub(crate) fn assignments(&self) -> Vec<String> {
         let named = [("run.integrator", &self.integrator), ("run.dt", &self.dt)];
         let named = named

@@ -13,7 +13,8 @@ use crate::scene::{Body, MeshSource};
 /// Poisson's ratio beyond which plain tetrahedra are noticeably too stiff.
 const LOCKS: f64 = 0.4;
 
-/// Length of a cell, in multiples of its thickness, beyond which it bends less than the cubes that were measured: at 0.45 on a "mirrored" grid cells of 2 by a fifth, of 3 by almost a half.
+/// Length of a cell, in multiples of its thickness, beyond which it bends less than the cubes that were measured: at a
+/// Poisson's ratio of 0.45 on a "mirrored" grid, cells of aspect ratio 2 by a fifth, of 3 by almost a half.
 const LONG: f64 = 1.2;
 
 /// The longest edge of a grid's cells, in multiples of the shortest.
@@ -84,8 +85,8 @@ pub(super) fn locking(body: &Body) -> Vec<Warning> {
         .collect()
 }
 
-/// A warning for each region of Saint Venant and Kirchhoff's law: pulled or pressed along one axis it resists with `E/2 (l^3 - l)`, l being the
-/// stretch, which is least at `l = 1/sqrt 3`.
+/// A warning for each region of Saint Venant and Kirchhoff's law: under tension or compression along one axis its
+/// resistance is `E/2 (l^3 - l)`, l being the stretch, which is least at `l = 1/sqrt 3`.
 pub(super) fn weak_laws(body: &Body) -> Vec<Warning> {
     let regions = (1..).zip(&body.problem.regions);
     let weak = regions
@@ -102,8 +103,8 @@ pub(super) fn weak_laws(body: &Body) -> Vec<Warning> {
     .collect()
 }
 
-/// What plain tetrahedra make of a beam ten times as long as thick, three and four cells thick, that is held at one end and bent by a force along edges of
-/// its cells at the other: its deflection (% of Timoshenko's), least and most. A test measures it.
+/// Deflection of a cantilever of plain tetrahedra, ten times as long as thick and three or four cells thick, under an
+/// end force along edges of its cells (% of Timoshenko's), least and most. A test measures it.
 struct Bending {
     /// Poisson's ratio.
     ratio: f64,
@@ -164,7 +165,7 @@ const BENDING: [Bending; 5] = [
     },
 ];
 
-/// What was measured at the greatest ratio up to `ratio` that was tried.
+/// Measurements at the greatest tried ratio up to `ratio`.
 fn bending(ratio: f64) -> &'static Bending {
     let mut from_greatest = BENDING.iter().rev();
     from_greatest

@@ -21,8 +21,8 @@ use super::model::BodyModel;
 use crate::scene::{Body, Subject};
 
 impl Simulation {
-    /// Warnings about the scene's mesh, materials, initial state, motions, tools, steps, loads and probes, in this order. Costs
-    /// no more than [`Simulation::stable_step`].
+    /// Warnings about the scene's mesh, materials, initial state, motions, tools, steps, loads and probes, in this
+    /// order. Costs no more than [`Simulation::stable_step`].
     #[must_use]
     pub fn warnings(&self) -> Vec<Warning> {
         let mut warnings = Vec::new();

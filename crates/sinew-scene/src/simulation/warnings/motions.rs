@@ -1,4 +1,4 @@
-//! What a user of prescribed motions may not expect.
+//! Warnings about effects of prescribed motions that a user may not expect.
 
 use super::{Warning, WarningKind};
 use crate::scene::Body;

@@ -49,8 +49,8 @@ pub(super) fn unstable(simulation: &Simulation) -> Vec<Warning> {
     }
 }
 
-/// What the clamp of a network makes of a step that is too long; `None` for other methods, and where the scene lets it
-/// cut its steps.
+/// A warning that only the clamp of a network bounds a step that is too long; `None` for other methods, and if the
+/// scene lets the clamp divide its steps.
 fn clamped(simulation: &Simulation) -> Option<Warning> {
     let settings = simulation.settings();
     let entry = sinew_integrators::entry(&settings.integrator)?;

@@ -1,4 +1,4 @@
-//! What a user of tools may not expect.
+//! Warnings about effects of tools that a user may not expect.
 
 use sinew_core::{Inputs, System};
 use sinew_tools::Motion;

@@ -110,7 +110,7 @@ fn a_formula_without_a_finite_value_at_a_node() {
     );
 }
 
-/// Where no step has been taken yet: memory begins with the displacement that is given.
+/// Refusal before the first step: memory begins with the displacement that is given.
 #[test]
 fn a_state_in_which_a_law_with_memory_has_no_meaning() {
     let relaxing = BODY

@@ -116,7 +116,7 @@ fn spoilt(scene: &str) -> Vec<String> {
     texts
 }
 
-/// Whether a fault is that of the whole document and so has no line: a table that is missing.
+/// True if a fault is that of the whole document and so has no line: a table that is missing.
 fn is_of_the_whole_document(error: &SceneError) -> bool {
     error.table().is_empty()
         && match error.fault() {

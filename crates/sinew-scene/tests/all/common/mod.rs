@@ -1,4 +1,4 @@
-//! What the tests of scenes share: scenes built and run as commands do.
+//! Shared code of the tests of scenes: scenes are built and run as commands do.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 

@@ -12,8 +12,9 @@ use crate::command::interruption::Interruption;
 use crate::command::run::check_folder;
 use crate::command::run::replay::{in_folder, warnings_of};
 
-/// The folders of a session. What a folder holds depends on all of the session, the intervals of its rows among it, so that the session is repeated by
-/// its log when it has ended: the folders are those of `sinew run --replay`, and recording takes no time from the hand.
+/// The folders of a session. The content of a folder, such as the intervals of its rows, depends on the whole session,
+/// so the session is replayed by its log when it has ended: the folders are those of `sinew run --replay`, and
+/// recording takes no time from the user.
 pub(super) struct Recording {
     /// A folder for each pane.
     folders: [PathBuf; 2],
@@ -31,7 +32,7 @@ impl Recording {
         Ok(Self { folders })
     }
 
-    /// Creates the files in which the commands of the panes stand as long as the session lasts.
+    /// Creates the files that hold the commands of the panes while the session lasts.
     pub(super) fn journals(&self) -> Result<Vec<Journal>, Failure> {
         let mut journals = Vec::new();
         for folder in &self.folders {
@@ -66,7 +67,8 @@ impl Recording {
         }
     }
 
-    /// Repeats the session of each pane into its folder, which holds its log from then on. What fails leaves the log beside its folder.
+    /// Replays the session of each pane into its folder, which holds its log from then on. If this fails, the log stays
+    /// next to its folder.
     pub(super) fn write(
         self,
         session: sinew_live::Ended,
@@ -100,7 +102,8 @@ impl Recording {
     }
 }
 
-/// Where the commands of a session stand that was not recorded, and whether all of them do.
+/// A message with the place of the commands of a session that was not recorded; `is_whole` if the file holds all of
+/// them.
 fn where_commands_are(beside: &Path, is_whole: bool) -> String {
     let path = beside.display();
     match is_whole {
@@ -149,7 +152,7 @@ fn record(
     Ok(())
 }
 
-/// Where the log of a session stands as long as its folder does not hold it.
+/// Path of the log of a session until its folder holds the log.
 fn log_beside(folder: &Path) -> PathBuf {
     let mut path = folder.components().as_path().to_owned().into_os_string();
     path.push(".session.log");

@@ -1,4 +1,4 @@
-//! What a scene will cost: memory and time.
+//! Predicted cost of a scene: memory and time.
 
 use sinew_measure::Forecast;
 use sinew_measure::number::{short, three};
@@ -12,19 +12,19 @@ use crate::command::run::LONG;
 /// Degrees of freedom from which on no matrix is factorised for a plan.
 const LARGE_TO_FACTORISE: usize = 60_000;
 
-/// What a scene will cost.
+/// Predicted cost of a scene.
 pub(super) struct Cost {
-    /// Memory as mesh and supports told it, for a body.
+    /// Memory as computed from mesh and supports, for a body.
     pub(super) footprint: Option<Footprint>,
     /// Memory (bytes) of the factor of an implicit method, if there is one.
     pub(super) factor: Option<u64>,
-    /// Work and time, or why they are not known.
+    /// Work and time, or the reason for which they are not known.
     pub(super) forecast: Result<Forecast, String>,
     /// Files of a run with `--out`.
     pub(super) folder: FolderSize,
     /// Simulated time (s).
     duration: f64,
-    /// Whether the work of a step follows the motion.
+    /// True if the work of a step depends on the motion.
     is_law: bool,
 }
 

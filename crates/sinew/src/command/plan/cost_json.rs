@@ -1,10 +1,10 @@
-//! What a scene will cost, as JSON.
+//! Predicted cost of a scene, as JSON.
 
 use serde_json::{Value, json};
 
 use super::cost::Cost;
 
-/// Memory, files and time; what is not known is left out, with its reason.
+/// Memory, files and time; unknown values are left out, with the reason.
 pub(super) fn as_json(cost: &Cost) -> Value {
     let mut object = json!({});
     let Some(fields) = object.as_object_mut() else {

@@ -1,4 +1,4 @@
-//! What `sinew run` is told.
+//! Arguments of `sinew run`.
 
 use std::path::PathBuf;
 

@@ -107,7 +107,7 @@ pub(super) fn run(
     }
 }
 
-/// What is to be said before a session is repeated. Its folder shows the motion of all nodes, so that probes are not missed.
+/// Warnings before a session is replayed. Its folder shows the motion of all nodes, so that probes are not missed.
 pub(crate) fn warnings_of(replay: &Replay) -> Vec<String> {
     let mut warnings = replay.world().simulation().warnings();
     warnings.retain(|warning| warning.kind != WarningKind::NoProbe);
@@ -115,7 +115,7 @@ pub(crate) fn warnings_of(replay: &Replay) -> Vec<String> {
     warnings.chain(replay.warnings()).collect()
 }
 
-/// Repeats a session into a folder and says what came out.
+/// Replays a session into a folder and prints the outcome.
 pub(crate) fn in_folder(
     path: &Path,
     replay: &mut Replay,
@@ -132,7 +132,7 @@ pub(crate) fn in_folder(
     Ok(end.ended)
 }
 
-/// Of what is left to be repeated.
+/// Onlooker for the rest of a replay.
 fn onlooker(replay: &Replay, interruption: Interruption) -> Onlooker {
     let course = replay.course();
     let duration = course.steps as f64 * course.dt;
@@ -144,7 +144,7 @@ fn probes(arguments: &Arguments) -> &PathBuf {
     &arguments.probes
 }
 
-/// What is said after an interruption.
+/// The rest of the message after an interruption.
 fn no_remedy() -> String {
     "; a session is repeated as a whole, and cannot be gone on with".to_owned()
 }

@@ -1,4 +1,4 @@
-//! What is said after a run.
+//! Messages after a run.
 
 use std::path::Path;
 
@@ -10,7 +10,8 @@ use sinew_scene::{ProbeRows, Schedule, Simulation};
 /// Most rows of a table of probes, where the scene does not ask for more.
 const MOST_ROWS: usize = 100_000;
 
-/// The steps after which probes are written down, which is said where they are not all. A table that is kept has no more rows than can be read.
+/// The steps after which probes are recorded; prints a message if these are not all steps. A table that is kept has no
+/// more rows than can be read.
 pub(super) fn schedule(
     simulation: &Simulation,
     rows: &ProbeRows,
@@ -19,7 +20,7 @@ pub(super) fn schedule(
 ) -> Result<Schedule, RecordRunError> {
     let asked = simulation.scene().output().probes;
     if asked.is_none() && !is_kept {
-        // Nothing stays of a pipe, whose reader takes what it wants.
+        // A pipe stores nothing, and its reader takes the rows that it wants.
         return Ok(Schedule::at_most(usize::MAX, steps.0));
     }
     let columns = rows.columns().len();
@@ -42,7 +43,7 @@ pub(super) fn schedule(
     Ok(schedule)
 }
 
-/// What no run knows of itself.
+/// Statement about the error, which no run can measure itself.
 const ERROR_NOT_KNOWN: &str =
     "the error of this run is not known: `sinew plan --tolerance` measures it";
 

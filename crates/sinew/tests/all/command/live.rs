@@ -44,7 +44,7 @@ dt = 0.002
 fields = { frames = 5 }
 "#;
 
-/// What a page sets that asks for another ball.
+/// Assignment from a page that changes the ball.
 const SHAPE: &str = "tool.1.shape={ sphere = { radius = 0.03 } }";
 
 struct Folder(tempfile::TempDir);

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use assert_cmd::Command;
 
-/// What `sinew` says on standard error, and its exit code.
+/// Lines of `sinew` on standard error, and its exit code.
 fn said(arguments: &[&str], folder: &Path) -> (Vec<String>, Option<i32>) {
     let mut command = Command::cargo_bin("sinew").unwrap();
     let output = command

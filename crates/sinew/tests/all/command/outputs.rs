@@ -76,7 +76,7 @@ fn err(output: &Output) -> &str {
     std::str::from_utf8(&output.stderr).unwrap()
 }
 
-/// Whether a text is the CSV file of the spring's probe and nothing else.
+/// True if a text is the CSV file of the spring's probe and nothing else.
 fn is_csv(text: &str) -> bool {
     text.starts_with("t_s,mass_u_m\n")
         && text.lines().count() == 52

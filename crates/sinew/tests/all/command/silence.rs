@@ -1,4 +1,4 @@
-//! What does nothing, or asks for what no tissue bears, is said.
+//! Messages about input that has no effect, or that asks for more than tissue can bear.
 
 use std::fs;
 
