@@ -38,7 +38,7 @@ pub use frame::Frame;
 #[cfg(feature = "implicit")]
 pub use implicit::{
     Combination, Factor, FactorError, Matrices, Memory, NewtonError, NewtonSettings, Solver,
-    StaticError, static_estimate, static_solution, static_solution_under,
+    StaticError, static_estimate, static_solution, static_solution_under, symmetric_eigen,
 };
 pub use machine_options::MACHINE_OPTIONS;
 pub use method::{ConservedEnergy, Method};

@@ -21,7 +21,7 @@ use sinew_sparse::ordering::Elimination;
 
 use self::cell_order::cell_order;
 use self::cholesky::Cholesky;
-pub(crate) use self::cholesky::symmetric_eigen;
+pub use self::cholesky::symmetric_eigen;
 pub use self::matrices::{Combination, Matrices};
 pub use self::memory::Memory;
 pub use self::solver::Solver;

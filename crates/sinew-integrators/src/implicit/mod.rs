@@ -10,7 +10,7 @@ mod newmark;
 mod newton;
 mod static_solution;
 
-pub use factor::{Combination, Factor, Matrices, Memory, Solver};
+pub use factor::{Combination, Factor, Matrices, Memory, Solver, symmetric_eigen};
 pub use factor_error::FactorError;
 pub use generalized_alpha::GeneralizedAlpha;
 pub use implicit_euler::ImplicitEuler;

@@ -1,9 +1,8 @@
 //! The lowest modes, by locally optimal block preconditioned conjugate gradients (LOBPCG).
 
-use faer::{Mat, Side};
 use sinew_core::vectors::{add_scaled, dot, noise, norm, scale};
 use sinew_core::{EvaluationError, LinearOperators, OperatorError};
-use sinew_integrators::{Combination, FactorError, Solver};
+use sinew_integrators::{Combination, FactorError, Solver, symmetric_eigen};
 
 /// A reason for which there are no modes.
 #[derive(Debug, thiserror::Error)]
@@ -21,9 +20,6 @@ pub enum ModesError {
     /// A stiffness that has no factor.
     #[error("no natural modes: {0}")]
     Factor(#[from] FactorError),
-    /// A projected matrix without eigenvalues: entries that are no numbers.
-    #[error("no natural modes: the stiffness has entries that are not finite")]
-    NotFinite,
     /// An iteration that did not converge.
     #[error(
         "{found} of {count} modes were found in {rounds} rounds: ask for another number with `--count`, such as {found}"
@@ -144,8 +140,8 @@ fn about(
     let size = basis.vectors.len();
     let mut found = 0;
     for _ in 0..MOST_ROUNDS {
-        let (values, rows) = basis.eigen()?;
-        let (mut next, conjugate) = basis.turned(&rows, size);
+        let (values, shares) = basis.eigen()?;
+        let (mut next, conjugate) = basis.turned(&shares, size);
         let mut corrections = Vec::new();
         let mut is_found = vec![false; size];
         for (k, value) in values.iter().take(size).enumerate() {
@@ -234,28 +230,26 @@ impl Basis {
         true
     }
 
-    /// Eigenvalues of the matrix on the space of the vectors, the smallest first, and its eigenvectors by their shares
-    /// of the vectors.
-    fn eigen(&self) -> Result<(Vec<f64>, Mat<f64>), ModesError> {
+    /// Eigenvalues of the matrix on the space of the vectors, the smallest first, and its eigenvectors by their shares of the
+    /// vectors, one after the other.
+    fn eigen(&self) -> Result<(Vec<f64>, Vec<f64>), FactorError> {
         let size = self.vectors.len();
-        // The lower triangle alone is read.
-        let entry = |i: usize, j: usize| match j <= i {
-            true => dot(&self.vectors[i], &self.images[j]),
-            false => 0.0,
-        };
-        let matrix = Mat::from_fn(size, size, entry);
-        let eigen = matrix.self_adjoint_eigen(Side::Lower);
-        let eigen = eigen.map_err(|_| ModesError::NotFinite)?;
-        let values = eigen.S().column_vector().iter().copied().collect();
-        Ok((values, eigen.U().to_owned()))
+        let mut matrix = vec![0.0; size * size];
+        for (column, image) in self.images.iter().enumerate() {
+            for row in column..size {
+                matrix[column * size + row] = dot(&self.vectors[row], image);
+            }
+        }
+        symmetric_eigen(&matrix, size)
     }
 
     /// The first `size` eigenvectors, and what they take from vectors after the first `size`: the conjugate directions.
-    fn turned(&self, shares: &Mat<f64>, size: usize) -> (Self, Self) {
+    fn turned(&self, shares: &[f64], size: usize) -> (Self, Self) {
+        let rows = self.vectors.len();
         let sums = |of: &[Vec<f64>], from: usize, column: usize| {
             let mut sum = vec![0.0; of.first().map_or(0, Vec::len)];
             for (row, x) in of.iter().enumerate().skip(from) {
-                add_scaled(shares[(row, column)], x, &mut sum);
+                add_scaled(shares[column * rows + row], x, &mut sum);
             }
             sum
         };
@@ -266,8 +260,8 @@ impl Basis {
         let (mut next, conjugate) = (both(size), both(size));
         for (k, (vector, image)) in next.vectors.iter_mut().zip(&mut next.images).enumerate() {
             for row in 0..size {
-                add_scaled(shares[(row, k)], &self.vectors[row], vector);
-                add_scaled(shares[(row, k)], &self.images[row], image);
+                add_scaled(shares[k * rows + row], &self.vectors[row], vector);
+                add_scaled(shares[k * rows + row], &self.images[row], image);
             }
         }
         (next, conjugate)

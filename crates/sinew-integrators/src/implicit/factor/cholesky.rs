@@ -163,12 +163,12 @@ impl Cholesky {
     }
 }
 
-/// Eigenvalues in increasing order and eigenvectors of a dense symmetric matrix, both column by
-/// column; only its lower triangle is read.
-pub(crate) fn symmetric_eigen(
-    matrix: &[f64],
-    n: usize,
-) -> Result<(Vec<f64>, Vec<f64>), FactorError> {
+/// Eigenvalues in increasing order and eigenvectors of a dense symmetric matrix of `n` rows, matrices column by column; only
+/// the lower triangle is read.
+///
+/// # Errors
+/// [`FactorError::Eigenproblem`] for entries that are not finite.
+pub fn symmetric_eigen(matrix: &[f64], n: usize) -> Result<(Vec<f64>, Vec<f64>), FactorError> {
     if n == 0 {
         return Ok((Vec::new(), Vec::new()));
     }
