@@ -9,6 +9,8 @@ use std::path::{Path, PathBuf};
 pub struct SceneSource {
     path: PathBuf,
     text: String,
+    /// True if the text was made of values that a program gave: nobody has seen its lines.
+    is_of_values: bool,
 }
 
 impl SceneSource {
@@ -19,7 +21,21 @@ impl SceneSource {
         Self {
             path: path.into(),
             text: text.into(),
+            is_of_values: false,
         }
+    }
+
+    /// A text that was made of values of a program, of which messages name keys in the place of lines.
+    pub(crate) fn of_values(path: impl Into<PathBuf>, text: impl Into<String>) -> Self {
+        Self {
+            is_of_values: true,
+            ..Self::new(path, text)
+        }
+    }
+
+    /// True if messages name keys in the place of lines.
+    pub(crate) fn is_of_values(&self) -> bool {
+        self.is_of_values
     }
 
     /// The path as the user gave it.

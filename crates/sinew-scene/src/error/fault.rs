@@ -21,6 +21,12 @@ pub enum Fault {
         /// The message of the TOML parser.
         message: String,
     },
+    /// Values of a program that TOML does not have.
+    #[error("these values make no scene: {reason}")]
+    Values {
+        /// The reason.
+        reason: String,
+    },
     /// A value of the command line that cannot be set.
     #[error(transparent)]
     Override(#[from] OverrideError),

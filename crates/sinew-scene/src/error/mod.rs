@@ -2,6 +2,7 @@
 
 mod fault;
 mod hint;
+mod key_path;
 mod no_step;
 mod override_error;
 mod words;
@@ -128,6 +129,12 @@ impl fmt::Display for Line<'_> {
             fault,
             ..
         } = self.0;
+        if scene.is_of_values() {
+            let path = span.as_ref();
+            let path = path.and_then(|span| key_path::key_path(scene.text(), span.start));
+            let place = path.as_deref().unwrap_or("the scene");
+            return write!(f, "{place}: {}", one_line(&fault.to_string()));
+        }
         write!(f, "{}:", scene.path().display())?;
         if let Some(span) = span {
             write!(f, "{}:", scene.position(span.start).0)?;

@@ -6,6 +6,7 @@ mod document;
 mod field;
 mod fixed;
 mod from_mesh;
+mod from_value;
 mod group_name;
 mod initial;
 pub(crate) mod keys;

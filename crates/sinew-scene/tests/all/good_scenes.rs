@@ -268,3 +268,56 @@ substeps = "auto"
     assert_eq!(scene.settings().options, options);
     assert_eq!(scene.settings().samples, 7);
 }
+
+/// Each key in the place of its line, in tables of a list, inner tables and lists, from values of any kind of program.
+#[test]
+fn a_scene_of_values_is_that_of_its_text_and_errors_name_keys() {
+    let values = |density: f64, more: serde_json::Value| {
+        let mut scene = serde_json::json!({
+            "mesh": { "block": { "cells": [2, 2, 2], "size": [0.1, 0.1, 0.1] } },
+            "region": [{ "density": density, "model": "linear", "youngs_modulus": 3000, "poissons_ratio": 0.3 }],
+            "fixed": [{ "where": { "below": { "z": 0.0 } } }],
+            "run": { "duration": 0.1, "integrator": "central-difference", "dt": 0.001 },
+        });
+        if let (Some(scene), Some(more)) = (scene.as_object_mut(), more.as_object()) {
+            scene.extend(more.clone());
+        }
+        scene
+    };
+    let sound = Scene::from_value(&values(1000.0, serde_json::json!({})), "folder").unwrap();
+    let again = Scene::parse(sound.source().clone()).unwrap();
+    assert_eq!(sound.settings(), again.settings());
+    assert_eq!(sound.build().unwrap().system().dofs(), 54);
+    let said = |density: f64, more: serde_json::Value| {
+        let refused = Scene::from_value(&values(density, more), ".").unwrap_err();
+        refused.to_string()
+    };
+    assert!(
+        said(-3.0, serde_json::json!({}))
+            .starts_with("region[1].density: density = -3.0: expected"),
+        "{}",
+        said(-3.0, serde_json::json!({}))
+    );
+    for (more, begins) in [
+        (
+            serde_json::json!({ "gravity": [0, 0, "x"] }),
+            "gravity[3]: ",
+        ),
+        (
+            serde_json::json!({ "fixed": [{ "where": { "below": { "w": 1 } } }] }),
+            "fixed[1].where.below.w: ",
+        ),
+        (
+            serde_json::json!({ "fixed": [{ "group": "bottom", "axis": "x" }] }),
+            "fixed[1].axis: unknown key",
+        ),
+        (serde_json::json!({ "run": { "duration": 0.1 } }), "run: "),
+        (
+            serde_json::json!({ "title": null }),
+            "the scene: these values make no scene: ",
+        ),
+    ] {
+        let said = said(1000.0, more);
+        assert!(said.starts_with(begins), "{said}");
+    }
+}

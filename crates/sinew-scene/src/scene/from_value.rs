@@ -1,0 +1,54 @@
+//! Scenes from values without a text.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use serde::Serialize;
+
+use super::Scene;
+use crate::error::{Fault, SceneError};
+use crate::source::SceneSource;
+
+/// Name of the text that is made of the values, in the folder of its paths.
+const NAME: &str = "scene";
+
+impl Scene {
+    /// Reads a scene from a tree of values, such as a map of a program, by the same descriptions as from a text: maps are
+    /// tables, and a list of maps is a list of tables. Relative paths start at `folder`.
+    ///
+    /// [`Scene::source`] is TOML that is made of the values, so that run folders and logs keep the scene. Errors name the key,
+    /// such as `region[1].density`, with tables of a list counted from 1.
+    ///
+    /// # Errors
+    /// [`SceneError`] for the first mistake, and for values that TOML does not have, such as a map whose keys are no texts.
+    ///
+    /// ```
+    /// use sinew_scene::Scene;
+    ///
+    /// let scene = Scene::from_value(
+    ///     &serde_json::json!({
+    ///         "mesh": { "cube": { "cells": 4, "edge": 0.1 } },
+    ///         "region": [{ "density": 1000.0, "model": "linear", "youngs_modulus": 3000.0, "poissons_ratio": 0.4 }],
+    ///         "fixed": [{ "group": "bottom" }],
+    ///         "run": { "duration": 0.1, "integrator": "central-difference", "dt": "auto" },
+    ///     }),
+    ///     ".",
+    /// )?;
+    /// assert_eq!(scene.build()?.system().dofs(), 300);
+    /// # Ok::<(), sinew_scene::SceneError>(())
+    /// ```
+    pub fn from_value(
+        value: &impl Serialize,
+        folder: impl AsRef<Path>,
+    ) -> Result<Self, SceneError> {
+        let path = folder.as_ref().join(NAME);
+        match toml::to_string(value) {
+            Ok(text) => Self::parse(SceneSource::of_values(path, text)),
+            Err(error) => {
+                let nothing = Arc::new(SceneSource::of_values(path, ""));
+                let reason = error.to_string();
+                Err(SceneError::new(&nothing, Fault::Values { reason }))
+            }
+        }
+    }
+}
