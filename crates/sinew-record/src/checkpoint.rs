@@ -38,7 +38,7 @@ impl Checkpoint {
         row: &LastRow,
         largest: &[f64],
     ) -> Result<(), RecordRunError> {
-        let Saved { cuts, state } = world.save();
+        let Saved { cuts, state, .. } = world.save();
         let times = [row.t, row.before];
         let lists: [&[f64]; 6] = [&times, &row.u, &row.v, &row.a, &row.internal, largest];
         let json = serde_json::to_string(progress).map_err(|error| unusable(folder, &error))?;
@@ -94,6 +94,7 @@ impl Checkpoint {
         let saved = Saved {
             cuts: cuts.to_vec(),
             state: state.to_vec(),
+            commanded: None,
         };
         world.restore(&saved).map_err(|error| match error {
             RestoreError::Cutting(error) => error.into(),
@@ -101,6 +102,7 @@ impl Checkpoint {
                 folder: folder.path().to_owned(),
                 source,
             },
+            other => unusable(folder, &other),
         })?;
         let (numbers, []) = rest.as_chunks::<8>() else {
             return Err(damaged());

@@ -1,6 +1,8 @@
 //! Errors of worlds and their steps.
 
-use sinew_core::{InputError, OptionError, RecordError, StateBytesError, StepError};
+use sinew_core::{
+    InputBytesError, InputError, OptionError, RecordError, StateBytesError, StepError,
+};
 use sinew_scene::{CuttingError, DrivenLoadError, RefusedLoad, SceneError};
 use sinew_tools::ToolsError;
 
@@ -85,10 +87,24 @@ pub enum AdvanceError {
 /// Reasons for which [`crate::World::restore`] fails.
 #[derive(Debug, thiserror::Error)]
 pub enum RestoreError {
+    /// A motion that was kept by a world that follows its scene, and this one takes commands; or the other way round.
+    #[error(
+        "this motion was kept by a world that was built in another way, by `World::new` or `World::following`"
+    )]
+    OtherWorld,
     /// Cuts of another body.
     #[error(transparent)]
     Cutting(#[from] CuttingError),
     /// A state of another system.
     #[error(transparent)]
     State(#[from] StateBytesError),
+    /// Inputs that are none.
+    #[error(transparent)]
+    Inputs(#[from] InputBytesError),
+    /// Loads that cannot be driven.
+    #[error(transparent)]
+    Driven(#[from] DrivenLoadError),
+    /// A method that this program does not have.
+    #[error(transparent)]
+    Option(#[from] OptionError),
 }

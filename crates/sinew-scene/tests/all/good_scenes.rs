@@ -301,7 +301,7 @@ fn a_scene_of_values_is_that_of_its_text_and_errors_name_keys() {
     for (more, begins) in [
         (
             serde_json::json!({ "gravity": [0, 0, "x"] }),
-            "gravity[3]: ",
+            "gravity: ",
         ),
         (
             serde_json::json!({ "fixed": [{ "where": { "below": { "w": 1 } } }] }),

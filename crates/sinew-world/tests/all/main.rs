@@ -15,3 +15,4 @@ mod logs;
 mod moving_cuts;
 mod recorders;
 mod replays;
+mod saved;

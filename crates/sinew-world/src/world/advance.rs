@@ -1,0 +1,278 @@
+//! The steps of a world.
+
+use std::cell::OnceCell;
+use std::sync::Arc;
+
+use sinew_core::{Batch, Outcome, RecordedSteps, Run, SimulateError, StepReport};
+use sinew_scene::Simulation;
+use sinew_tools::Pose;
+
+use super::{Ended, World};
+use crate::error::{AdvanceError, WorldStepError};
+use crate::recorder::{BodyCut, Recorder, Shown};
+
+impl World {
+    /// Takes one step of [`World::dt`].
+    ///
+    /// # Errors
+    /// [`WorldStepError`] if the motion diverges, a law refuses a state or a method finds no solution: only
+    /// [`Command::Reset`] continues from there, and every other step gives the same error.
+    pub fn step(&mut self) -> Result<StepReport, WorldStepError> {
+        self.guarded(|world| {
+            world.begin_step()?;
+            let system = world.simulation.system();
+            let mut batch = Batch::new(system, &world.inputs, world.method.dt, 1);
+            batch = batch.with_divergence_limit(world.limit);
+            let taken = batch.take(&mut *world.method.integrator, &mut world.state);
+            let (count, work, diverged) = (batch.taken(), batch.work(), batch.diverged());
+            world.count(count);
+            taken?;
+            match diverged {
+                Some(dof) => Err(world.diverged(dof)),
+                None => Ok(work),
+            }
+        })
+    }
+
+    /// Takes steps under the eyes of a recorder, which sees the present state first.
+    ///
+    /// # Errors
+    /// [`AdvanceError`].
+    pub fn advance<R: Recorder + ?Sized>(
+        &mut self,
+        steps: usize,
+        recorder: &mut R,
+    ) -> Result<Ended, AdvanceError> {
+        let mut shown = self.show(recorder);
+        self.advance_shown(steps, &mut shown)
+    }
+
+    /// Takes the steps of [`World::dt`] that cover the time up to `t` (s).
+    ///
+    /// # Errors
+    /// [`AdvanceError`].
+    pub fn advance_to<R: Recorder + ?Sized>(
+        &mut self,
+        t: f64,
+        recorder: &mut R,
+    ) -> Result<Ended, AdvanceError> {
+        let steps = Run::covering(t - self.t(), self.dt()).steps;
+        self.advance(steps, recorder)
+    }
+
+    /// A recorder that has not seen the present state.
+    pub fn show<'r, R: Recorder + ?Sized>(&self, recorder: &'r mut R) -> Shown<'r, R> {
+        Shown {
+            steps: RecordedSteps::new(recorder),
+            simulation: Arc::clone(&self.simulation),
+        }
+    }
+
+    /// A recorder that saw the motion up to the present state earlier, in so many steps.
+    pub fn show_again<'r, R: Recorder + ?Sized>(
+        &self,
+        recorder: &'r mut R,
+        steps: usize,
+    ) -> Shown<'r, R> {
+        Shown {
+            steps: RecordedSteps::resumed(recorder, steps),
+            simulation: Arc::clone(&self.simulation),
+        }
+    }
+
+    /// Takes steps under the eyes of a recorder that may have seen others.
+    ///
+    /// Between two acts of a blade steps are taken in batches, as by [`sinew_core::simulate()`].
+    ///
+    /// # Errors
+    /// [`AdvanceError`] where a step or the recorder fails. A step that fails is counted as in [`World::step`].
+    pub fn advance_shown<R: Recorder + ?Sized>(
+        &mut self,
+        steps: usize,
+        shown: &mut Shown<'_, R>,
+    ) -> Result<Ended, AdvanceError> {
+        let end = shown.steps() + steps;
+        // The body before any cut is what stands at the beginning.
+        let ended = self.take(0, shown)?;
+        if steps == 0 || ended != Ended::Finished {
+            return Ok(ended);
+        }
+        loop {
+            let span = self.guarded(Self::begin_step)?;
+            shown.follow(&self.simulation, &self.inputs, self.change.as_ref())?;
+            let ended = self.take(span.min(end - shown.steps()), shown)?;
+            if ended != Ended::Finished || shown.steps() >= end {
+                return Ok(ended);
+            }
+        }
+    }
+
+    /// Takes steps within which nothing is cut or steered.
+    fn take<R: Recorder + ?Sized>(
+        &mut self,
+        steps: usize,
+        shown: &mut Shown<'_, R>,
+    ) -> Result<Ended, AdvanceError> {
+        shown.follow(&self.simulation, &self.inputs, None)?;
+        let run = Run {
+            dt: self.method.dt,
+            steps,
+            divergence_limit: self.limit,
+        };
+        let before = shown.steps();
+        let system = (self.simulation.system(), &self.inputs);
+        let taken = shown
+            .steps
+            .take(system, &mut *self.method.integrator, &mut self.state, &run);
+        self.count(shown.steps() - before);
+        match taken {
+            Ok(Outcome::Finished) => Ok(Ended::Finished),
+            Ok(Outcome::Stopped) => Ok(Ended::Stopped),
+            Ok(Outcome::Diverged { dof, .. }) => {
+                let failure = self.diverged(dof);
+                self.failure = Some(failure.clone());
+                match failure {
+                    WorldStepError::Diverged { t, place } => Ok(Ended::Diverged { t, place }),
+                    failure => Err(failure.into()),
+                }
+            }
+            Err(SimulateError::Step(error)) => {
+                let failure = WorldStepError::from(error);
+                self.failure = Some(failure.clone());
+                Err(failure.into())
+            }
+            Err(SimulateError::Record(error)) => Err(error.into()),
+        }
+    }
+
+    /// Keeps the failure of a step.
+    fn guarded<T>(
+        &mut self,
+        act: impl FnOnce(&mut Self) -> Result<T, WorldStepError>,
+    ) -> Result<T, WorldStepError> {
+        if let Some(failure) = &self.failure {
+            return Err(failure.clone());
+        }
+        let acted = act(self);
+        if let Err(failure) = &acted {
+            self.failure = Some(failure.clone());
+        }
+        acted
+    }
+
+    /// Counts steps that were taken.
+    fn count(&mut self, steps: usize) {
+        self.steps += steps;
+        self.reached = self.state.t();
+        self.log.ends_after(self.steps);
+    }
+
+    fn diverged(&self, dof: usize) -> WorldStepError {
+        WorldStepError::Diverged {
+            t: self.state.t(),
+            place: self.simulation.system().cell_name(dof),
+        }
+    }
+
+    /// Steers, turns loads and cuts at the beginning of a step; the number of steps until it must be called again.
+    fn begin_step(&mut self) -> Result<usize, WorldStepError> {
+        let dt = self.method.dt;
+        let mut clock = self.state.clock;
+        clock.advance(dt);
+        let (t, end) = (self.state.t(), clock.time());
+        if end <= t {
+            return Err(WorldStepError::Time { t, dt });
+        }
+        self.steer(t, end)?;
+        for load in &mut self.loads {
+            if let Some(factor) = load.next.take() {
+                self.inputs.set(load.channel, t, factor)?;
+            }
+        }
+        self.cut_before(end)?;
+        if self.tools.iter().any(|hand| hand.target.is_some()) {
+            return Ok(1);
+        }
+        let idle = match &self.cutter {
+            // A stroke that is met late is followed from its beginning all the same.
+            Some(cutter) => (cutter.idle_until(t) - t) / dt,
+            None => f64::INFINITY,
+        };
+        Ok((idle as usize).max(1))
+    }
+
+    /// Cuts what hands and the scene cut at the beginning of a step that ends at `end` (s).
+    fn cut_before(&mut self, end: f64) -> Result<(), WorldStepError> {
+        self.change = None;
+        let drives_loads = self.drives_loads();
+        let Some(cutter) = &mut self.cutter else {
+            return Ok(());
+        };
+        let t = self.state.t();
+        if self.sheets.is_empty() && cutter.idle_until(t) >= end {
+            return Ok(());
+        }
+        let (energy, before) = (cutter.totals().energy(), self.state.clone());
+        let (state, inputs) = (&mut self.state, &self.inputs);
+        let mut all_acts = || {
+            let mut changed: Option<Simulation> = None;
+            for sheet in self.sheets.drain(..) {
+                if self.blade.replace(sheet[1]) != Some(sheet[0]) {
+                    cutter.lift();
+                }
+                let now = changed.as_ref().unwrap_or(&self.body);
+                changed = cutter.cut(sheet, now, state, inputs)?.or(changed);
+            }
+            let now = changed.as_ref().unwrap_or(&self.body);
+            Ok(cutter.follow(now, state, inputs, end)?.or(changed))
+        };
+        let changed = match all_acts() {
+            Ok(Some(changed)) => changed,
+            Ok(None) => return Ok(()),
+            Err(error) => {
+                // What is shown of a session that failed is one body with its own state.
+                self.state = before;
+                return Err(WorldStepError::Cutting(error));
+            }
+        };
+        self.change = Some(BodyCut {
+            before,
+            after: self.state.clone(),
+            energy: cutter.totals().energy() - energy,
+        });
+        self.body = Arc::new(changed);
+        self.simulation = Arc::clone(&self.body);
+        if drives_loads {
+            let driven = self.driven();
+            let driven = driven.map_err(|error| WorldStepError::Driven(error.to_string()))?;
+            self.simulation = Arc::new(driven);
+        }
+        self.method.stable_step = OnceCell::new();
+        Ok(())
+    }
+
+    /// Gives the channels of all tools in hand their poses at the end (s) of a step that begins at `t` (s).
+    fn steer(&mut self, t: f64, end: f64) -> Result<(), WorldStepError> {
+        let last = self.state.clock.last_step().unwrap_or(0.0);
+        for (index, hand) in self.tools.iter_mut().enumerate() {
+            let Some((position, rotation_vector)) = hand.target else {
+                continue;
+            };
+            if !hand.is_steered {
+                // Of a tool that is a body of its own it is the hand that is steered.
+                let own = self.simulation.model().tools();
+                let own = own.and_then(|tools| tools.tools().get(index));
+                let own = own.map_or(Pose::identity(), |tool| tool.motion.at(t, &self.inputs));
+                hand.steering
+                    .set(&mut self.inputs, t, own.position(), own.rotation_vector())?;
+                hand.is_steered = true;
+            }
+            hand.steering
+                .set(&mut self.inputs, end, position, rotation_vector)?;
+            // Contact looks back by the step before.
+            hand.steering
+                .forget_before(&mut self.inputs, t - 2.0 * last);
+        }
+        Ok(())
+    }
+}

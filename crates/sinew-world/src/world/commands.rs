@@ -1,0 +1,225 @@
+//! Commands to a world.
+
+use std::sync::Arc;
+
+use sinew_scene::Simulation;
+
+use super::{Method, World, try_step};
+use crate::command::{Command, CommandError};
+use crate::log::Entry;
+
+/// Largest number of a pose (m or rad): far beyond any body, and far from overflow.
+const FARTHEST: f64 = 1e6;
+
+/// Largest factor of a load.
+const STRONGEST: f64 = 1e6;
+
+impl World {
+    /// Checks a command, which takes effect with the next step, and keeps it in the log.
+    ///
+    /// # Errors
+    /// [`CommandError`] for a command that cannot be followed: the session continues as before.
+    pub fn command(&mut self, command: Command) -> Result<(), CommandError> {
+        if self.failure.is_some() && command != Command::Reset {
+            return Err(CommandError::Failed);
+        }
+        self.check_words(&command)?;
+        let reached = self.reached;
+        match &command {
+            Command::Pose {
+                tool,
+                position,
+                rotation_vector,
+            } => {
+                let tool = self.tool(tool)?;
+                self.tools[tool].target = Some((*position, *rotation_vector));
+            }
+            Command::LoadFactor { load, factor } => self.turn(load, *factor)?,
+            Command::Integrator { id, options } => {
+                let method = Method::new(&self.simulation, id, options, self.method.dt)?;
+                self.switch(method)?;
+            }
+            Command::Dt(dt) => {
+                let (id, options) = &self.method.asked;
+                let method = Method::new(&self.simulation, id, options, *dt)?;
+                self.switch(method)?;
+            }
+            Command::Reset => {
+                self.cutter = self.scene.cutter()?;
+                self.sheets.clear();
+                (self.blade, self.change) = (None, None);
+                self.body = Arc::clone(&self.scene);
+                self.simulation = Arc::clone(&self.scene);
+                self.method = Method::of_scene(&self.simulation)?;
+                self.inputs.clone_from(&self.fresh);
+                for load in &mut self.loads {
+                    load.next = None;
+                }
+                for tool in &mut self.tools {
+                    (tool.target, tool.is_steered) = (None, false);
+                }
+                self.state.clone_from(self.simulation.initial_state());
+                self.reached = self.state.t();
+                self.failure = None;
+            }
+            Command::Cut { from, to } => self.sheets.push([*from, *to]),
+        }
+        self.log.add(self.steps, reached, command);
+        Ok(())
+    }
+
+    /// Begins in the state in which the last of these commands, a reset, left a session: the motion before it is only
+    /// in the log.
+    pub(crate) fn begin_at_reset(&mut self, commands: &[Entry]) -> Result<(), CommandError> {
+        self.command(Command::Reset)?;
+        self.log.begin_with(commands);
+        self.steps = self.log.steps();
+        Ok(())
+    }
+
+    /// Checks a command as far as possible before it is given: its names, its numbers and, for the first factor of a
+    /// load, whether the method supports loads that are not known in advance. Whether another method can take a step is
+    /// found only when it is given.
+    ///
+    /// # Errors
+    /// [`CommandError`] for a command that [`World::command`] refuses as well.
+    pub fn check(&self, command: &Command) -> Result<(), CommandError> {
+        self.check_words(command)?;
+        if matches!(command, Command::LoadFactor { .. }) && !self.drives_loads() {
+            self.driven_method()?;
+        }
+        Ok(())
+    }
+
+    /// Checks names and numbers of a command.
+    fn check_words(&self, command: &Command) -> Result<(), CommandError> {
+        match command {
+            Command::Pose { .. } | Command::LoadFactor { .. } if self.follows => {
+                Err(CommandError::Follows)
+            }
+            Command::Pose {
+                tool,
+                position,
+                rotation_vector,
+            } => {
+                self.tool(tool)?;
+                let numbers = position.iter().chain(rotation_vector);
+                // What is not a number is not within the range either.
+                let beyond = |value: &&f64| !(-FARTHEST..=FARTHEST).contains(*value);
+                numbers.into_iter().find(beyond).map_or(Ok(()), |value| {
+                    Err(CommandError::Pose {
+                        tool: tool.clone(),
+                        value: *value,
+                        most: FARTHEST,
+                    })
+                })
+            }
+            Command::LoadFactor { load, factor } => {
+                self.load(load)?;
+                match (-STRONGEST..=STRONGEST).contains(factor) {
+                    true => Ok(()),
+                    false => Err(CommandError::Factor {
+                        load: load.clone(),
+                        factor: *factor,
+                        most: STRONGEST,
+                    }),
+                }
+            }
+            Command::Dt(dt) => {
+                let t = self.t();
+                match dt.is_finite() && *dt > 0.0 && t + dt > t {
+                    true => Ok(()),
+                    false => Err(CommandError::Dt { dt: *dt, t }),
+                }
+            }
+            Command::Cut { .. } if self.cutter.is_none() => Err(CommandError::Whole),
+            Command::Cut { from, to } => {
+                let numbers = from.as_flattened().iter().chain(to.as_flattened());
+                let beyond = |value: &&f64| !(-FARTHEST..=FARTHEST).contains(*value);
+                numbers.into_iter().find(beyond).map_or(Ok(()), |value| {
+                    Err(CommandError::Cut {
+                        value: *value,
+                        most: FARTHEST,
+                    })
+                })
+            }
+            Command::Integrator { .. } | Command::Reset => Ok(()),
+        }
+    }
+
+    /// The number of a tool by its name.
+    ///
+    /// # Errors
+    /// [`CommandError::NoTool`].
+    pub fn tool(&self, name: &str) -> Result<usize, CommandError> {
+        let tools = self.simulation.model().tools();
+        let names = || {
+            tools
+                .iter()
+                .flat_map(|tools| tools.tools())
+                .map(|tool| &tool.name)
+        };
+        let place = names().position(|known| known == name);
+        place.ok_or_else(|| CommandError::NoTool {
+            name: name.to_owned(),
+            known: names().cloned().collect(),
+        })
+    }
+
+    /// The place of a load by its name.
+    fn load(&self, name: &str) -> Result<usize, CommandError> {
+        let place = self.loads.iter().position(|load| load.name == name);
+        place.ok_or_else(|| CommandError::NoLoad {
+            name: name.to_owned(),
+            known: self.loads.iter().map(|load| load.name.clone()).collect(),
+        })
+    }
+
+    fn turn(&mut self, name: &str, factor: f64) -> Result<(), CommandError> {
+        let place = self.load(name)?;
+        if !self.drives_loads() {
+            (self.simulation, self.method) = self.driven_method()?;
+            // These loads give the forces that led to the state.
+            self.state.loads = None;
+        }
+        self.loads[place].next = Some(factor);
+        Ok(())
+    }
+
+    /// True if loads follow inputs.
+    pub(super) fn drives_loads(&self) -> bool {
+        !Arc::ptr_eq(&self.simulation, &self.body)
+    }
+
+    /// The scene with loads that follow inputs, and the method, after a check that it can take a step.
+    fn driven_method(&self) -> Result<(Arc<Simulation>, Method), CommandError> {
+        let driven = Arc::new(self.driven()?);
+        let (id, options) = &self.method.asked;
+        let mut method = Method::new(&driven, id, options, self.method.dt)?;
+        let mut state = self.state.clone();
+        state.loads = None;
+        let mut trial = state.clone();
+        try_step(
+            driven.system(),
+            &self.inputs,
+            &state,
+            &mut trial,
+            &mut method,
+        )?;
+        Ok((driven, method))
+    }
+
+    /// Goes on with another method, if a step can be taken with it.
+    fn switch(&mut self, mut method: Method) -> Result<(), CommandError> {
+        let Self {
+            simulation,
+            inputs,
+            state,
+            trial,
+            ..
+        } = self;
+        try_step(simulation.system(), inputs, state, trial, &mut method)?;
+        self.method = method;
+        Ok(())
+    }
+}
