@@ -6,7 +6,8 @@ use crate::error::{Cause, FemError, Item};
 use crate::from_mesh::FromMesh;
 use crate::hyperelastic::fibres::Fibres;
 use crate::hyperelastic::prony::{self, Term};
-use crate::hyperelastic::{Hyperelastic, Parameters};
+use crate::hyperelastic::Hyperelastic;
+use crate::law::Law;
 use crate::number::require_finite;
 
 /// What tissue has beside an isotropic law; only laws of large deformation take any of it.
@@ -98,17 +99,25 @@ impl Tissue {
         Ok(())
     }
 
-    /// The instantaneous and the long-term Young's modulus (Pa) and Poisson's ratio at small strain, of parameters as they are stated.
+    /// A law as it is stated with its instantaneous and with its long-term moduli; twice the same one if nothing relaxes.
     #[must_use]
-    pub fn moduli(&self, stated: &Parameters) -> [Parameters; 2] {
+    pub fn moduli(&self, stated: &Law) -> [Law; 2] {
+        let stated = || stated.clone();
         let Some(memory) = &self.memory else {
-            return [*stated; 2];
+            return [stated(), stated()];
         };
         let left = 1.0 / prony::instantaneous_over_longterm(&memory.terms);
-        let scaled = |factor: f64| memory.part.scaled(stated, factor);
+        let scaled = |factor: f64| {
+            let mut law = stated();
+            match memory.part {
+                ViscousPart::All => law.scale_stiffness(factor),
+                ViscousPart::Deviatoric => law.scale_shear(factor),
+            }
+            law
+        };
         match memory.moduli {
-            Moduli::Instantaneous => [*stated, scaled(left)],
-            Moduli::LongTerm => [scaled(1.0 / left), *stated],
+            Moduli::Instantaneous => [stated(), scaled(left)],
+            Moduli::LongTerm => [scaled(1.0 / left), stated()],
         }
     }
 
@@ -128,28 +137,6 @@ impl Tissue {
 impl Memory {
     /// The most terms of a series.
     pub const MOST_TERMS: usize = 8;
-}
-
-impl ViscousPart {
-    /// Parameters with the moduli of this part multiplied by a factor.
-    fn scaled(self, parameters: &Parameters, factor: f64) -> Parameters {
-        let (modulus, ratio) = (parameters.youngs_modulus, parameters.poissons_ratio);
-        match self {
-            Self::All => Parameters {
-                youngs_modulus: factor * modulus,
-                ..*parameters
-            },
-            Self::Deviatoric => {
-                let shear = factor * modulus / (2.0 * (1.0 + ratio));
-                let bulk = modulus / (3.0 * (1.0 - 2.0 * ratio));
-                Parameters {
-                    youngs_modulus: 9.0 * bulk * shear / (3.0 * bulk + shear),
-                    poissons_ratio: (3.0 * bulk - 2.0 * shear) / (2.0 * (3.0 * bulk + shear)),
-                    ..*parameters
-                }
-            }
-        }
-    }
 }
 
 impl FibreFamily {
@@ -210,20 +197,24 @@ mod tests {
 
     #[test]
     fn stated_moduli_are_the_instantaneous_or_the_long_term_ones() {
-        let stated = Parameters::new(3500.0, 0.45);
-        for part in [ViscousPart::All, ViscousPart::Deviatoric] {
-            let [at_once, later] = memory(part, Moduli::Instantaneous).moduli(&stated);
-            assert_eq!(at_once, stated);
-            let bulk = |p: &Parameters| p.youngs_modulus / (3.0 - 6.0 * p.poissons_ratio);
-            let [before, after] =
-                [at_once, later].map(|p| lame(p.youngs_modulus, p.poissons_ratio).1);
-            assert!((after / before - 0.5).abs() < 1e-14);
-            let left = if part == ViscousPart::All { 0.5 } else { 1.0 };
-            assert!((bulk(&later) / bulk(&at_once) - left).abs() < 1e-13);
-            let [back, same] = memory(part, Moduli::LongTerm).moduli(&later);
-            assert_eq!(same, later);
-            assert!((back.youngs_modulus / 3500.0 - 1.0).abs() < 1e-13);
-            assert!((back.poissons_ratio / 0.45 - 1.0).abs() < 1e-13);
+        for id in ["neo-hookean-iso", "yeoh"] {
+            let parameters = Hyperelastic::parameters(id, 3500.0, 0.45).unwrap();
+            let stated = Law::Hyperelastic { id, parameters };
+            for part in [ViscousPart::All, ViscousPart::Deviatoric] {
+                let [at_once, later] = memory(part, Moduli::Instantaneous).moduli(&stated);
+                assert_eq!(at_once, stated);
+                let of = |law: &Law| [law.youngs_modulus(), law.poissons_ratio().unwrap()];
+                let shear = |law: &Law| lame(of(law)[0], of(law)[1]).1;
+                let bulk = |law: &Law| of(law)[0] / (3.0 - 6.0 * of(law)[1]);
+                assert!((shear(&later) / shear(&at_once) - 0.5).abs() < 1e-14);
+                let left = if part == ViscousPart::All { 0.5 } else { 1.0 };
+                assert!((bulk(&later) / bulk(&at_once) - left).abs() < 1e-13);
+                let [back, same] = memory(part, Moduli::LongTerm).moduli(&later);
+                assert_eq!(same, later);
+                let [modulus, ratio] = of(&back);
+                assert!((modulus / 3500.0 - 1.0).abs() < 1e-13);
+                assert!((ratio / 0.45 - 1.0).abs() < 1e-13);
+            }
         }
     }
 }

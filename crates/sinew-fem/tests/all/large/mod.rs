@@ -3,5 +3,4 @@
 mod damping;
 mod fibrous_bodies;
 mod hyperelastic_bodies;
-mod laws_on_vectors;
 mod relaxing_bodies;
