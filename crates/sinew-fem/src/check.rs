@@ -20,7 +20,10 @@ pub(crate) fn numbers(problem: &Problem) -> Result<(), FemError> {
             // The law as it is stated has been checked.
             Some(Err(_)) => {
                 let poissons_ratio = at_once.poissons_ratio().unwrap_or(f64::NAN);
-                return Err(FemError::new(item, Cause::NoModuliAtOnce { poissons_ratio }));
+                return Err(FemError::new(
+                    item,
+                    Cause::NoModuliAtOnce { poissons_ratio },
+                ));
             }
             None if !region.tissue.is_plain() => {
                 return Err(FemError::new(item, Cause::TissueOfSmallStrain));

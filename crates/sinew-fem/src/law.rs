@@ -233,7 +233,9 @@ fn hyperelastic_with_modulus(id: &str, parameters: &Parameters, modulus: &str) -
         ([None, _], Ok(law)) => {
             let (lambda, mu) = law.lame();
             let bulk = lambda + 2.0 / 3.0 * mu;
-            format!("{id}, mu = {mu} Pa, E = {modulus} Pa, kappa = {bulk} Pa, nu = {nu} at small strain")
+            format!(
+                "{id}, mu = {mu} Pa, E = {modulus} Pa, kappa = {bulk} Pa, nu = {nu} at small strain"
+            )
         }
         _ => format!("{id}, E = {modulus} Pa, nu = {nu} at small strain"),
     };

@@ -4,9 +4,9 @@ use std::fmt;
 
 use crate::error::{Cause, FemError, Item};
 use crate::from_mesh::FromMesh;
+use crate::hyperelastic::Hyperelastic;
 use crate::hyperelastic::fibres::Fibres;
 use crate::hyperelastic::prony::{self, Term};
-use crate::hyperelastic::Hyperelastic;
 use crate::law::Law;
 use crate::number::require_finite;
 

@@ -91,10 +91,7 @@ impl HyperelasticLaw for Boxed<'_> {
     #[inline(never)]
     fn tangent<N: Number>(&self, at: &Point<N, ()>, change: Tensor<N>) -> Tensor<N> {
         let h = at.displacement_gradient;
-        by_lanes(|lane| {
-            self.0
-                .tangent(lane_of(h, lane), lane_of(change, lane))
-        })
+        by_lanes(|lane| self.0.tangent(lane_of(h, lane), lane_of(change, lane)))
     }
 
     /// The block of the local tangent with its negative eigenvalues put to 0, and that of the dilation.

@@ -524,7 +524,10 @@ pub fn the_dilation_is_that_of_the_viscosity<L: HyperelasticLaw>(law: L) {
     for (_, h) in deformations::<L>() {
         let at = law.at(h);
         require(law.dilation(&at) == at.volume_change, || {
-            format!("{}: another dilation than J - 1 needs `OWN_DILATION`", L::ID)
+            format!(
+                "{}: another dilation than J - 1 needs `OWN_DILATION`",
+                L::ID
+            )
         });
     }
 }
@@ -533,7 +536,9 @@ pub fn the_dilation_is_that_of_the_viscosity<L: HyperelasticLaw>(law: L) {
 pub fn vectors_are_plain_numbers<L: HyperelasticLaw>(law: L) {
     for set in InstructionSet::available() {
         let is_there = [set.with_f64(OnLanes(law)), set.with_f32(OnLanes(law))];
-        require(is_there == [Some(()); 2], || format!("{set:?} is available"));
+        require(is_there == [Some(()); 2], || {
+            format!("{set:?} is available")
+        });
     }
 }
 
@@ -580,7 +585,9 @@ fn lane_is_plain<L: HyperelasticLaw>(
     rows: [[f64; 3]; 3],
     epsilon: f64,
 ) {
-    let found = found.each_ref().map(|row| row.each_ref().map(|entry| entry[lane]));
+    let found = found
+        .each_ref()
+        .map(|row| row.each_ref().map(|entry| entry[lane]));
     let expected = whole_stress(law, Tensor(rows));
     // Rotations are as sure as the sum of the two smallest singular values.
     let [_, middle, last] = SingularValues::of(Tensor(rows) + Tensor::identity()).values;

@@ -47,11 +47,12 @@ pub use neo_hookean::NeoHookean;
 pub use neo_hookean_iso::NeoHookeanIso;
 pub use neo_hookean_log::NeoHookeanLog;
 pub use parameters::{LawParameter, LawValues, ParameterError, Parameters, Presence, Range};
-pub use registry::{
-    Hyperelastic, KnownLaw, LawError, MakeBoxed, RegisterError, known_law, known_laws, register, register_boxed,
-};
 pub(crate) use projection::semidefinite;
 pub use projection::{Linearised, Projection, TangentKind};
+pub use registry::{
+    Hyperelastic, KnownLaw, LawError, MakeBoxed, RegisterError, known_law, known_laws, register,
+    register_boxed,
+};
 pub use samples::sample_deformations;
 pub use stable_neo_hookean::StableNeoHookean;
 pub use stable_neo_hookean_log::StableNeoHookeanLog;

@@ -96,7 +96,11 @@ impl<N: Number> Isochoric<N> {
 impl HyperelasticLaw for MooneyRivlin {
     const ID: &'static str = "mooney-rivlin";
     const MEANING: &'static str = "fits rubber-like tissue better in shear";
-    const PARAMETERS: &'static [LawParameter] = &[LawParameter::YOUNGS_MODULUS, LawParameter::POISSONS_RATIO, C1_OVER_C2];
+    const PARAMETERS: &'static [LawParameter] = &[
+        LawParameter::YOUNGS_MODULUS,
+        LawParameter::POISSONS_RATIO,
+        C1_OVER_C2,
+    ];
     const DEFINED_WHEN_INVERTED: bool = false;
     const HAS_ISOCHORIC_PART: bool = true;
     const NODE_BLOCK: NodeBlock = NodeBlock::Majorant;

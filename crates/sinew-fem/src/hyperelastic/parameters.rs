@@ -111,7 +111,10 @@ impl LawParameter {
     /// [`Self::POISSONS_RATIO`] or [`Self::BULK_MODULUS`], for laws with shear constants of their own ([`LawValues::lambda`]).
     pub const VOLUME: [Self; 2] = {
         const NAMES: &[&str] = &["poissons_ratio", "bulk_modulus"];
-        [Self::POISSONS_RATIO.one_of(NAMES), Self::BULK_MODULUS.one_of(NAMES)]
+        [
+            Self::POISSONS_RATIO.one_of(NAMES),
+            Self::BULK_MODULUS.one_of(NAMES),
+        ]
     };
 
     /// Bulk modulus at small strain (Pa).
@@ -329,7 +332,9 @@ impl Parameters {
             let quantity = parameter.name;
             match (self.get(quantity), parameter.presence) {
                 (Some(values), _) => parameter.check(values)?,
-                (None, Presence::Required) => return Err(ParameterError::Missing { law, quantity }),
+                (None, Presence::Required) => {
+                    return Err(ParameterError::Missing { law, quantity });
+                }
                 (None, Presence::Default(_) | Presence::OneOf(_)) => {}
             }
             if let Presence::OneOf(of) = parameter.presence

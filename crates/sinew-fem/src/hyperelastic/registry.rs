@@ -414,12 +414,18 @@ mod tests {
     #[test]
     fn an_id_is_given_once() {
         let taken = register::<NeoHookean>().unwrap_err().to_string();
-        assert!(taken.starts_with("the id `neo-hookean` is taken"), "{taken}");
+        assert!(
+            taken.starts_with("the id `neo-hookean` is taken"),
+            "{taken}"
+        );
         let make = || -> MakeBoxed { Box::new(|_| Err(ParameterError::NotStated { law: "none" })) };
         assert!(register_boxed("linear", "", &[], make()).is_err());
         register_boxed("registered-once", "", &[], make()).unwrap();
         assert!(register_boxed("registered-once", "", &[], make()).is_err());
-        assert_eq!(known_law("registered-once").unwrap().id(), "registered-once");
+        assert_eq!(
+            known_law("registered-once").unwrap().id(),
+            "registered-once"
+        );
     }
 
     #[test]
@@ -438,12 +444,18 @@ mod tests {
                 less.remove(parameter.name);
                 if less != parameters {
                     let said = said(law.id, &less);
-                    assert!(said.starts_with(&format!("the law `{}` needs", law.id)), "{said}");
+                    assert!(
+                        said.starts_with(&format!("the law `{}` needs", law.id)),
+                        "{said}"
+                    );
                     assert!(said.contains(parameter.name), "{said}");
                 }
                 let wrong = parameters.clone().with(parameter.name, &[f64::NAN]);
                 let said = said(law.id, &wrong);
-                assert!(said.starts_with(&format!("{} = NaN: expected", parameter.name)), "{said}");
+                assert!(
+                    said.starts_with(&format!("{} = NaN: expected", parameter.name)),
+                    "{said}"
+                );
             }
             let foreign = parameters.clone().with("c1_over_c3", &[1.0]);
             let expected = format!("the law `{}` has no c1_over_c3", law.id);

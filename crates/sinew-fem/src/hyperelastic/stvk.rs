@@ -22,7 +22,10 @@ impl HyperelasticLaw for Stvk {
     const ID: &'static str = "stvk";
     const MEANING: &'static str = "(Saint Venant and Kirchhoff) collapses under strong compression";
     const PARAMETERS: &'static [LawParameter] = LawParameter::MODULI;
-    const WEAKNESS: Option<[&'static str; 2]> = Some(["pressed to less than 58 % of its length it gives way, and turns inside out without resistance", "model = \"neo-hookean\" resists the more the farther it is pressed"]);
+    const WEAKNESS: Option<[&'static str; 2]> = Some([
+        "pressed to less than 58 % of its length it gives way, and turns inside out without resistance",
+        "model = \"neo-hookean\" resists the more the farther it is pressed",
+    ]);
     const OWN_DILATION: bool = true;
     const DEFINED_WHEN_INVERTED: bool = true;
     const NODE_BLOCK: NodeBlock = NodeBlock::Majorant;

@@ -167,12 +167,22 @@ mod tests {
     use crate::hyperelastic::{NeoHookeanIso, Parameters, conformance, sample_deformations};
 
     fn of(c: &[f64], nu: f64) -> Yeoh {
-        Yeoh::new(&Parameters::default().with("c", c).with("poissons_ratio", &[nu])).unwrap()
+        Yeoh::new(
+            &Parameters::default()
+                .with("c", c)
+                .with("poissons_ratio", &[nu]),
+        )
+        .unwrap()
     }
 
     #[test]
     fn the_suite_holds_for_one_two_and_three_constants_of_either_sign() {
-        for c in [&[600.0][..], &[600.0, -20.0], &[600.0, -50.0, 10.0], &[600.0, 0.0, 60.0]] {
+        for c in [
+            &[600.0][..],
+            &[600.0, -20.0],
+            &[600.0, -50.0, 10.0],
+            &[600.0, 0.0, 60.0],
+        ] {
             conformance::check(of(c, 0.45));
         }
     }
@@ -203,7 +213,10 @@ mod tests {
             let cauchy = stress.times_transposed(at.gradient).0[0][1];
             let i = g * g;
             let expected = 2.0 * g * (c[0] + 2.0 * c[1] * i + 3.0 * c[2] * i * i);
-            assert!((cauchy / expected - 1.0).abs() < 1e-13, "{g}: {cauchy}, {expected}");
+            assert!(
+                (cauchy / expected - 1.0).abs() < 1e-13,
+                "{g}: {cauchy}, {expected}"
+            );
         }
     }
 
@@ -214,15 +227,22 @@ mod tests {
         let bulk = 2.0 * 1200.0 * 1.25 / (3.0 * 0.5);
         let of_bulk = Yeoh::new(&c().with("bulk_modulus", &[bulk])).unwrap();
         assert!((of_ratio.lambda / of_bulk.lambda - 1.0).abs() < 1e-14);
-        let both = c().with("poissons_ratio", &[0.25]).with("bulk_modulus", &[bulk]);
+        let both = c()
+            .with("poissons_ratio", &[0.25])
+            .with("bulk_modulus", &[bulk]);
         for refused in [c(), both] {
             let said = Yeoh::new(&refused).unwrap_err().to_string();
             let expected = "the law `yeoh` needs exactly one of poissons_ratio, bulk_modulus";
             assert_eq!(said, expected);
         }
         let soft = Yeoh::new(&c().with("bulk_modulus", &[700.0])).unwrap_err();
-        assert!(soft.to_string().starts_with("bulk_modulus = 700: expected at least 2/3"));
-        let inside_out = Parameters::default().with("c", &[-1.0]).with("poissons_ratio", &[0.3]);
+        assert!(
+            soft.to_string()
+                .starts_with("bulk_modulus = 700: expected at least 2/3")
+        );
+        let inside_out = Parameters::default()
+            .with("c", &[-1.0])
+            .with("poissons_ratio", &[0.3]);
         let said = Yeoh::new(&inside_out).unwrap_err().to_string();
         assert_eq!(said, "c = -1: expected c1 above 0 Pa");
     }

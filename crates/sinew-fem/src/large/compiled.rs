@@ -11,7 +11,9 @@ use super::matrix::Tangents;
 use super::node_blocks::Blocks;
 use super::product::Products;
 use super::stress::Cauchy;
-use crate::hyperelastic::{Boxed, HyperelasticLaw, NodeBlock, PointLaw, Tensor, sample_deformations};
+use crate::hyperelastic::{
+    Boxed, HyperelasticLaw, NodeBlock, PointLaw, Tensor, sample_deformations,
+};
 
 /// A law without its type: each method is one call for a region, with loops inside that are compiled for the type.
 pub(crate) trait Compiled: Debug + Send + Sync {

@@ -18,8 +18,8 @@ use super::region::{HyperelasticRegion, Numbers};
 use super::rooms::{RegionRooms, Rooms};
 use super::schedule::{Piece, Task};
 use super::scratch::Places;
-use crate::hyperelastic::prony::{deviatoric, first_piola};
 use crate::hyperelastic::HyperelasticLaw;
+use crate::hyperelastic::prony::{deviatoric, first_piola};
 
 /// An evaluation of forces.
 #[derive(Clone, Copy, Debug)]

@@ -307,9 +307,9 @@ impl LargeDeformation {
 mod tests {
     use super::schedule::Schedule;
     use super::*;
+    use crate::hyperelastic::Hyperelastic;
     use crate::hyperelastic::fibres::{Fibres, Stiffening};
     use crate::hyperelastic::prony::Term;
-    use crate::hyperelastic::Hyperelastic;
     use crate::shares::Shares;
     use crate::{
         Element, FibreFamily, FromMesh, Law, Memory, Moduli, Problem, Region, Tissue, ViscousPart,

@@ -131,7 +131,9 @@ fn otherwise(key: &KeyDescription, table: &TableDescription) -> String {
             }
             Goes::Never => None,
         });
-    let parts: Vec<String> = std::iter::once(stated).chain(goes).collect();
+    let mut parts: Vec<String> = std::iter::once(stated).chain(goes).collect();
+    // Conditions with different reasons may have the same words.
+    parts.dedup();
     parts.join("; ")
 }
 

@@ -54,7 +54,10 @@ fn table(table: &TableDescription) -> Map<String, Value> {
         .collect();
     let mut rules: Vec<Value> = Vec::new();
     for key in &keys {
-        let conditions: Vec<Value> = key.conditions.iter().filter_map(holds).collect();
+        let conditions = key.conditions.iter().filter_map(holds);
+        let mut conditions: Vec<Value> = conditions.collect();
+        // Conditions with different reasons may have the same words.
+        conditions.dedup();
         let refused = json!({ "properties": { key.name: false } });
         rules.extend(
             conditions
@@ -99,7 +102,10 @@ fn holds(condition: &Condition) -> Option<Value> {
     match condition.goes {
         Goes::With(other) => Some(json!({ "required": [other] })),
         Goes::Without(other) => Some(json!({ "not": { "required": [other] } })),
-        Goes::If(..) | Goes::Among(..) => condition.goes.words().map(|(other, words)| is(other, words)),
+        Goes::If(..) | Goes::Among(..) => condition
+            .goes
+            .words()
+            .map(|(other, words)| is(other, words)),
         Goes::Never => None,
     }
 }

@@ -47,7 +47,10 @@ pub(super) struct ModelName;
 impl ModelName {
     fn all() -> Vec<&'static str> {
         let laws = known_laws().into_iter().map(KnownLaw::id);
-        [SPRINGS_MODEL, LINEAR_MODEL].into_iter().chain(laws).collect()
+        [SPRINGS_MODEL, LINEAR_MODEL]
+            .into_iter()
+            .chain(laws)
+            .collect()
     }
 }
 
@@ -93,7 +96,9 @@ pub(super) fn alternatives(words: &[&str]) -> String {
 }
 
 fn has(law: &KnownLaw, parameter: &LawParameter) -> bool {
-    law.parameters().iter().any(|own| own.name == parameter.name)
+    law.parameters()
+        .iter()
+        .any(|own| own.name == parameter.name)
 }
 
 /// The models by what goes with them, and the keys of laws.
@@ -219,10 +224,14 @@ fn examples(law: &'static KnownLaw) -> Vec<&'static str> {
         Presence::Required | Presence::Default(_) => 1,
     });
     let region = |choice: usize| {
-        let given = parameters.iter().filter(|parameter| match parameter.presence {
-            Presence::OneOf(names) => names.get(choice).or(names.first()) == Some(&parameter.name),
-            Presence::Required | Presence::Default(_) => true,
-        });
+        let given = parameters
+            .iter()
+            .filter(|parameter| match parameter.presence {
+                Presence::OneOf(names) => {
+                    names.get(choice).or(names.first()) == Some(&parameter.name)
+                }
+                Presence::Required | Presence::Default(_) => true,
+            });
         let lines = given.map(|parameter| {
             let value = Parameter(parameter).written(parameter.example);
             format!("{} = {value}\n", parameter.name)
@@ -418,7 +427,8 @@ pub(super) fn require(
             Err(table.missing(parameter.name, parameter.expected()))
         }
         Presence::OneOf(of) => {
-            let found: Vec<&'static str> = of.iter().copied().filter(|key| table.has(key)).collect();
+            let found: Vec<&'static str> =
+                of.iter().copied().filter(|key| table.has(key)).collect();
             match found[..] {
                 [_] => Ok(()),
                 [] => Err(table.place().fault(Fault::NotExactlyOne { of, found })),

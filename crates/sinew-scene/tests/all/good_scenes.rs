@@ -213,7 +213,7 @@ substeps = "auto"
         .problem
         .regions
         .iter()
-        .map(|region| region.law)
+        .map(|region| region.law.clone())
         .collect();
     let springs = Law::Springs {
         youngs_modulus: 2e4,

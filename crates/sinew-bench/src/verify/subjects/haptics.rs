@@ -123,7 +123,7 @@ fn cube(
         ..body(YOUNGS_MODULUS, 0.3, Element::P1)
     };
     for region in &mut problem.regions {
-        region.law = law;
+        region.law = law.clone();
     }
     let mut inputs = Inputs::new();
     let steering = Steering::new(&mut inputs);

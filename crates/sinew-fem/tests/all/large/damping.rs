@@ -6,8 +6,8 @@ use crate::common::{
 };
 use sinew_core::{BlockMatrix, ElasticLaw, ForceLaw, Layers, Ramp, System, TangentKind, Trial};
 use sinew_core::{LoadTime, Velocities};
-use sinew_fem::hyperelastic::fibres::{Fibres, Stiffening};
 use sinew_fem::hyperelastic::Hyperelastic;
+use sinew_fem::hyperelastic::fibres::{Fibres, Stiffening};
 use sinew_fem::{Course, Element, FibreFamily, Law, Model, Moving, Problem, Tissue};
 use sinew_mesh::TetMesh;
 

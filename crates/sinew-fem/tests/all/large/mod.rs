@@ -1,5 +1,6 @@
 //! Large deformation.
 
+mod added_laws;
 mod damping;
 mod fibrous_bodies;
 mod hyperelastic_bodies;

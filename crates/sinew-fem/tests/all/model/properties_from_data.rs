@@ -9,9 +9,9 @@ use sinew_core::{
     BlockMatrix, ElasticLaw, Inputs, Layers, LinearSystem, LoadTime, State, System, TangentKind,
     Trial,
 };
+use sinew_fem::hyperelastic::Hyperelastic;
 use sinew_fem::hyperelastic::fibres::{Fibres, Stiffening};
 use sinew_fem::hyperelastic::prony::Term;
-use sinew_fem::hyperelastic::Hyperelastic;
 use sinew_fem::{
     Element, FibreFamily, FromMesh, Law, LoadKind, Memory, Model, Moduli, Problem, SpringRule,
     ViscousPart,
