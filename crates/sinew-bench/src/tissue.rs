@@ -37,7 +37,8 @@ pub enum TissueError {
     Model(#[from] FemError),
 }
 
-/// A hyperelastic law with these moduli at small strain, and example values of its other parameters; one that does not exist is refused by the model.
+/// A hyperelastic law with these moduli at small strain, and example values of its other parameters; one that does not
+/// exist is refused by the model.
 pub(crate) fn law(id: &'static str, youngs_modulus: f64, poissons_ratio: f64) -> Law {
     let parameters = Hyperelastic::parameters(id, youngs_modulus, poissons_ratio);
     let parameters = parameters.unwrap_or_else(|_| Parameters::new(youngs_modulus, poissons_ratio));

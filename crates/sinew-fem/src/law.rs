@@ -60,7 +60,8 @@ impl Law {
         }
     }
 
-    /// Poisson's ratio at small strain; `None` for springs, NaN for a law that does not exist or cannot have its parameters.
+    /// Poisson's ratio at small strain; `None` for springs, NaN for a law that does not exist or cannot have its
+    /// parameters.
     #[must_use]
     pub fn poissons_ratio(&self) -> Option<f64> {
         match self {
@@ -214,7 +215,8 @@ impl fmt::Display for Law {
     }
 }
 
-/// Young's modulus (Pa) and Poisson's ratio of a law at small strain, as they are stated or as they follow; NaN if there is no such law.
+/// Young's modulus (Pa) and Poisson's ratio of a law at small strain, as they are stated or as they follow; NaN if
+/// there is no such law.
 fn constants(id: &str, parameters: &Parameters) -> [f64; 2] {
     let [modulus, ratio] = parameters.stated();
     if let (Some(modulus), Some(ratio)) = (modulus, ratio) {

@@ -6,8 +6,8 @@ use sinew_fem::hyperelastic::{
 };
 use sinew_sparse::simd::Number;
 
-/// `psi = mu/(2 b) (exp(b (I1 - 3)) - 1) - mu ln J + lambda/2 (J - 1)^2` (Demiray, Journal of Biomechanics 5, 1972, with the volume terms of
-/// Simo and Pister): tissue that stiffens exponentially. Refused at J <= 0.
+/// `psi = mu/(2 b) (exp(b (I1 - 3)) - 1) - mu ln J + lambda/2 (J - 1)^2` (Demiray, Journal of Biomechanics 5, 1972,
+/// with the volume terms of Simo and Pister): tissue that stiffens exponentially. Refused at J <= 0.
 #[derive(Clone, Copy, Debug)]
 pub struct Demiray {
     lambda: f64,

@@ -1,15 +1,17 @@
 //! A law of large deformation written outside sinew's crates.
 //!
-//! A law is a struct that implements [`HyperelasticLaw`](sinew_fem::hyperelastic::HyperelasticLaw): its energy, stress and tangent, and its parameters, from
-//! which keys of scenes, their checks and their help follow. `src/demiray.rs` is the whole law, with a parameter that no other law has.
-//! [`register`](sinew_fem::hyperelastic::register) adds it to the models that scenes know; its loops are compiled for its own type.
+//! A law is a struct that implements [`HyperelasticLaw`](sinew_fem::hyperelastic::HyperelasticLaw): its energy, stress
+//! and tangent, and its parameters, from which keys of scenes, their checks and their help follow. `src/demiray.rs` is
+//! the whole law, with a parameter that no other law has. [`register`](sinew_fem::hyperelastic::register) adds it to
+//! the models that scenes know; its loops are compiled for its own type.
 //!
 //! ```sh
 //! cargo test              # the suite that every law passes
 //! cargo run --release     # a scene with the law, against its closed form
 //! ```
 //!
-//! The example ends with an error unless a cube that is pressed between its sides comes to rest at the stretch of the closed form.
+//! The example ends with an error unless a cube that is pressed between its sides comes to rest at the stretch of the
+//! closed form.
 
 mod demiray;
 

@@ -12,10 +12,12 @@ use super::tensor::Tensor;
 
 /// A hyperelastic law of an isotropic material without a type of its own, such as one that a script states.
 ///
-/// Each method is called once for a tetrahedron: force loops on vectors take ten times as long as with a [`HyperelasticLaw`], whose loops are compiled for its
-/// type. The energy is split as there, with the dilation `J - 1`. Deformations with `J <= 0` are refused.
+/// Each method is called once for a tetrahedron: force loops on vectors take much longer than with a
+/// [`HyperelasticLaw`], whose loops are compiled for its type. The energy is split as there, with the dilation `J - 1`.
+/// Deformations with `J <= 0` are refused.
 ///
-/// Arguments are gradients of the displacement: row i, column j is `du_i/dX_j`. Stresses are first Piola-Kirchhoff ones (Pa).
+/// Arguments are gradients of the displacement: row i, column j is `du_i/dX_j`. Stresses are first Piola-Kirchhoff ones
+/// (Pa).
 pub trait PointLaw: Debug + Send + Sync {
     /// Name in messages.
     fn id(&self) -> &'static str;

@@ -532,7 +532,8 @@ pub fn the_dilation_is_that_of_the_viscosity<L: HyperelasticLaw>(law: L) {
     }
 }
 
-/// Vectors of every instruction set give the stresses of plain numbers. Tangents are the same operations, and would take minutes to compile.
+/// Vectors of every instruction set give the stresses of plain numbers. Tangents are the same operations, and would
+/// take minutes to compile.
 pub fn vectors_are_plain_numbers<L: HyperelasticLaw>(law: L) {
     for set in InstructionSet::available() {
         let is_there = [set.with_f64(OnLanes(law)), set.with_f32(OnLanes(law))];

@@ -21,8 +21,9 @@ pub const SMALLEST_VOLUME_RATIO: f64 = 1e-6;
 /// A law is written over any [`Number`]: the same text serves f64, f32 and vectors. Stresses are first Piola-Kirchhoff ones, `P = d psi/dF`
 /// (Pa), and the tangent is their change by a change of F.
 ///
-/// A law is a struct in one file, which states its parameters; scenes, checks, help and error texts follow from them. Those of this crate and of others are
-/// alike: [`super::register`] adds one to those that scenes and [`crate::Law`] know, and force loops are compiled for its own type.
+/// A law is a struct in one file, which states its parameters; scenes, checks, help and error texts follow from them.
+/// Those of this crate and of others are alike: [`super::register`] adds one to those that scenes and [`crate::Law`]
+/// know, and force loops are compiled for its own type.
 /// [`super::conformance`] checks a law.
 pub trait HyperelasticLaw: Copy + Debug + Send + Sync {
     /// Name in scenes.
@@ -33,7 +34,8 @@ pub trait HyperelasticLaw: Copy + Debug + Send + Sync {
     const PARAMETERS: &'static [LawParameter];
     /// Warning to whoever takes the law in a scene, and advice; `None` for most.
     const WEAKNESS: Option<[&'static str; 2]> = None;
-    /// True if the law overrides [`Self::dilation`], so that its viscosity takes that measure of volume in place of `J - 1`.
+    /// True if the law overrides [`Self::dilation`], so that its viscosity takes that measure of volume in place of
+    /// `J - 1`.
     const OWN_DILATION: bool = false;
     /// Whether it is defined where J <= 0.
     const DEFINED_WHEN_INVERTED: bool;

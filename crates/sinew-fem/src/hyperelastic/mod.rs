@@ -21,6 +21,7 @@ mod decomposition;
 mod deformation;
 pub mod fibres;
 mod law;
+mod law_error;
 mod mooney_rivlin;
 mod neo_hookean;
 mod neo_hookean_iso;
@@ -42,6 +43,7 @@ pub use corotational::Corotational;
 pub use decomposition::SingularValues;
 pub use deformation::Deformation;
 pub use law::{Bulk, HyperelasticLaw, NodeBlock, Point, SMALLEST_VOLUME_RATIO};
+pub use law_error::LawError;
 pub use mooney_rivlin::MooneyRivlin;
 pub use neo_hookean::NeoHookean;
 pub use neo_hookean_iso::NeoHookeanIso;
@@ -50,7 +52,7 @@ pub use parameters::{LawParameter, LawValues, ParameterError, Parameters, Presen
 pub(crate) use projection::semidefinite;
 pub use projection::{Linearised, Projection, TangentKind};
 pub use registry::{
-    Hyperelastic, KnownLaw, LawError, MakeBoxed, RegisterError, known_law, known_laws, register,
+    Hyperelastic, KnownLaw, MakeBoxed, RegisterError, known_law, known_laws, register,
     register_boxed,
 };
 pub use samples::sample_deformations;

@@ -92,7 +92,8 @@ impl LawParameter {
     )
     .unit(PASCAL);
 
-    /// Poisson's ratio at small strain. Below 0 Lame's first constant is negative, and the volumetric energy has no minimum.
+    /// Poisson's ratio at small strain. Below 0 Lame's first constant is negative, and the volumetric energy has no
+    /// minimum.
     pub const POISSONS_RATIO: Self = Self::number(
         "poissons_ratio",
         "nu",
@@ -108,7 +109,8 @@ impl LawParameter {
     /// [`Self::YOUNGS_MODULUS`] and [`Self::POISSONS_RATIO`]: all parameters of most laws.
     pub const MODULI: &'static [Self] = &[Self::YOUNGS_MODULUS, Self::POISSONS_RATIO];
 
-    /// [`Self::POISSONS_RATIO`] or [`Self::BULK_MODULUS`], for laws with shear constants of their own ([`LawValues::lambda`]).
+    /// [`Self::POISSONS_RATIO`] or [`Self::BULK_MODULUS`], for laws with shear constants of their own
+    /// ([`LawValues::lambda`]).
     pub const VOLUME: [Self; 2] = {
         const NAMES: &[&str] = &["poissons_ratio", "bulk_modulus"];
         [
@@ -392,12 +394,13 @@ impl<'a> LawValues<'a> {
         lame(modulus, self.number(&LawParameter::POISSONS_RATIO))
     }
 
-    /// Lame's first constant (Pa) to a shear modulus (Pa), by [`LawParameter::POISSONS_RATIO`] or [`LawParameter::BULK_MODULUS`], whichever is
-    /// given.
+    /// Lame's first constant (Pa) to a shear modulus (Pa), by [`LawParameter::POISSONS_RATIO`] or
+    /// [`LawParameter::BULK_MODULUS`], whichever is given.
     ///
     /// # Errors
     ///
-    /// [`ParameterError`] for a bulk modulus below 2/3 of the shear modulus, with which Poisson's ratio would be below 0.
+    /// [`ParameterError`] for a bulk modulus below 2/3 of the shear modulus, with which Poisson's ratio would be below
+    /// 0.
     pub fn lambda(&self, mu: f64) -> Result<f64, ParameterError> {
         if let Some(bulk) = self.given(&LawParameter::BULK_MODULUS) {
             let lambda = bulk - 2.0 / 3.0 * mu;

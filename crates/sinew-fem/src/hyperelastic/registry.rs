@@ -6,6 +6,7 @@ use std::sync::{Arc, PoisonError, RwLock};
 use super::boxed::PointLaw;
 use super::corotational::Corotational;
 use super::law::{HyperelasticLaw, NodeBlock};
+use super::law_error::LawError;
 use super::mooney_rivlin::MooneyRivlin;
 use super::neo_hookean::NeoHookean;
 use super::neo_hookean_iso::NeoHookeanIso;
@@ -53,8 +54,8 @@ static ADDED: RwLock<Vec<&'static KnownLaw>> = RwLock::new(Vec::new());
 /// The models that are no laws of large deformation.
 const RESERVED: [&str; 2] = ["linear", "springs"];
 
-/// Adds a law, so that scenes and [`crate::Law::Hyperelastic`] know it by its id, for as long as the program runs. Its loops are compiled for its own
-/// type, as those of this crate's laws are.
+/// Adds a law, so that scenes and [`crate::Law::Hyperelastic`] know it by its id, for as long as the program runs. Its
+/// loops are compiled for its own type, as those of this crate's laws are.
 ///
 /// # Errors
 ///
@@ -67,7 +68,8 @@ pub fn register<L: HyperelasticLaw + 'static>() -> Result<(), RegisterError> {
 pub type MakeBoxed =
     Box<dyn Fn(&LawValues<'_>) -> Result<Arc<dyn PointLaw>, ParameterError> + Send + Sync>;
 
-/// Adds a law that is known at run time only, as [`register`] adds others; slower by far ([`PointLaw`]). `meaning` is its use in half a sentence.
+/// Adds a law that is known at run time only, as [`register`] adds others; slower by far ([`PointLaw`]). `meaning` is
+/// its use in half a sentence.
 ///
 /// # Errors
 ///
@@ -184,7 +186,8 @@ impl KnownLaw {
     ///
     /// # Errors
     ///
-    /// [`ParameterError`] for a parameter that is missing, outside its range or another law's, or for values that do not go together.
+    /// [`ParameterError`] for a parameter that is missing, outside its range or another law's, or for values that do
+    /// not go together.
     pub fn make(&self, parameters: &Parameters) -> Result<Hyperelastic, ParameterError> {
         let values = parameters.checked(self.id, self.parameters)?;
         match &self.make {
@@ -193,7 +196,8 @@ impl KnownLaw {
         }
     }
 
-    /// Parameters at their example values, but with this Young's modulus (Pa) and Poisson's ratio at small strain: moduli are multiplied by one factor.
+    /// Parameters at their example values, but with this Young's modulus (Pa) and Poisson's ratio at small strain:
+    /// moduli are multiplied by one factor.
     ///
     /// # Errors
     ///
@@ -243,7 +247,8 @@ impl Hyperelastic {
         Ok(found(id)?.make(parameters)?)
     }
 
-    /// Example parameters of the law with an id, with this Young's modulus (Pa) and Poisson's ratio at small strain ([`KnownLaw::with_moduli`]).
+    /// Example parameters of the law with an id, with this Young's modulus (Pa) and Poisson's ratio at small strain
+    /// ([`KnownLaw::with_moduli`]).
     ///
     /// # Errors
     ///
@@ -310,7 +315,8 @@ impl Hyperelastic {
         self.0.tangent(h, change)
     }
 
-    /// A node's own block (Pa/m^2) of a tetrahedron by itself, by the gradient (1/m) of its shape function ([`HyperelasticLaw::node_block`]).
+    /// A node's own block (Pa/m^2) of a tetrahedron by itself, by the gradient (1/m) of its shape function
+    /// ([`HyperelasticLaw::node_block`]).
     #[must_use]
     pub fn node_block(&self, h: Tensor<f64>, gradient: [f64; 3]) -> Tensor<f64> {
         self.0.node_block(h, gradient)
@@ -339,22 +345,6 @@ fn found(id: &str) -> Result<&'static KnownLaw, LawError> {
         id: id.to_owned(),
         known: known_laws().iter().map(|known| known.id).collect(),
     })
-}
-
-/// A law that does not exist, or cannot have its parameters.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum LawError {
-    /// No law has this id.
-    #[error("no law is called `{id}`; there are {}", known.join(", "))]
-    Unknown {
-        /// The id.
-        id: String,
-        /// The ids that are known.
-        known: Vec<&'static str>,
-    },
-    /// The law cannot have these parameters.
-    #[error(transparent)]
-    Parameter(#[from] ParameterError),
 }
 
 /// A law that cannot be added.

@@ -8,12 +8,15 @@ use super::mooney_rivlin::Isochoric;
 use super::parameters::{LawParameter, LawValues, ParameterError, Range};
 use super::tensor::Tensor;
 
-/// `psi = c1 i + c2 i^2 + c3 i^3 + kappa/2 (J - 1)^2` with `i = J^-2/3 I1 - 3`, `mu = 2 c1` and `kappa = lambda + 2/3 mu`.
+/// `psi = c1 i + c2 i^2 + c3 i^3 + kappa/2 (J - 1)^2` with `i = J^-2/3 I1 - 3`, `mu = 2 c1` and
+/// `kappa = lambda + 2/3 mu`.
 ///
-/// Yeoh (Rubber Chemistry and Technology 66, 1993); the invariant without change of volume after Flory (Transactions of the Faraday Society 57, 1961).
+/// Yeoh (Rubber Chemistry and Technology 66, 1993); the invariant without change of volume after Flory (Transactions of
+/// the Faraday Society 57, 1961).
 ///
-/// For tissue and rubber that stiffen with stretch, alike in all directions; its curves of tension and shear are bent by c2 and c3 alone. With c2 or c3
-/// below 0 it may soften, and a state beyond that need not be stable. Not where elements may invert: refused at J <= 0.
+/// For tissue and rubber that stiffen with stretch, alike in all directions; its curves of tension and shear are bent
+/// by c2 and c3 alone. With c2 or c3 below 0 it may soften, and a state beyond that need not be stable. Not where
+/// elements may invert: refused at J <= 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Yeoh {
     lambda: f64,
@@ -32,7 +35,7 @@ const C: LawParameter = LawParameter::number(
 .list(1, 3);
 
 impl Yeoh {
-    /// `psi = sum c_i i^i`: its first and second derivative by i.
+    /// First and second derivative of `c1 i + c2 i^2 + c3 i^3` by i.
     #[inline(always)]
     fn slopes<N: Number>(&self, at: &Point<N, Isochoric<N>>) -> [N; 2] {
         let own = &at.own;
@@ -137,7 +140,8 @@ impl HyperelasticLaw for Yeoh {
             .plus(bulk * at.volume_change, turned)
     }
 
-    /// The exact block, with derivatives of psi by i that are below 0 taken as 0: the gradient of i is an outer product in it, and i is rank-one convex.
+    /// The exact block, with derivatives of psi by i that are below 0 taken as 0: the gradient of i is an outer product
+    /// in it, and i is rank-one convex.
     #[inline(always)]
     fn node_block<N: Number>(
         &self,
@@ -202,7 +206,8 @@ mod tests {
         }
     }
 
-    /// Simple shear by g keeps the volume and has `I1 - 3 = g^2`: the shear stress is `2 g psi'`, whatever the bulk modulus.
+    /// Simple shear by g keeps the volume and has `I1 - 3 = g^2`: the shear stress is `2 g psi'`, whatever the bulk
+    /// modulus.
     #[test]
     fn simple_shear_has_its_closed_form() {
         let c = [600.0, -40.0, 12.0];

@@ -382,7 +382,7 @@ mod tests {
             }],
             ..Problem::default()
         };
-        let smoothing = Smoothing::new(mesh, &problem, &vec![0; mesh.tets.len()]);
+        let smoothing = Smoothing::new(mesh, &problem.elements(), &vec![0; mesh.tets.len()]);
         let tets: Vec<u32> = (0..mesh.tets.len() as u32).collect();
         let uneven = || (0..mesh.tets.len()).map(|tet| (tet as f64 * 1.7).sin());
         let shares: Vec<f64> = uneven().map(|x| 0.6 + 0.4 * x).collect();

@@ -6,7 +6,8 @@ use super::region::HyperelasticRegion;
 use crate::hyperelastic::prony::first_piola;
 use crate::hyperelastic::{Bulk, HyperelasticLaw, Point};
 
-/// The Cauchy stress (Pa), `P F'/J`, of a tetrahedron, with the displacement (m) of each mesh node; NaN if the law, fibres or memory are undefined there.
+/// The Cauchy stress (Pa), `P F'/J`, of a tetrahedron, with the displacement (m) of each mesh node; NaN if the law,
+/// fibres or memory are undefined there.
 pub(crate) struct Cauchy<'a> {
     pub(super) region: &'a HyperelasticRegion,
     pub(super) tet: usize,

@@ -110,7 +110,7 @@ impl<V: Kind, P> Key<V, P> {
     }
 }
 
-/// What holds of a key that is left out, by one of its conditions.
+/// The rule for a key that is left out, narrowed by one of its conditions.
 fn narrowed(otherwise: Stated, condition: &Condition) -> Stated {
     match (otherwise, condition.required) {
         (Stated::Required, Some((key, words))) => Stated::RequiredWith(key, words().to_vec()),

@@ -297,20 +297,23 @@ impl<'a> Table<'a> {
         self.entries.get(key)?.get_ref().as_str()
     }
 
-    /// False for a key that does not go with a word that another key holds, or that goes with a key of which this is false.
+    /// False for a key that does not go with a word that another key holds, or that goes with a key of which this is
+    /// false.
     fn may_be_given(&self, key: &dyn Described) -> bool {
         let is_possible = |other: &str| {
             let keys = self.description.all_keys();
             let other = keys.into_iter().find(|key| key.name() == other);
             other.is_none_or(|other| self.may_be_given(other))
         };
-        key.conditions().iter().all(|condition| match condition.goes {
-            Goes::With(other) => is_possible(other),
-            Goes::If(other, _) | Goes::Among(other, _) => {
-                is_possible(other) && (self.word(other).is_none() || self.meets(condition))
-            }
-            Goes::Without(_) | Goes::Never => true,
-        })
+        key.conditions()
+            .iter()
+            .all(|condition| match condition.goes {
+                Goes::With(other) => is_possible(other),
+                Goes::If(other, _) | Goes::Among(other, _) => {
+                    is_possible(other) && (self.word(other).is_none() || self.meets(condition))
+                }
+                Goes::Without(_) | Goes::Never => true,
+            })
     }
 
     fn misplaced(&self, key: &'static str, condition: &Condition) -> SceneError {

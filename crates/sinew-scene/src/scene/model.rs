@@ -115,7 +115,8 @@ struct Models {
 }
 
 impl Models {
-    /// The models that are known now. Each state of the registry is kept for good: programs add laws once, at their beginning.
+    /// The models that are known now. Each state of the registry is kept for good: programs add laws once, at their
+    /// beginning.
     fn known() -> &'static Self {
         static KNOWN: Mutex<Option<(usize, &'static Models)>> = Mutex::new(None);
         let laws = known_laws();
@@ -207,7 +208,8 @@ pub(super) fn always_by_ratio() -> &'static [&'static str] {
     &Models::known().always_by_ratio
 }
 
-/// True for a parameter whose key is that of other models too, [`super::region::YOUNGS_MODULUS`] and [`super::region::POISSONS_RATIO`].
+/// True for a parameter whose key is that of other models too, [`super::region::YOUNGS_MODULUS`] and
+/// [`super::region::POISSONS_RATIO`].
 pub(super) fn is_shared(parameter: &LawParameter) -> bool {
     let shared = [LawParameter::YOUNGS_MODULUS, LawParameter::POISSONS_RATIO];
     shared.iter().any(|shared| shared.name == parameter.name)
@@ -288,7 +290,7 @@ struct LawKey {
 }
 
 impl LawKey {
-    /// What laws say of it, each thing once.
+    /// Statements of laws about it, each once.
     fn said(&self, of: impl Fn(&LawParameter) -> String) -> Vec<String> {
         let mut all: Vec<String> = Vec::new();
         for (_, parameter) in &self.laws {
@@ -417,7 +419,8 @@ pub(super) fn read(
     Ok(read)
 }
 
-/// Refuses a region that leaves out a parameter which must be given, or gives none or several of those of which one must.
+/// Refuses a region that leaves out a parameter which must be given, or gives none or several of those of which one
+/// must.
 pub(super) fn require(
     table: &Table<'_>,
     parameter: &'static LawParameter,

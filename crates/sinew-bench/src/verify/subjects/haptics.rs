@@ -86,7 +86,7 @@ fn checks() -> Vec<Check> {
             "local stiffness over the slope of the settled force",
             Asked::value(1.0, 0.01),
             Source::Independent("difference of forces at rest, .1 mm above and below"),
-            move |_| stiffness_over_slope(law),
+            move |_| stiffness_over_slope(law.clone()),
         ));
     }
     checks
