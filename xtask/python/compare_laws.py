@@ -27,8 +27,8 @@ def energy_of(case):
     name = case["law"]
     if name in laws.LAWS:
         la, mu = laws.lame(case["youngs_modulus"], case["poissons_ratio"])
-        ratio = [case["c1_over_c2"]] if case["c1_over_c2"] is not None else []
-        return lambda f: laws.LAWS[name](f, la, mu, *ratio)
+        own = [case[key] for key in laws.OWN if key in case]
+        return lambda f: laws.LAWS[name](f, la, mu, *own)
     direction = [mpf(x) for x in case["direction"]]
     if "eta" in case:
         return lambda f: laws.quadratic_fibres(f, direction, case["eta"])

@@ -92,6 +92,14 @@ def stvk(f, la, mu):
     return mu * first_invariant(e) + la / 2 * (e[0][0] + e[1][1] + e[2][2]) ** 2
 
 
+def yeoh(f, la, mu, c=(1, mpf(1) / 10, mpf(1) / 30)):
+    """c1 is mu/2; c gives the ratios of the three constants."""
+    j = determinant(f)
+    first = mp.cbrt(j) ** -2 * first_invariant(f) - 3
+    shape = sum(mpf(own) / mpf(c[0]) * first ** (i + 1) for i, own in enumerate(c))
+    return mu / 2 * shape + (la + 2 * mu / 3) / 2 * (j - 1) ** 2
+
+
 LAWS = {
     "neo-hookean": neo_hookean,
     "stable-neo-hookean": stable_neo_hookean,
@@ -101,7 +109,11 @@ LAWS = {
     "neo-hookean-log": neo_hookean_log,
     "neo-hookean-iso": neo_hookean_iso,
     "stable-neo-hookean-log": stable_neo_hookean_log,
+    "yeoh": yeoh,
 }
+
+# Parameters that laws take beside moduli.
+OWN = ["c1_over_c2", "c"]
 
 INVERTIBLE = ["stable-neo-hookean", "corotational", "stvk", "stable-neo-hookean-log"]
 

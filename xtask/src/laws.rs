@@ -6,8 +6,7 @@ use serde_json::{Value, json};
 use sinew_bench::output::{OutputFolder, say};
 use sinew_fem::hyperelastic::fibres::{Fibres, Stiffening};
 use sinew_fem::hyperelastic::{
-    Deformation, Hyperelastic, HyperelasticLaw, LawVisitor, NeoHookean, Parameters, Tensor,
-    sample_deformations,
+    Deformation, Hyperelastic, LawParameter, NeoHookean, Tensor, sample_deformations,
 };
 
 use crate::failure::Failure;
@@ -60,41 +59,34 @@ fn flat(tensor: Tensor<f64>) -> Value {
 
 /// A law's energies, stresses and tangents.
 fn of_law(id: &str) -> Result<Value, Failure> {
-    let parameters = Parameters {
-        c1_over_c2: (id == "mooney-rivlin").then_some(4.0),
-        ..Parameters::new(3500.0, 0.45)
-    };
+    let parameters = Hyperelastic::parameters(id, 3500.0, 0.45).map_err(Failure::chore)?;
     let law = Hyperelastic::new(id, &parameters).map_err(Failure::chore)?;
-    Ok(json!({
+    let samples = law.samples().into_iter().take(SAMPLES);
+    let samples = samples.map(|[h, change]| {
+        json!({
+            "h": flat(h),
+            "change": flat(change),
+            "energy": law.energy(h),
+            "stress": flat(law.stress(h)),
+            "tangent": flat(law.tangent(h, change)),
+        })
+    });
+    let mut case = json!({
         "law": id,
-        "youngs_modulus": parameters.youngs_modulus,
-        "poissons_ratio": parameters.poissons_ratio.to_string(),
-        "c1_over_c2": parameters.c1_over_c2,
-        "scale": parameters.youngs_modulus,
-        "samples": law.with_law(Samples),
-    }))
-}
-
-struct Samples;
-
-impl LawVisitor for Samples {
-    type Output = Vec<Value>;
-
-    fn visit<L: HyperelasticLaw>(self, law: L) -> Vec<Value> {
-        let samples = sample_deformations::<L>().take(SAMPLES);
-        let samples = samples.map(|[h, change]| {
-            let at = law.at(h);
-            let bulk = law.own_bulk(&at);
-            json!({
-                "h": flat(h),
-                "change": flat(change),
-                "energy": law.whole_energy(&at),
-                "stress": flat(law.stress_with(&at, bulk)),
-                "tangent": flat(law.tangent_with(&at, bulk, change)),
-            })
-        });
-        samples.collect()
+        "youngs_modulus": 3500.0,
+        "poissons_ratio": "0.45",
+        "scale": 3500.0,
+        "samples": samples.collect::<Vec<_>>(),
+    });
+    let moduli = [LawParameter::YOUNGS_MODULUS, LawParameter::POISSONS_RATIO];
+    let is_own = |name: &str| moduli.iter().all(|known| known.name != name);
+    for (name, values) in parameters.iter().filter(|(name, _)| is_own(name)) {
+        case[name] = match values {
+            [value] => json!(value),
+            list => json!(list),
+        };
     }
+    Ok(case)
 }
 
 /// The same of fibres by themselves.

@@ -3,7 +3,7 @@
 use std::f64::consts::{PI, TAU};
 
 use sinew_core::{Integrator, LinearSystem, Ramp, State, StepError, StepReport, System};
-use sinew_fem::hyperelastic::Parameters;
+use sinew_fem::hyperelastic::{Hyperelastic, Parameters};
 use sinew_fem::{
     Element, FemError, Fixed, FromMesh, Law, LoadKind, LoadSpec, Model, On, Problem, Rayleigh,
     Region, Tissue,
@@ -26,9 +26,6 @@ pub(crate) const EDGE: f64 = 0.1;
 /// Size (m) of the slender column.
 pub(crate) const COLUMN: [f64; 3] = [0.02, 0.02, 0.12];
 
-/// C1/C2 of the law of Mooney and Rivlin, which no other has.
-const C1_OVER_C2: f64 = 4.0;
-
 /// Why there is no such block.
 #[derive(Debug, thiserror::Error)]
 pub enum TissueError {
@@ -40,12 +37,11 @@ pub enum TissueError {
     Model(#[from] FemError),
 }
 
-/// A hyperelastic law with these moduli at small strain.
+/// A hyperelastic law with these moduli at small strain, and example values of its other parameters; one that does not
+/// exist is refused by the model.
 pub(crate) fn law(id: &'static str, youngs_modulus: f64, poissons_ratio: f64) -> Law {
-    let parameters = Parameters {
-        c1_over_c2: (id == "mooney-rivlin").then_some(C1_OVER_C2),
-        ..Parameters::new(youngs_modulus, poissons_ratio)
-    };
+    let parameters = Hyperelastic::parameters(id, youngs_modulus, poissons_ratio);
+    let parameters = parameters.unwrap_or_else(|_| Parameters::new(youngs_modulus, poissons_ratio));
     Law::Hyperelastic { id, parameters }
 }
 

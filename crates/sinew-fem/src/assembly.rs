@@ -79,8 +79,10 @@ pub(crate) fn assemble(
     add_averages(&mut stiffness, body, parts)?;
     clear_held(&mut stiffness, body);
     let hyperelastic = materials.iter().zip(&members);
-    let hyperelastic = hyperelastic
-        .filter_map(|(material, members)| Some((material.hyperelastic()?, members.as_slice())));
+    let hyperelastic = hyperelastic.filter_map(|(material, members)| {
+        let (law, stated) = material.hyperelastic()?;
+        Some((law, stated, members.as_slice()))
+    });
     let large = LargeDeformation::new(mesh, &body.smoothing, hyperelastic);
     Ok(Assembled {
         stiffness,

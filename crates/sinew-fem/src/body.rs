@@ -37,8 +37,8 @@ impl Body {
         problem: &Problem,
         region_of: &[u32],
     ) -> Result<Self, FemError> {
-        let cells = Cells::new(mesh, problem)?;
-        let smoothing = Smoothing::new(mesh, problem, region_of);
+        let cells = Cells::new(mesh, (&problem.fixed, &problem.moves))?;
+        let smoothing = Smoothing::new(mesh, &problem.elements(), region_of);
         let (low, high) = mesh.bounding_box();
         let all = if smoothing.is_empty() {
             Arc::clone(graph)

@@ -3,7 +3,7 @@
 use sinew_mesh::TetMesh;
 
 use crate::error::{Cause, FemError, Item};
-use crate::{Fixed, Problem};
+use crate::{Fixed, Moving};
 
 /// Marks a node that is not a cell.
 const HELD: u32 = u32::MAX;
@@ -24,8 +24,12 @@ pub(crate) struct Cells {
 }
 
 impl Cells {
-    pub(crate) fn new(mesh: &TetMesh, problem: &Problem) -> Result<Self, FemError> {
-        let held = held_axes(mesh, problem)?;
+    /// The cells of a body with these supports and prescribed motions.
+    pub(crate) fn new(
+        mesh: &TetMesh,
+        (fixed, moves): (&[Fixed], &[Moving]),
+    ) -> Result<Self, FemError> {
+        let held = held_axes(mesh, (fixed, moves))?;
         let mut cell_of_node = vec![HELD; held.len()];
         let (mut nodes, mut pinned, mut held_nodes) = (Vec::new(), Vec::new(), Vec::new());
         for (node, axes) in held.iter().enumerate() {
@@ -41,8 +45,8 @@ impl Cells {
         if nodes.is_empty() {
             let nodes = held.len();
             let last = |list: usize| list.checked_sub(1);
-            let moved = last(problem.moves.len()).map(Item::Move);
-            let item = moved.or(last(problem.fixed.len()).map(Item::Fixed));
+            let moved = last(moves.len()).map(Item::Move);
+            let item = moved.or(last(fixed.len()).map(Item::Fixed));
             let item = item.unwrap_or(Item::Mesh);
             return Err(FemError::new(item, Cause::NothingFree { nodes }));
         }
@@ -84,9 +88,9 @@ impl Cells {
     pub(crate) fn first_held_otherwise(
         &self,
         mesh: &TetMesh,
-        problem: &Problem,
+        by: (&[Fixed], &[Moving]),
     ) -> Result<Option<u32>, FemError> {
-        let held = held_axes(mesh, problem)?;
+        let held = held_axes(mesh, by)?;
         let as_here = |node: u32, axes: &[bool; 3]| {
             (0..3).all(|axis| axes[axis] == self.free_dof(node, axis).is_none())
         };
@@ -129,9 +133,12 @@ impl Cells {
 }
 
 /// The components of each node that do not move by themselves: held, or moved from outside.
-fn held_axes(mesh: &TetMesh, problem: &Problem) -> Result<Vec<[bool; 3]>, FemError> {
-    let mut held = supported(mesh, &problem.fixed)?;
-    for (index, moving) in problem.moves.iter().enumerate() {
+fn held_axes(
+    mesh: &TetMesh,
+    (fixed, moves): (&[Fixed], &[Moving]),
+) -> Result<Vec<[bool; 3]>, FemError> {
+    let mut held = supported(mesh, fixed)?;
+    for (index, moving) in moves.iter().enumerate() {
         let item = Item::Move(index);
         for node in moving.on.nodes(mesh).map_err(FemError::at(item))? {
             for (held, axis) in held[node as usize].iter_mut().zip(moving.axes) {

@@ -1,7 +1,6 @@
 //! Checks of a problem's numbers before anything is built.
 
 use crate::error::{Cause, FemError, Item};
-use crate::hyperelastic::Hyperelastic;
 use crate::number::{require, require_finite};
 use crate::{Element, Law, LoadKind, Problem, motion};
 
@@ -15,25 +14,21 @@ pub(crate) fn numbers(problem: &Problem) -> Result<(), FemError> {
         region.law.check(item)?;
         region.element.check(item)?;
         region.tissue.check(&region.from_mesh, item)?;
-        match &region.law {
-            Law::Hyperelastic { id, parameters } => {
-                let [at_once, _] = region.tissue.moduli(parameters);
-                let law = Hyperelastic::new(id, &at_once);
-                let law = law.map_err(|error| match Hyperelastic::new(id, parameters) {
-                    Ok(_) => FemError::new(
-                        item,
-                        Cause::NoModuliAtOnce {
-                            poissons_ratio: at_once.poissons_ratio,
-                        },
-                    ),
-                    Err(_) => FemError::new(item, error.into()),
-                })?;
-                region.tissue.check_with(&law, item)?;
+        let [at_once, _] = region.tissue.moduli(&region.law);
+        match at_once.hyperelastic() {
+            Some(Ok(law)) => region.tissue.check_with(&law, item)?,
+            // The law as it is stated has been checked.
+            Some(Err(_)) => {
+                let poissons_ratio = at_once.poissons_ratio().unwrap_or(f64::NAN);
+                return Err(FemError::new(
+                    item,
+                    Cause::NoModuliAtOnce { poissons_ratio },
+                ));
             }
-            Law::Linear { .. } | Law::Springs { .. } if !region.tissue.is_plain() => {
+            None if !region.tissue.is_plain() => {
                 return Err(FemError::new(item, Cause::TissueOfSmallStrain));
             }
-            Law::Linear { .. } | Law::Springs { .. } => {}
+            None => {}
         }
         if matches!(region.law, Law::Springs { .. }) && region.element != Element::P1 {
             return Err(FemError::new(item, Cause::ElementOnSprings));

@@ -1,13 +1,15 @@
 //! Material laws as a user states them.
 
-use std::fmt;
+use std::fmt::{self, Write};
 
 use crate::error::{Cause, FemError, Item};
-use crate::hyperelastic::{Hyperelastic, LawError, ParameterError, Parameters};
+use crate::hyperelastic::{
+    Hyperelastic, KnownLaw, LawError, LawParameter, ParameterError, Parameters, known_law,
+};
 use crate::number::require;
 
 /// A material law: the way a material resists deformation.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Law {
     /// Isotropic linear elasticity on 4-node tetrahedra.
     Linear {
@@ -18,9 +20,9 @@ pub enum Law {
     },
     /// An isotropic solid under large deformation, see [`crate::hyperelastic`].
     Hyperelastic {
-        /// The law, one of [`Hyperelastic::IDS`].
+        /// Id of the law, one of [`crate::hyperelastic::known_laws`].
         id: &'static str,
-        /// Its parameters; Young's modulus and Poisson's ratio are those at small strain.
+        /// Its parameters; moduli are those at small strain.
         parameters: Parameters,
     },
     /// A network of springs along the edges. Its Poisson's ratio is 1/4 for any springs.
@@ -47,24 +49,73 @@ pub enum SpringRule {
 }
 
 impl Law {
-    /// Young's modulus (Pa).
+    /// Young's modulus (Pa) at small strain; NaN for a law that does not exist or cannot have its parameters.
     #[must_use]
     pub fn youngs_modulus(&self) -> f64 {
-        match *self {
+        match self {
             Self::Linear { youngs_modulus, .. } | Self::Springs { youngs_modulus, .. } => {
-                youngs_modulus
+                *youngs_modulus
             }
-            Self::Hyperelastic { parameters, .. } => parameters.youngs_modulus,
+            Self::Hyperelastic { id, parameters } => constants(id, parameters)[0],
         }
     }
 
-    /// Young's modulus (Pa), to be changed.
-    pub fn youngs_modulus_mut(&mut self) -> &mut f64 {
+    /// Poisson's ratio at small strain; `None` for springs, NaN for a law that does not exist or cannot have its
+    /// parameters.
+    #[must_use]
+    pub fn poissons_ratio(&self) -> Option<f64> {
+        match self {
+            Self::Linear { poissons_ratio, .. } => Some(*poissons_ratio),
+            Self::Hyperelastic { id, parameters } => Some(constants(id, parameters)[1]),
+            Self::Springs { .. } => None,
+        }
+    }
+
+    /// Multiplies the stiffness by a factor: Young's modulus, and whatever other moduli the law has.
+    pub fn scale_stiffness(&mut self, factor: f64) {
         match self {
             Self::Linear { youngs_modulus, .. } | Self::Springs { youngs_modulus, .. } => {
-                youngs_modulus
+                *youngs_modulus *= factor;
             }
-            Self::Hyperelastic { parameters, .. } => &mut parameters.youngs_modulus,
+            Self::Hyperelastic { id, parameters } => {
+                let law = known_law(id);
+                parameters.scale(law.map_or(&[], KnownLaw::parameters), factor, false);
+            }
+        }
+    }
+
+    /// Sets Young's modulus (Pa); that of a law with other moduli by scaling these.
+    pub fn set_youngs_modulus(&mut self, to: f64) {
+        match self {
+            Self::Linear { youngs_modulus, .. } | Self::Springs { youngs_modulus, .. } => {
+                *youngs_modulus = to;
+            }
+            Self::Hyperelastic { parameters, .. } => match parameters.stated() {
+                [Some(_), _] => parameters.set(LawParameter::YOUNGS_MODULUS.name, &[to]),
+                [None, _] => self.scale_stiffness(to / self.youngs_modulus()),
+            },
+        }
+    }
+
+    /// Multiplies the shear modulus of a law with an isochoric part by a factor; the bulk modulus stays.
+    pub(crate) fn scale_shear(&mut self, factor: f64) {
+        let Self::Hyperelastic { id, parameters } = self else {
+            return;
+        };
+        let [modulus, ratio] = constants(id, parameters);
+        let shear = factor * modulus / (2.0 * (1.0 + ratio));
+        let bulk = modulus / (3.0 * (1.0 - 2.0 * ratio));
+        let law = known_law(id);
+        parameters.scale(law.map_or(&[], KnownLaw::parameters), factor, true);
+        let constants = [
+            9.0 * bulk * shear / (3.0 * bulk + shear),
+            (3.0 * bulk - 2.0 * shear) / (2.0 * (3.0 * bulk + shear)),
+        ];
+        let names = [LawParameter::YOUNGS_MODULUS, LawParameter::POISSONS_RATIO];
+        for (parameter, value) in names.iter().zip(constants) {
+            if parameters.get(parameter.name).is_some() {
+                parameters.set(parameter.name, &[value]);
+            }
         }
     }
 
@@ -76,9 +127,7 @@ impl Law {
                 format!("linear elastic, E = {youngs_modulus} Pa, nu = {poissons_ratio}")
             }
             Self::Hyperelastic { id, parameters } => {
-                let (nu, ratio) = (parameters.poissons_ratio, parameters.c1_over_c2);
-                let ratio = ratio.map_or_else(String::new, |ratio| format!(", C1/C2 = {ratio}"));
-                format!("{id}, E = {youngs_modulus} Pa, nu = {nu} at small strain{ratio}")
+                hyperelastic_with_modulus(id, parameters, youngs_modulus)
             }
             Self::Springs {
                 rule, calibrate, ..
@@ -99,6 +148,14 @@ impl Law {
         }
     }
 
+    /// The law ready for computation; `None` unless it is of large deformation.
+    pub(crate) fn hyperelastic(&self) -> Option<Result<Hyperelastic, LawError>> {
+        match self {
+            Self::Hyperelastic { id, parameters } => Some(Hyperelastic::new(id, parameters)),
+            Self::Linear { .. } | Self::Springs { .. } => None,
+        }
+    }
+
     /// Whether it is a law of large deformation.
     #[must_use]
     pub fn is_hyperelastic(&self) -> bool {
@@ -111,18 +168,18 @@ impl Law {
             let expected = "a finite modulus above 0 Pa";
             require(item, "youngs_modulus", found, expected, found > 0.0)
         };
-        match *self {
+        match self {
             Self::Linear {
                 youngs_modulus,
                 poissons_ratio: nu,
             } => {
-                modulus(youngs_modulus)?;
-                let inside = nu > -1.0 && nu < 0.5;
+                modulus(*youngs_modulus)?;
+                let inside = *nu > -1.0 && *nu < 0.5;
                 let expected = "a number above -1 and below 0.5";
-                require(item, "poissons_ratio", nu, expected, inside)
+                require(item, "poissons_ratio", *nu, expected, inside)
             }
             Self::Hyperelastic { id, parameters } => {
-                let made = Hyperelastic::new(id, &parameters);
+                let made = Hyperelastic::new(id, parameters);
                 let refused = |error| match error {
                     LawError::Parameter(ParameterError::Value {
                         quantity,
@@ -143,10 +200,10 @@ impl Law {
                 damping_ratio,
                 ..
             } => {
-                modulus(youngs_modulus)?;
-                let fits = damping_ratio >= 0.0;
+                modulus(*youngs_modulus)?;
+                let fits = *damping_ratio >= 0.0;
                 let expected = "a finite number, 0 or above";
-                require(item, "damping_ratio", damping_ratio, expected, fits)
+                require(item, "damping_ratio", *damping_ratio, expected, fits)
             }
         }
     }
@@ -156,4 +213,54 @@ impl fmt::Display for Law {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.with_modulus(&self.youngs_modulus().to_string()))
     }
+}
+
+/// Young's modulus (Pa) and Poisson's ratio of a law at small strain, as they are stated or as they follow; NaN if
+/// there is no such law.
+fn constants(id: &str, parameters: &Parameters) -> [f64; 2] {
+    let [modulus, ratio] = parameters.stated();
+    if let (Some(modulus), Some(ratio)) = (modulus, ratio) {
+        return [modulus, ratio];
+    }
+    let made = Hyperelastic::new(id, parameters);
+    let made = made.map_or([f64::NAN; 2], |law| law.engineering_constants());
+    [modulus.unwrap_or(made[0]), ratio.unwrap_or(made[1])]
+}
+
+/// A law of large deformation in words: its constants at small strain, then its own parameters.
+fn hyperelastic_with_modulus(id: &str, parameters: &Parameters, modulus: &str) -> String {
+    let [_, nu] = constants(id, parameters);
+    let stated = parameters.stated();
+    let mut text = match (stated, Hyperelastic::new(id, parameters)) {
+        ([None, _], Ok(law)) => {
+            let (lambda, mu) = law.lame();
+            let bulk = lambda + 2.0 / 3.0 * mu;
+            format!(
+                "{id}, mu = {mu} Pa, E = {modulus} Pa, kappa = {bulk} Pa, nu = {nu} at small strain"
+            )
+        }
+        _ => format!("{id}, E = {modulus} Pa, nu = {nu} at small strain"),
+    };
+    let own = known_law(id).map_or(&[][..], KnownLaw::parameters);
+    let own = own.iter().filter(|parameter| {
+        let standard = [
+            LawParameter::YOUNGS_MODULUS.name,
+            LawParameter::POISSONS_RATIO.name,
+            LawParameter::BULK_MODULUS.name,
+        ];
+        !standard.contains(&parameter.name)
+    });
+    for parameter in own {
+        let values = parameters.get(parameter.name).unwrap_or_default();
+        let value = match (values, parameter.list) {
+            ([value], None) => value.to_string(),
+            _ => format!("{values:?}"),
+        };
+        let unit = match parameter.unit {
+            "" => String::new(),
+            unit => format!(" {unit}"),
+        };
+        let _ = write!(text, ", {} = {value}{unit}", parameter.symbol);
+    }
+    text
 }

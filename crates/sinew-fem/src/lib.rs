@@ -93,6 +93,7 @@
 mod assembly;
 mod body;
 mod border;
+mod boundary;
 mod by_tet;
 mod cells;
 mod check;
@@ -120,6 +121,7 @@ mod parts;
 mod places;
 mod problem;
 mod regions;
+mod relaxed;
 mod report;
 mod scales;
 mod shares;
@@ -133,6 +135,7 @@ mod vector_error;
 mod volumes;
 
 pub use body::smoothed_blocks;
+pub use boundary::{Course, Fixed, Moving};
 pub use cut_model::{CutModel, CutModelError, CutReport};
 pub use element::Element;
 pub use error::{Cause, FemError, Item};
@@ -143,7 +146,7 @@ pub use model::{
     SupportMotion, WithMemory,
 };
 pub use on::On;
-pub use problem::{Course, Fixed, LoadKind, LoadSpec, Moving, Problem, Rayleigh, Region};
+pub use problem::{LoadKind, LoadSpec, Problem, Rayleigh, Region};
 pub use report::{LoadFacts, ModelReport, MoveFacts, RegionFacts};
 pub use springs::NetworkModulus;
 pub use tissue::{FibreFamily, Memory, Moduli, Tissue, ViscousPart};

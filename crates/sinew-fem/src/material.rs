@@ -10,7 +10,7 @@ use crate::by_tet::RegionByTet;
 use crate::error::{Cause, FemError, Item};
 use crate::graph::Graph;
 use crate::hyperelastic::Hyperelastic;
-use crate::large::RegionLaw;
+use crate::large::{Compiled, RegionLaw};
 use crate::network::Network;
 use crate::shares::Shares;
 use crate::smoothing::SmoothedStrain;
@@ -57,9 +57,10 @@ impl Material {
         graph: &mut Graph<'_>,
         (members, volume): (&[u32], f64),
     ) -> Result<(Self, Option<Network>), FemError> {
-        let mut law = region.law;
+        let mut law = region.law.clone();
         let [_, largest] = by_tet.moduli;
-        *law.youngs_modulus_mut() *= largest;
+        law.scale_stiffness(largest);
+        let [law, _] = region.tissue.moduli(&law);
         let shares = by_tet.shares.clone();
         let mut network = None;
         let kind = match law {
@@ -71,8 +72,7 @@ impl Material {
                 element: region.element,
             },
             Law::Hyperelastic { id, parameters } => {
-                let [at_once, _] = region.tissue.moduli(&parameters);
-                let law = Hyperelastic::new(id, &at_once);
+                let law = Hyperelastic::new(id, &parameters);
                 Kind::Hyperelastic {
                     law: law.map_err(|error| FemError::new(Item::Mesh, error.into()))?,
                     element: region.element,
@@ -138,21 +138,24 @@ impl Material {
         matches!(self.kind, Kind::Hyperelastic { .. })
     }
 
-    /// What it is made of where it is of large deformation.
-    pub(crate) fn hyperelastic(&self) -> Option<RegionLaw<'_>> {
+    /// Its law and all else that loops read of it; `None` unless it is of large deformation.
+    pub(crate) fn hyperelastic(&self) -> Option<(Arc<dyn Compiled>, RegionLaw<'_>)> {
         match &self.kind {
             Kind::Hyperelastic {
                 law,
                 element,
                 tissue,
                 directions,
-            } => Some(RegionLaw {
-                law: *law,
-                edge_share: element.edge_share(),
-                tissue,
-                shares: &self.shares,
-                directions: directions.as_ref().map(|Directions(all)| &**all),
-            }),
+            } => {
+                let stated = RegionLaw {
+                    mu: law.lame().1,
+                    edge_share: element.edge_share(),
+                    tissue,
+                    shares: &self.shares,
+                    directions: directions.as_ref().map(|Directions(all)| &**all),
+                };
+                Some((law.compiled(), stated))
+            }
             Kind::Continuum { .. } | Kind::Springs { .. } => None,
         }
     }

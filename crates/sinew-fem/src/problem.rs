@@ -2,7 +2,7 @@
 
 use sinew_core::Ramp;
 
-use crate::{Element, FromMesh, Law, On, Tissue};
+use crate::{Element, Fixed, FromMesh, Law, Moving, On, Tissue};
 
 /// Materials, damping, supports, prescribed motions and loads of a body.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -19,6 +19,13 @@ pub struct Problem {
     pub loads: Vec<LoadSpec>,
     /// Acceleration of free fall (m/s^2), acting from t = 0.
     pub gravity: Option<[f64; 3]>,
+}
+
+impl Problem {
+    /// The element of each region.
+    pub(crate) fn elements(&self) -> Vec<Element> {
+        self.regions.iter().map(|region| region.element).collect()
+    }
 }
 
 /// A part of the body made of one material.
@@ -45,38 +52,6 @@ pub struct Rayleigh {
     pub mass: f64,
     /// beta (s).
     pub stiffness: f64,
-}
-
-/// A support: components of displacement that stay zero.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Fixed {
-    /// The part of the mesh that is held: all its nodes.
-    pub on: On,
-    /// Whether x, y and z are held.
-    pub axes: [bool; 3],
-}
-
-/// A prescribed motion: components of displacement that follow a course. All nodes move alike; the
-/// displacement is the sum of the courses.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Moving {
-    /// The part of the mesh that is moved: all its nodes.
-    pub on: On,
-    /// Whether x, y and z are prescribed; the other components stay free.
-    pub axes: [bool; 3],
-    /// The courses; without one the components are held.
-    pub courses: Vec<Course>,
-}
-
-/// A displacement in one direction, times a factor over time.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Course {
-    /// Displacement from rest (m) at factor 1; for [`Ramp::Linear`], whose factor is the time, the velocity (m/s). 0
-    /// along axes that are not prescribed.
-    pub displacement: [f64; 3],
-    /// The factor over time. An [`Ramp::Input`] must be given by [`sinew_core::Between::Line`] where the body has
-    /// stiffness damping or dashpots: a position that jumps has no velocity that damping could see.
-    pub ramp: Ramp,
 }
 
 /// A load: a force on a part of the mesh with a factor over time.

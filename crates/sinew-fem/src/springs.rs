@@ -11,6 +11,7 @@ use sinew_sparse::{AssemblyError, BlockMatrix, Layers, Pattern};
 
 use crate::SpringRule;
 use crate::tetra;
+pub use crate::tetra::EDGES;
 
 /// A spring between two nodes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,9 +21,6 @@ pub struct Spring {
     /// k (N/m).
     pub stiffness: f64,
 }
-
-/// The vertex pairs of a tetrahedron's six edges.
-pub const EDGES: [[usize; 2]; 6] = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]];
 
 /// The springs of some tetrahedra, one for each edge, in increasing order of their nodes.
 ///

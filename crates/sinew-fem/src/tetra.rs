@@ -2,6 +2,9 @@
 
 use nalgebra::{Matrix3, Matrix4x3, Vector3};
 
+/// The vertex pairs of a tetrahedron's six edges.
+pub const EDGES: [[usize; 2]; 6] = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]];
+
 /// Lame's constants (lambda, mu) (Pa) of Young's modulus (Pa) and Poisson's ratio.
 #[must_use]
 pub fn lame(youngs_modulus: f64, poissons_ratio: f64) -> (f64, f64) {

@@ -6,7 +6,6 @@ use crate::error::{Cause, FemError, Item};
 use crate::from_mesh::FromMesh;
 use crate::hyperelastic::fibres::Fibres;
 use crate::hyperelastic::prony::{self, Term};
-use crate::hyperelastic::{Hyperelastic, Parameters};
 use crate::number::require_finite;
 
 /// What tissue has beside an isotropic law; only laws of large deformation take any of it.
@@ -88,30 +87,6 @@ impl Tissue {
         Ok(())
     }
 
-    /// Refuses what does not go with a law.
-    pub(crate) fn check_with(&self, law: &Hyperelastic, item: Item) -> Result<(), FemError> {
-        let part = self.memory.as_ref().map(|memory| memory.part);
-        if part == Some(ViscousPart::Deviatoric) && !law.has_isochoric_part() {
-            let cause = Cause::NoIsochoricPart { law: law.id() };
-            return Err(FemError::new(item, cause));
-        }
-        Ok(())
-    }
-
-    /// The instantaneous and the long-term Young's modulus (Pa) and Poisson's ratio at small strain, of parameters as they are stated.
-    #[must_use]
-    pub fn moduli(&self, stated: &Parameters) -> [Parameters; 2] {
-        let Some(memory) = &self.memory else {
-            return [*stated; 2];
-        };
-        let left = 1.0 / prony::instantaneous_over_longterm(&memory.terms);
-        let scaled = |factor: f64| memory.part.scaled(stated, factor);
-        match memory.moduli {
-            Moduli::Instantaneous => [*stated, scaled(left)],
-            Moduli::LongTerm => [scaled(1.0 / left), *stated],
-        }
-    }
-
     /// What the moduli of fibres are multiplied by to be instantaneous ones.
     pub(crate) fn factor_of_fibres(&self) -> f64 {
         match &self.memory {
@@ -128,28 +103,6 @@ impl Tissue {
 impl Memory {
     /// The most terms of a series.
     pub const MOST_TERMS: usize = 8;
-}
-
-impl ViscousPart {
-    /// Parameters with the moduli of this part multiplied by a factor.
-    fn scaled(self, parameters: &Parameters, factor: f64) -> Parameters {
-        let (modulus, ratio) = (parameters.youngs_modulus, parameters.poissons_ratio);
-        match self {
-            Self::All => Parameters {
-                youngs_modulus: factor * modulus,
-                ..*parameters
-            },
-            Self::Deviatoric => {
-                let shear = factor * modulus / (2.0 * (1.0 + ratio));
-                let bulk = modulus / (3.0 * (1.0 - 2.0 * ratio));
-                Parameters {
-                    youngs_modulus: 9.0 * bulk * shear / (3.0 * bulk + shear),
-                    poissons_ratio: (3.0 * bulk - 2.0 * shear) / (2.0 * (3.0 * bulk + shear)),
-                    ..*parameters
-                }
-            }
-        }
-    }
 }
 
 impl FibreFamily {
@@ -187,43 +140,5 @@ impl fmt::Display for Memory {
             ViscousPart::Deviatoric => "deviatoric stress",
         };
         write!(f, "of the {what} {} relax", shares.join(", "))
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::tetra::lame;
-
-    fn memory(part: ViscousPart, moduli: Moduli) -> Tissue {
-        let term = |share, time| Term { share, time };
-        let terms = vec![term(0.3, 0.05), term(0.2, 0.5)];
-        Tissue {
-            fibres: None,
-            memory: Some(Memory {
-                terms,
-                part,
-                moduli,
-            }),
-        }
-    }
-
-    #[test]
-    fn stated_moduli_are_the_instantaneous_or_the_long_term_ones() {
-        let stated = Parameters::new(3500.0, 0.45);
-        for part in [ViscousPart::All, ViscousPart::Deviatoric] {
-            let [at_once, later] = memory(part, Moduli::Instantaneous).moduli(&stated);
-            assert_eq!(at_once, stated);
-            let bulk = |p: &Parameters| p.youngs_modulus / (3.0 - 6.0 * p.poissons_ratio);
-            let [before, after] =
-                [at_once, later].map(|p| lame(p.youngs_modulus, p.poissons_ratio).1);
-            assert!((after / before - 0.5).abs() < 1e-14);
-            let left = if part == ViscousPart::All { 0.5 } else { 1.0 };
-            assert!((bulk(&later) / bulk(&at_once) - left).abs() < 1e-13);
-            let [back, same] = memory(part, Moduli::LongTerm).moduli(&later);
-            assert_eq!(same, later);
-            assert!((back.youngs_modulus / 3500.0 - 1.0).abs() < 1e-13);
-            assert!((back.poissons_ratio / 0.45 - 1.0).abs() < 1e-13);
-        }
     }
 }

@@ -4,8 +4,8 @@ use nalgebra::Vector3;
 use sinew_mesh::TetMesh;
 
 use crate::error::{Cause, FemError, Item};
-use crate::springs::EDGES;
 use crate::tetra;
+use crate::tetra::EDGES;
 
 /// Volume over longest edge cubed below which a tetrahedron counts as flat: rounding of
 /// the coordinates alone can give this much.

@@ -275,18 +275,8 @@ fn hand_facts(hand: &Hand, loads: &[LoadFacts], surface: &Surface) -> Option<Han
 /// The constants of a body of one isotropic material.
 fn hertz_of(laws: &[&Law]) -> Option<Hertz> {
     let [law] = laws else { return None };
-    match law {
-        Law::Linear {
-            youngs_modulus,
-            poissons_ratio,
-        } => Some(Hertz {
-            youngs_modulus: *youngs_modulus,
-            poissons_ratio: *poissons_ratio,
-        }),
-        Law::Hyperelastic { parameters, .. } => Some(Hertz {
-            youngs_modulus: parameters.youngs_modulus,
-            poissons_ratio: parameters.poissons_ratio,
-        }),
-        Law::Springs { .. } => None,
-    }
+    Some(Hertz {
+        youngs_modulus: law.youngs_modulus(),
+        poissons_ratio: law.poissons_ratio()?,
+    })
 }

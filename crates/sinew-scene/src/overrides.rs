@@ -94,7 +94,7 @@ fn set(
             None => None,
         };
         let Some(new) = new else {
-            let known = description.map_or(&[][..], |within| within.keys);
+            let known = description.map_or_else(Vec::new, TableDescription::all_keys);
             let names: Vec<String> = table.iter().map(|(name, _)| name.to_owned()).collect();
             let known = known.iter().map(|key| key.name());
             let nearest = nearest(part, names.iter().map(String::as_str).chain(known));
@@ -154,7 +154,8 @@ fn tables_of(within: &'static TableDescription, part: &str) -> Option<Inner> {
             _ => None,
         }
     }
-    let key = within.keys.iter().find(|key| key.name() == part)?;
+    let keys = within.all_keys();
+    let key = keys.iter().find(|key| key.name() == part)?;
     of_shape(&key.describe().shape)
 }
 

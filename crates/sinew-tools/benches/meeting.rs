@@ -31,7 +31,9 @@ fn main() {
     for cells in [10, 20] {
         for (name, law) in laws() {
             let bodies = [None, Some(0.5), Some(EDGE + 0.012)];
-            let mut laps: Vec<Lap> = bodies.map(|height| Lap::new(cells, law, height)).into();
+            let mut laps: Vec<Lap> = bodies
+                .map(|height| Lap::new(cells, law.clone(), height))
+                .into();
             let start = Instant::now();
             while start.elapsed() < time {
                 laps.iter_mut().for_each(Lap::make);

@@ -96,7 +96,7 @@ pub(crate) fn in_units(simulation: &Simulation, per_metre: f64) -> Result<Twin, 
     let mut problem = problem.clone();
     for region in &mut problem.regions {
         region.density /= per_metre.powi(3);
-        *region.law.youngs_modulus_mut() /= per_metre;
+        region.law.scale_stiffness(1.0 / per_metre);
     }
     let times = |vector: [f64; 3], factor: f64| vector.map(|x| factor * x);
     for course in problem

@@ -1,9 +1,6 @@
 //! Laws and elements of a body.
 
-use sinew_fem::hyperelastic::Hyperelastic;
-
-/// The ratio of the two shear constants of laws that leave it open.
-const C1_OVER_C2: f64 = 4.0;
+use sinew_fem::hyperelastic::{Hyperelastic, KnownLaw, LawParameter, Presence, known_law};
 
 /// A law with an element.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -13,9 +10,14 @@ pub(crate) struct Material {
 }
 
 impl Material {
-    /// Every law with every element.
+    /// Every law that is stated by Young's modulus, as the scenes are, with every element.
     pub(crate) fn all() -> Vec<Self> {
-        let laws = Hyperelastic::IDS.iter();
+        let name = LawParameter::YOUNGS_MODULUS.name;
+        let is_stated = |id: &&&str| {
+            let own = known_law(id).map_or(&[][..], KnownLaw::parameters);
+            own.iter().any(|own| own.name == name)
+        };
+        let laws = Hyperelastic::IDS.iter().filter(is_stated);
         laws.flat_map(|law| ["p1", "fbar", "fbar-edge"].map(|element| Self { law, element }))
             .collect()
     }
@@ -36,8 +38,18 @@ impl Material {
             format!("region.1.model={}", self.law),
             format!("region.1.element={}", self.element),
         ];
-        if self.law.starts_with("mooney") {
-            values.push(format!("region.1.c1_over_c2={C1_OVER_C2:?}"));
+        // The scenes state the moduli.
+        let own = known_law(self.law).map_or(&[][..], KnownLaw::parameters);
+        let scene = [LawParameter::YOUNGS_MODULUS, LawParameter::POISSONS_RATIO];
+        let is_new = |own: &&LawParameter| {
+            own.presence == Presence::Required && scene.iter().all(|known| known.name != own.name)
+        };
+        for parameter in own.iter().filter(is_new) {
+            let value = match (parameter.list, parameter.example) {
+                (None, [value, ..]) => format!("{value:?}"),
+                (_, list) => format!("{list:?}"),
+            };
+            values.push(format!("region.1.{}={value}", parameter.name));
         }
         values
     }

@@ -2,7 +2,7 @@
 //! `conformance`, which a crate switches on among its dev-dependencies.
 //!
 //! ```
-//! use sinew_fem::hyperelastic::{NeoHookean, Parameters, conformance};
+//! use sinew_fem::hyperelastic::{HyperelasticLaw, NeoHookean, Parameters, conformance};
 //!
 //! conformance::check(NeoHookean::new(&Parameters::new(3500.0, 0.45))?);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
@@ -11,7 +11,9 @@
 //! A law of one's own:
 //!
 //! ```
-//! use sinew_fem::hyperelastic::{Bulk, Deformation, HyperelasticLaw, Point, Tensor, conformance};
+//! use sinew_fem::hyperelastic::{
+//!     Bulk, Deformation, HyperelasticLaw, LawParameter, LawValues, ParameterError, Point, Tensor, conformance,
+//! };
 //! use sinew_sparse::simd::Number;
 //!
 //! /// `mu/2 (I1 - 3) - mu ln J + lambda/2 (J - 1)^2`.
@@ -23,9 +25,15 @@
 //!
 //! impl HyperelasticLaw for Mine {
 //!     const ID: &'static str = "mine";
+//!     const MEANING: &'static str = "is an example";
+//!     const PARAMETERS: &'static [LawParameter] = LawParameter::MODULI;
 //!     const DEFINED_WHEN_INVERTED: bool = false;
 //!     type Own<N: Number> = ();
 //!
+//!     fn from_values(values: &LawValues<'_>) -> Result<Self, ParameterError> {
+//!         let (lambda, mu) = values.lame();
+//!         Ok(Self { lambda, mu })
+//!     }
 //!     fn lame(&self) -> (f64, f64) {
 //!         (self.lambda, self.mu)
 //!     }
@@ -65,6 +73,7 @@
 #![allow(clippy::panic, reason = "a check that fails is a failed test")]
 
 use nalgebra::{SMatrix, Vector3};
+use sinew_sparse::simd::{InstructionSet, Number, WithNumber};
 
 use super::decomposition::SingularValues;
 use super::law::{Bulk, HyperelasticLaw, NodeBlock, Point};
@@ -91,6 +100,8 @@ pub fn check<L: HyperelasticLaw>(law: L) {
     node_blocks_belong_to_their_tangent(law);
     single_precision_is_double_precision_rounded(law);
     what_is_refused_is_where_the_law_is_not_defined(law);
+    the_dilation_is_that_of_the_viscosity(law);
+    vectors_are_plain_numbers(law);
 }
 
 impl Random {
@@ -240,7 +251,7 @@ pub fn stress_is_the_slope_of_the_energy<L: HyperelasticLaw>(law: L) {
             for entry in 0..9 {
                 let (i, j) = (entry / 3, entry % 3);
                 let energy = |x| part.energy(law, &law.at(h.plus(x, unit(i, j))));
-                found.0[i][j] = slope(energy, 3e-4, |points, weights| {
+                found.0[i][j] = slope(energy, 2e-4, |points, weights| {
                     points.into_iter().zip(weights).map(|(p, w)| p * w).sum()
                 });
             }
@@ -505,29 +516,84 @@ pub fn what_is_refused_is_where_the_law_is_not_defined<L: HyperelasticLaw>(law: 
     });
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::hyperelastic::{Hyperelastic, LawVisitor, Parameters};
+/// A law that says nothing of a dilation of its own has `J - 1`, which is that of its viscosity.
+pub fn the_dilation_is_that_of_the_viscosity<L: HyperelasticLaw>(law: L) {
+    if L::OWN_DILATION {
+        return;
+    }
+    for (_, h) in deformations::<L>() {
+        let at = law.at(h);
+        require(law.dilation(&at) == at.volume_change, || {
+            format!(
+                "{}: another dilation than J - 1 needs `OWN_DILATION`",
+                L::ID
+            )
+        });
+    }
+}
 
-    struct Check;
+/// Vectors of every instruction set give the stresses of plain numbers. Tangents are the same operations, and would
+/// take minutes to compile.
+pub fn vectors_are_plain_numbers<L: HyperelasticLaw>(law: L) {
+    for set in InstructionSet::available() {
+        let is_there = [set.with_f64(OnLanes(law)), set.with_f32(OnLanes(law))];
+        require(is_there == [Some(()); 2], || {
+            format!("{set:?} is available")
+        });
+    }
+}
 
-    impl LawVisitor for Check {
-        type Output = ();
+struct OnLanes<L>(L);
 
-        fn visit<L: HyperelasticLaw>(self, law: L) {
-            check(law);
+impl<L: HyperelasticLaw> WithNumber for OnLanes<L> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<N: Number>(self) {
+        let gradients: Vec<_> = (0..N::LANES)
+            .map(|lane| gradient_of_lane(lane, L::DEFINED_WHEN_INVERTED))
+            .collect();
+        let entry = |i: usize, j: usize| N::from_lanes(|lane| gradients[lane][i][j]);
+        let h = Tensor([0, 1, 2].map(|i| [0, 1, 2].map(|j| entry(i, j))));
+        let at = self.0.at(h);
+        let found = self.0.stress_with(&at, self.0.own_bulk(&at)).0;
+        let found = found.map(|row| {
+            row.map(|entry| -> Vec<f64> { (0..N::LANES).map(|lane| entry.lane(lane)).collect() })
+        });
+        for (lane, &rows) in gradients.iter().enumerate() {
+            lane_is_plain(self.0, (&found, lane), rows, N::EPSILON);
         }
     }
+}
 
-    #[test]
-    fn every_law_stands_the_suite() {
-        for &id in Hyperelastic::IDS {
-            for poissons_ratio in [0.0, 0.3, 0.45] {
-                let mut parameters = Parameters::new(3500.0, poissons_ratio);
-                parameters.c1_over_c2 = (id == "mooney-rivlin").then_some(4.0);
-                Hyperelastic::new(id, &parameters).unwrap().with_law(Check);
-            }
-        }
+/// The gradient of a lane: small, large and mirrored ones side by side.
+#[inline(never)]
+fn gradient_of_lane(lane: usize, is_inverted: bool) -> [[f64; 3]; 3] {
+    let size = [1e-3, 0.1, 0.3, 0.5][lane % 4];
+    let entry = |i: usize, j: usize| ((1 + 3 * i + 7 * j + 5 * lane) as f64).sin() * size;
+    let mut rows = [0, 1, 2].map(|i| [0, 1, 2].map(|j| entry(i, j)));
+    if is_inverted && lane % 5 == 3 {
+        rows[0][0] -= [1.0, 2.0][lane % 2];
     }
+    // What every precision reads is the same.
+    rows.map(|row| row.map(|entry| f64::from(entry as f32)))
+}
+
+#[inline(never)]
+fn lane_is_plain<L: HyperelasticLaw>(
+    law: L,
+    (found, lane): (&[[Vec<f64>; 3]; 3], usize),
+    rows: [[f64; 3]; 3],
+    epsilon: f64,
+) {
+    let found = found
+        .each_ref()
+        .map(|row| row.each_ref().map(|entry| entry[lane]));
+    let expected = whole_stress(law, Tensor(rows));
+    // Rotations are as sure as the sum of the two smallest singular values.
+    let [_, middle, last] = SingularValues::of(Tensor(rows) + Tensor::identity()).values;
+    let tolerance = 2000.0 * epsilon / f64::min(middle + last, 1.0);
+    let size = expected.largest() + scale_of(law);
+    let said = || format!("{}: stress in lane {lane} at H = {rows:?}", L::ID);
+    near(Tensor(found), expected, tolerance * size, said);
 }

@@ -5,7 +5,7 @@ use sinew_sparse::simd::Number;
 use super::decomposition::rotation;
 use super::deformation::Deformation;
 use super::law::{Bulk, HyperelasticLaw, NodeBlock, Point};
-use super::parameters::{ParameterError, Parameters};
+use super::parameters::{LawParameter, LawValues, ParameterError};
 use super::tensor::{Tensor, dot};
 
 /// `psi = mu |F - R|^2 + lambda/2 (tr S - 3)^2` with F = R S, R a proper rotation, also where J < 0.
@@ -23,16 +23,6 @@ pub struct Corotational {
 }
 
 impl Corotational {
-    /// The law with these moduli at small strain.
-    ///
-    /// # Errors
-    ///
-    /// [`ParameterError`] where a parameter is outside its range or another law's.
-    pub fn new(parameters: &Parameters) -> Result<Self, ParameterError> {
-        let (lambda, mu) = parameters.moduli(Self::ID)?;
-        Ok(Self { lambda, mu })
-    }
-
     /// `tr S I - S` and its inverse, which is 0 where there is none.
     #[inline(always)]
     fn turning<N: Number>(at: &Point<N, Rotated<N>>) -> [Tensor<N>; 2] {
@@ -87,10 +77,18 @@ pub struct Rotated<N> {
 
 impl HyperelasticLaw for Corotational {
     const ID: &'static str = "corotational";
+    const MEANING: &'static str = "is linear but for rotations";
+    const PARAMETERS: &'static [LawParameter] = LawParameter::MODULI;
+    const OWN_DILATION: bool = true;
     const DEFINED_WHEN_INVERTED: bool = true;
     const NODE_BLOCK: NodeBlock = NodeBlock::Majorant;
 
     type Own<N: Number> = Rotated<N>;
+
+    fn from_values(values: &LawValues<'_>) -> Result<Self, ParameterError> {
+        let (lambda, mu) = values.lame();
+        Ok(Self { lambda, mu })
+    }
 
     fn lame(&self) -> (f64, f64) {
         (self.lambda, self.mu)

@@ -6,6 +6,7 @@ use std::ops::Deref;
 use sinew_sparse::simd::Number;
 
 use super::deformation::Deformation;
+use super::parameters::{LawParameter, LawValues, ParameterError, Parameters};
 use super::tensor::{Tensor, dot};
 
 /// Volume ratio J below which a law that is not defined for inverted elements is refused.
@@ -20,10 +21,22 @@ pub const SMALLEST_VOLUME_RATIO: f64 = 1e-6;
 /// A law is written over any [`Number`]: the same text serves f64, f32 and vectors. Stresses are first Piola-Kirchhoff ones, `P = d psi/dF`
 /// (Pa), and the tangent is their change by a change of F.
 ///
+/// A law is a struct in one file, which states its parameters; scenes, checks, help and error texts follow from them.
+/// Those of this crate and of others are alike: [`super::register`] adds one to those that scenes and [`crate::Law`]
+/// know, and force loops are compiled for its own type.
 /// [`super::conformance`] checks a law.
-pub trait HyperelasticLaw: Copy + Debug + Send + Sync + 'static {
-    /// Its name in scenes.
+pub trait HyperelasticLaw: Copy + Debug + Send + Sync {
+    /// Name in scenes.
     const ID: &'static str;
+    /// Use of the law in half a sentence, for the reference of scenes: "fits rubber-like tissue better in shear".
+    const MEANING: &'static str;
+    /// Parameters, each a key of scenes.
+    const PARAMETERS: &'static [LawParameter];
+    /// Warning to whoever takes the law in a scene, and advice; `None` for most.
+    const WEAKNESS: Option<[&'static str; 2]> = None;
+    /// True if the law overrides [`Self::dilation`], so that its viscosity takes that measure of volume in place of
+    /// `J - 1`.
+    const OWN_DILATION: bool = false;
     /// Whether it is defined where J <= 0.
     const DEFINED_WHEN_INVERTED: bool;
     /// Whether its local energy is an isochoric one, of F freed of volume change, and `mu/3 (J - 1)^2`.
@@ -33,6 +46,27 @@ pub trait HyperelasticLaw: Copy + Debug + Send + Sync + 'static {
 
     /// What it computes once for a deformation.
     type Own<N: Number>: Copy + Debug;
+
+    /// The law with these values of its [`Self::PARAMETERS`], which are present and within their ranges.
+    ///
+    /// # Errors
+    ///
+    /// [`ParameterError`] for values that do not go together ([`LawParameter::refused`]).
+    fn from_values(values: &LawValues<'_>) -> Result<Self, ParameterError>;
+
+    /// The law with these parameters.
+    ///
+    /// # Errors
+    ///
+    /// [`ParameterError`] for a parameter that is missing, outside its range or another law's.
+    fn new(parameters: &Parameters) -> Result<Self, ParameterError> {
+        Self::from_values(&parameters.checked(Self::ID, Self::PARAMETERS)?)
+    }
+
+    /// Name in messages.
+    fn id(&self) -> &'static str {
+        Self::ID
+    }
 
     /// Lame's constants (lambda, mu) (Pa) at small strain.
     fn lame(&self) -> (f64, f64);
@@ -59,7 +93,7 @@ pub trait HyperelasticLaw: Copy + Debug + Send + Sync + 'static {
         None
     }
 
-    /// theta, which is tr(eps) at small strain; `J - 1` unless the law has another.
+    /// theta, which is tr(eps) at small strain; `J - 1` unless the law has another ([`Self::OWN_DILATION`]).
     #[inline(always)]
     fn dilation<N: Number>(&self, at: &Point<N, Self::Own<N>>) -> N {
         at.volume_change

@@ -13,14 +13,15 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod boxed;
 #[cfg(any(test, feature = "conformance"))]
 pub mod conformance;
 mod corotational;
 mod decomposition;
 mod deformation;
 pub mod fibres;
-mod kinds;
 mod law;
+mod law_error;
 mod mooney_rivlin;
 mod neo_hookean;
 mod neo_hookean_iso;
@@ -28,28 +29,37 @@ mod neo_hookean_log;
 mod parameters;
 mod projection;
 pub mod prony;
+mod registry;
 mod samples;
 mod stable_neo_hookean;
 mod stable_neo_hookean_log;
 mod stvk;
 mod tensor;
 mod viscous;
+mod yeoh;
 
+pub use boxed::{Boxed, PointLaw};
 pub use corotational::Corotational;
 pub use decomposition::SingularValues;
 pub use deformation::Deformation;
-pub use kinds::{Hyperelastic, LawError, LawVisitor};
 pub use law::{Bulk, HyperelasticLaw, NodeBlock, Point, SMALLEST_VOLUME_RATIO};
+pub use law_error::LawError;
 pub use mooney_rivlin::MooneyRivlin;
 pub use neo_hookean::NeoHookean;
 pub use neo_hookean_iso::NeoHookeanIso;
 pub use neo_hookean_log::NeoHookeanLog;
-pub use parameters::{ParameterError, Parameters};
+pub use parameters::{LawParameter, LawValues, ParameterError, Parameters, Presence, Range};
 pub(crate) use projection::semidefinite;
 pub use projection::{Linearised, Projection, TangentKind};
+pub use registry::{
+    Hyperelastic, KnownLaw, MakeBoxed, RegisterError, known_law, known_laws, register,
+    register_boxed,
+};
 pub use samples::sample_deformations;
 pub use stable_neo_hookean::StableNeoHookean;
 pub use stable_neo_hookean_log::StableNeoHookeanLog;
 pub use stvk::Stvk;
 pub use tensor::Tensor;
 pub(crate) use tensor::dot;
+pub(crate) use viscous::Viscous;
+pub use yeoh::Yeoh;

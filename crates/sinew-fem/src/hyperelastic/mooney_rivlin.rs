@@ -4,7 +4,7 @@ use sinew_sparse::simd::Number;
 
 use super::deformation::Deformation;
 use super::law::{Bulk, HyperelasticLaw, NodeBlock, Point, block_of};
-use super::parameters::{ParameterError, Parameters};
+use super::parameters::{LawParameter, LawValues, ParameterError, Range};
 use super::tensor::Tensor;
 
 /// `psi = C1 (J^-2/3 I1 - 3) + C2 (J^-4/3 I2 - 3) + kappa/2 (J - 1)^2` with `mu = 2 (C1 + C2)` and `kappa = lambda + 2/3 mu`.
@@ -22,41 +22,39 @@ pub struct MooneyRivlin {
 }
 
 impl MooneyRivlin {
-    /// The law with these moduli at small strain.
-    ///
-    /// # Errors
-    ///
-    /// [`ParameterError`] where a parameter is outside its range or missing.
-    pub fn new(parameters: &Parameters) -> Result<Self, ParameterError> {
-        let (lambda, mu, ratio) = parameters.moduli_and_ratio(Self::ID)?;
-        let c2 = 0.5 * mu / (1.0 + ratio);
-        Ok(Self::of(lambda, ratio * c2, c2))
-    }
-
     /// The law by its own constants (Pa); C2 may be 0.
     pub(super) fn of(lambda: f64, c1: f64, c2: f64) -> Self {
         Self { lambda, c1, c2 }
     }
 }
 
+/// C1/C2.
+const C1_OVER_C2: LawParameter = LawParameter::number(
+    "c1_over_c2",
+    "C1/C2",
+    "The ratio of Mooney and Rivlin's two shear constants, of which Young's modulus and Poisson's ratio leave it open.",
+    Range::above_zero("a finite ratio above 0"),
+    &[4.0],
+);
+
 /// What a law in the invariants without change of volume computes once.
 #[derive(Clone, Copy, Debug)]
 pub struct Isochoric<N> {
     /// 1/J.
-    over: N,
+    pub(super) over: N,
     /// `J^-2/3`.
-    scale: N,
+    pub(super) scale: N,
     /// `F'F - I`.
     strain: Tensor<N>,
     /// `I1 - 3`.
-    first: N,
+    pub(super) first: N,
     /// `I2 - 3`.
     second: N,
 }
 
 impl<N: Number> Isochoric<N> {
     #[inline(always)]
-    fn at(deformation: &Deformation<N>) -> Self {
+    pub(super) fn at(deformation: &Deformation<N>) -> Self {
         let strain = deformation.twice_green_strain();
         let first = deformation.first_invariant_change();
         let quadratic = first.mul_add(first, -strain.squared());
@@ -72,7 +70,7 @@ impl<N: Number> Isochoric<N> {
 
     /// I1.
     #[inline(always)]
-    fn i1(&self) -> N {
+    pub(super) fn i1(&self) -> N {
         self.first + N::of(3.0)
     }
 
@@ -84,7 +82,7 @@ impl<N: Number> Isochoric<N> {
 
     /// `I / J - 3` for an invariant I.
     #[inline(always)]
-    fn beyond_rest(&self, invariant_change: N, volume_change: N) -> N {
+    pub(super) fn beyond_rest(&self, invariant_change: N, volume_change: N) -> N {
         N::of(-3.0).mul_add(volume_change, invariant_change) * self.over
     }
 
@@ -97,11 +95,24 @@ impl<N: Number> Isochoric<N> {
 
 impl HyperelasticLaw for MooneyRivlin {
     const ID: &'static str = "mooney-rivlin";
+    const MEANING: &'static str = "fits rubber-like tissue better in shear";
+    const PARAMETERS: &'static [LawParameter] = &[
+        LawParameter::YOUNGS_MODULUS,
+        LawParameter::POISSONS_RATIO,
+        C1_OVER_C2,
+    ];
     const DEFINED_WHEN_INVERTED: bool = false;
     const HAS_ISOCHORIC_PART: bool = true;
     const NODE_BLOCK: NodeBlock = NodeBlock::Majorant;
 
     type Own<N: Number> = Isochoric<N>;
+
+    fn from_values(values: &LawValues<'_>) -> Result<Self, ParameterError> {
+        let (lambda, mu) = values.lame();
+        let ratio = values.number(&C1_OVER_C2);
+        let c2 = 0.5 * mu / (1.0 + ratio);
+        Ok(Self::of(lambda, ratio * c2, c2))
+    }
 
     fn lame(&self) -> (f64, f64) {
         (self.lambda, 2.0 * (self.c1 + self.c2))

@@ -4,7 +4,7 @@ use sinew_sparse::simd::Number;
 
 use super::deformation::Deformation;
 use super::law::{Bulk, HyperelasticLaw, Point, block_of};
-use super::parameters::{ParameterError, Parameters};
+use super::parameters::{LawParameter, LawValues, ParameterError};
 use super::tensor::Tensor;
 
 /// `psi = mu/2 (I1 - 3) - mu ln J + lambda/2 (J - 1)^2`.
@@ -20,24 +20,19 @@ pub struct NeoHookean {
     mu: f64,
 }
 
-impl NeoHookean {
-    /// The law with these moduli at small strain.
-    ///
-    /// # Errors
-    ///
-    /// [`ParameterError`] where a parameter is outside its range or another law's.
-    pub fn new(parameters: &Parameters) -> Result<Self, ParameterError> {
-        let (lambda, mu) = parameters.moduli(Self::ID)?;
-        Ok(Self { lambda, mu })
-    }
-}
-
 impl HyperelasticLaw for NeoHookean {
     const ID: &'static str = "neo-hookean";
+    const MEANING: &'static str = "is the one to begin with";
+    const PARAMETERS: &'static [LawParameter] = LawParameter::MODULI;
     const DEFINED_WHEN_INVERTED: bool = false;
 
     /// 1/J.
     type Own<N: Number> = N;
+
+    fn from_values(values: &LawValues<'_>) -> Result<Self, ParameterError> {
+        let (lambda, mu) = values.lame();
+        Ok(Self { lambda, mu })
+    }
 
     fn lame(&self) -> (f64, f64) {
         (self.lambda, self.mu)

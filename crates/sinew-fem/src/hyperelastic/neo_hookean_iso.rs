@@ -5,7 +5,7 @@ use sinew_sparse::simd::Number;
 use super::deformation::Deformation;
 use super::law::{Bulk, HyperelasticLaw, NodeBlock, Point};
 use super::mooney_rivlin::{Isochoric, MooneyRivlin};
-use super::parameters::{ParameterError, Parameters};
+use super::parameters::{LawParameter, LawValues, ParameterError};
 use super::tensor::Tensor;
 
 /// `psi = mu/2 (J^-2/3 I1 - 3) + kappa/2 (J - 1)^2`: [`MooneyRivlin`] with C2 = 0.
@@ -17,26 +17,21 @@ pub struct NeoHookeanIso {
     base: MooneyRivlin,
 }
 
-impl NeoHookeanIso {
-    /// The law with these moduli at small strain.
-    ///
-    /// # Errors
-    ///
-    /// [`ParameterError`] where a parameter is outside its range or another law's.
-    pub fn new(parameters: &Parameters) -> Result<Self, ParameterError> {
-        let (lambda, mu) = parameters.moduli(Self::ID)?;
-        let base = MooneyRivlin::of(lambda, 0.5 * mu, 0.0);
-        Ok(Self { base })
-    }
-}
-
 impl HyperelasticLaw for NeoHookeanIso {
     const ID: &'static str = "neo-hookean-iso";
+    const MEANING: &'static str = "is there for comparison with other programs";
+    const PARAMETERS: &'static [LawParameter] = LawParameter::MODULI;
     const DEFINED_WHEN_INVERTED: bool = false;
     const HAS_ISOCHORIC_PART: bool = true;
     const NODE_BLOCK: NodeBlock = NodeBlock::Exact;
 
     type Own<N: Number> = Isochoric<N>;
+
+    fn from_values(values: &LawValues<'_>) -> Result<Self, ParameterError> {
+        let (lambda, mu) = values.lame();
+        let base = MooneyRivlin::of(lambda, 0.5 * mu, 0.0);
+        Ok(Self { base })
+    }
 
     fn lame(&self) -> (f64, f64) {
         self.base.lame()

@@ -5,7 +5,7 @@ use sinew_sparse::simd::Number;
 use super::deformation::Deformation;
 use super::law::{Bulk, HyperelasticLaw, NodeBlock, Point, block_of};
 use super::neo_hookean::NeoHookean;
-use super::parameters::{ParameterError, Parameters};
+use super::parameters::{LawParameter, LawValues, ParameterError};
 use super::tensor::Tensor;
 
 /// `psi = mu/2 (I1 - 3) - mu ln J + lambda/2 (ln J)^2` (Bonet and Wood, Nonlinear Continuum Mechanics for Finite Element Analysis, 2008, section 6.4.3).
@@ -17,26 +17,21 @@ pub struct NeoHookeanLog {
     base: NeoHookean,
 }
 
-impl NeoHookeanLog {
-    /// The law with these moduli at small strain.
-    ///
-    /// # Errors
-    ///
-    /// [`ParameterError`] where a parameter is outside its range or another law's.
-    pub fn new(parameters: &Parameters) -> Result<Self, ParameterError> {
-        parameters.moduli(Self::ID)?;
-        let base = NeoHookean::new(parameters)?;
-        Ok(Self { base })
-    }
-}
-
 impl HyperelasticLaw for NeoHookeanLog {
     const ID: &'static str = "neo-hookean-log";
+    const MEANING: &'static str = "is there for comparison with other programs";
+    const PARAMETERS: &'static [LawParameter] = LawParameter::MODULI;
+    const OWN_DILATION: bool = true;
     const DEFINED_WHEN_INVERTED: bool = false;
     const NODE_BLOCK: NodeBlock = NodeBlock::Majorant;
 
     /// 1/J.
     type Own<N: Number> = N;
+
+    fn from_values(values: &LawValues<'_>) -> Result<Self, ParameterError> {
+        let base = NeoHookean::from_values(values)?;
+        Ok(Self { base })
+    }
 
     fn lame(&self) -> (f64, f64) {
         self.base.lame()

@@ -185,10 +185,7 @@ mod tests {
 
     #[test]
     fn the_deviatoric_stress_of_split_laws_is_that_without_their_volumetric_energy() {
-        let parameters = Parameters {
-            c1_over_c2: Some(4.0),
-            ..Parameters::new(3500.0, 0.45)
-        };
+        let parameters = Parameters::new(3500.0, 0.45).with("c1_over_c2", &[4.0]);
         let law = MooneyRivlin::new(&parameters).unwrap();
         let (lambda, mu) = law.lame();
         for [h, _] in sample_deformations::<MooneyRivlin>().take(50) {

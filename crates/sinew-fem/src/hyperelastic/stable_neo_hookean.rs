@@ -4,7 +4,7 @@ use sinew_sparse::simd::Number;
 
 use super::deformation::Deformation;
 use super::law::{Bulk, HyperelasticLaw, Point, block_of};
-use super::parameters::{ParameterError, Parameters};
+use super::parameters::{LawParameter, LawValues, ParameterError};
 use super::tensor::Tensor;
 
 /// `psi = mu/2 (I1 - 3) - mu (J - 1) + (lambda + mu)/2 (J - 1)^2`.
@@ -21,27 +21,18 @@ pub struct StableNeoHookean {
     mu: f64,
 }
 
-impl StableNeoHookean {
-    /// The law with these moduli at small strain.
-    ///
-    /// # Errors
-    ///
-    /// [`ParameterError`] where a parameter is outside its range or another law's.
-    pub fn new(parameters: &Parameters) -> Result<Self, ParameterError> {
-        Ok(Self::of(parameters.moduli(Self::ID)?))
-    }
-
-    /// The law with Lame's constants (Pa) at small strain.
-    pub(super) fn of((lambda, mu): (f64, f64)) -> Self {
-        Self { lambda, mu }
-    }
-}
-
 impl HyperelasticLaw for StableNeoHookean {
     const ID: &'static str = "stable-neo-hookean";
+    const MEANING: &'static str = "also has a meaning where tetrahedra turn inside out";
+    const PARAMETERS: &'static [LawParameter] = LawParameter::MODULI;
     const DEFINED_WHEN_INVERTED: bool = true;
 
     type Own<N: Number> = ();
+
+    fn from_values(values: &LawValues<'_>) -> Result<Self, ParameterError> {
+        let (lambda, mu) = values.lame();
+        Ok(Self { lambda, mu })
+    }
 
     fn lame(&self) -> (f64, f64) {
         (self.lambda, self.mu)

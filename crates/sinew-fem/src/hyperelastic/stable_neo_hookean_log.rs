@@ -4,7 +4,7 @@ use sinew_sparse::simd::Number;
 
 use super::deformation::Deformation;
 use super::law::{Bulk, HyperelasticLaw, Point, block_of};
-use super::parameters::{ParameterError, Parameters};
+use super::parameters::{LawParameter, LawValues, ParameterError};
 use super::tensor::Tensor;
 
 /// `psi = mu'/2 (I1 - 3) - mu'/2 ln((I1 + 1)/4) + lambda'/2 ((J - alpha)^2 - (1 - alpha)^2)` with `mu' = 4/3 mu`, `lambda' = lambda + 5/6 mu`,
@@ -22,16 +22,6 @@ pub struct StableNeoHookeanLog {
 }
 
 impl StableNeoHookeanLog {
-    /// The law with these moduli at small strain.
-    ///
-    /// # Errors
-    ///
-    /// [`ParameterError`] where a parameter is outside its range or another law's.
-    pub fn new(parameters: &Parameters) -> Result<Self, ParameterError> {
-        let (lambda, mu) = parameters.moduli(Self::ID)?;
-        Ok(Self { lambda, mu })
-    }
-
     /// The modulus that the law is written with (Pa).
     #[inline(always)]
     fn remapped(&self) -> f64 {
@@ -47,10 +37,17 @@ impl StableNeoHookeanLog {
 
 impl HyperelasticLaw for StableNeoHookeanLog {
     const ID: &'static str = "stable-neo-hookean-log";
+    const MEANING: &'static str = "is there for comparison with other programs";
+    const PARAMETERS: &'static [LawParameter] = LawParameter::MODULI;
     const DEFINED_WHEN_INVERTED: bool = true;
 
     /// `1/(I1 + 1)`.
     type Own<N: Number> = N;
+
+    fn from_values(values: &LawValues<'_>) -> Result<Self, ParameterError> {
+        let (lambda, mu) = values.lame();
+        Ok(Self { lambda, mu })
+    }
 
     fn lame(&self) -> (f64, f64) {
         (self.lambda, self.mu)

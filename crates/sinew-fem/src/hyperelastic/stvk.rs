@@ -4,7 +4,7 @@ use sinew_sparse::simd::Number;
 
 use super::deformation::Deformation;
 use super::law::{Bulk, HyperelasticLaw, NodeBlock, Point};
-use super::parameters::{ParameterError, Parameters};
+use super::parameters::{LawParameter, LawValues, ParameterError};
 use super::tensor::{Tensor, dot};
 
 /// `psi = mu E:E + lambda/2 (tr E)^2`, E being Green's strain `(F'F - I)/2`: linear elasticity that does not see rotations
@@ -18,25 +18,25 @@ pub struct Stvk {
     mu: f64,
 }
 
-impl Stvk {
-    /// The law with these moduli at small strain.
-    ///
-    /// # Errors
-    ///
-    /// [`ParameterError`] where a parameter is outside its range or another law's.
-    pub fn new(parameters: &Parameters) -> Result<Self, ParameterError> {
-        let (lambda, mu) = parameters.moduli(Self::ID)?;
-        Ok(Self { lambda, mu })
-    }
-}
-
 impl HyperelasticLaw for Stvk {
     const ID: &'static str = "stvk";
+    const MEANING: &'static str = "(Saint Venant and Kirchhoff) collapses under strong compression";
+    const PARAMETERS: &'static [LawParameter] = LawParameter::MODULI;
+    const WEAKNESS: Option<[&'static str; 2]> = Some([
+        "pressed to less than 58 % of its length it gives way, and turns inside out without resistance",
+        "model = \"neo-hookean\" resists the more the farther it is pressed",
+    ]);
+    const OWN_DILATION: bool = true;
     const DEFINED_WHEN_INVERTED: bool = true;
     const NODE_BLOCK: NodeBlock = NodeBlock::Majorant;
 
     /// `2E`.
     type Own<N: Number> = Tensor<N>;
+
+    fn from_values(values: &LawValues<'_>) -> Result<Self, ParameterError> {
+        let (lambda, mu) = values.lame();
+        Ok(Self { lambda, mu })
+    }
 
     fn lame(&self) -> (f64, f64) {
         (self.lambda, self.mu)

@@ -4,6 +4,7 @@ use sinew_sparse::simd::Number;
 
 use super::deformation::Deformation;
 use super::law::{Bulk, HyperelasticLaw, Point};
+use super::parameters::{LawParameter, LawValues, ParameterError};
 use super::tensor::{Tensor, dot};
 
 /// A law whose tangent is the viscosity of stiffness damping, and whose stress is 0, so that loops over tangents make products, matrices and own
@@ -22,8 +23,15 @@ pub(crate) struct Viscous<L> {
     mu: f64,
 }
 
+impl Viscous<OfVolume> {
+    /// The viscosity of laws whose dilation is `J - 1`, by their constants (lambda, mu) (Pa).
+    pub(crate) fn of_volume(lame: (f64, f64)) -> Self {
+        Self::new(OfVolume, lame)
+    }
+}
+
 impl<L> Viscous<L> {
-    pub(super) fn new(dilation: L, (lambda, mu): (f64, f64)) -> Self {
+    pub(crate) fn new(dilation: L, (lambda, mu): (f64, f64)) -> Self {
         Self {
             dilation,
             lambda,
@@ -34,9 +42,17 @@ impl<L> Viscous<L> {
 
 impl<L: HyperelasticLaw> HyperelasticLaw for Viscous<L> {
     const ID: &'static str = L::ID;
+    const MEANING: &'static str = L::MEANING;
+    const PARAMETERS: &'static [LawParameter] = L::PARAMETERS;
+    const OWN_DILATION: bool = L::OWN_DILATION;
     const DEFINED_WHEN_INVERTED: bool = L::DEFINED_WHEN_INVERTED;
 
     type Own<N: Number> = L::Own<N>;
+
+    fn from_values(values: &LawValues<'_>) -> Result<Self, ParameterError> {
+        let law = L::from_values(values)?;
+        Ok(Self::new(law, law.lame()))
+    }
 
     fn lame(&self) -> (f64, f64) {
         (self.lambda, self.mu)
@@ -109,5 +125,49 @@ impl<L: HyperelasticLaw> HyperelasticLaw for Viscous<L> {
             .plus(dot(gradient, gradient), squared)
             .scaled(mu)
             .plus(bulk.modulus, Tensor::outer(normal, normal))
+    }
+}
+
+/// The dilation `J - 1` alone, without energy.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct OfVolume;
+
+impl HyperelasticLaw for OfVolume {
+    const ID: &'static str = "of volume";
+    const MEANING: &'static str = "has no energy";
+    const PARAMETERS: &'static [LawParameter] = &[];
+    const DEFINED_WHEN_INVERTED: bool = true;
+
+    type Own<N: Number> = ();
+
+    fn from_values(_: &LawValues<'_>) -> Result<Self, ParameterError> {
+        Ok(Self)
+    }
+
+    fn lame(&self) -> (f64, f64) {
+        (0.0, 0.0)
+    }
+
+    #[inline(always)]
+    fn own<N: Number>(&self, _: &Deformation<N>) {}
+
+    #[inline(always)]
+    fn energy<N: Number>(&self, _: &Point<N, ()>) -> N {
+        N::of(0.0)
+    }
+
+    #[inline(always)]
+    fn stress<N: Number>(&self, _: &Point<N, ()>) -> Tensor<N> {
+        Tensor::zero()
+    }
+
+    #[inline(always)]
+    fn tangent<N: Number>(&self, _: &Point<N, ()>, _: Tensor<N>) -> Tensor<N> {
+        Tensor::zero()
+    }
+
+    #[inline(always)]
+    fn node_block<N: Number>(&self, _: &Point<N, ()>, _: Bulk<N>, _: [N; 3]) -> Tensor<N> {
+        Tensor::zero()
     }
 }

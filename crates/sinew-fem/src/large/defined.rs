@@ -13,6 +13,7 @@ use crate::hyperelastic::{Deformation, HyperelasticLaw, SMALLEST_VOLUME_RATIO};
 /// Refuses tetrahedra or means side by side for which a law is not defined, or which are not finite; `tag` names that of a lane.
 #[inline(always)]
 pub(super) fn require_law<L: HyperelasticLaw, N: Number>(
+    law: &L,
     deformation: &Deformation<N>,
     tag: impl Fn(usize) -> u64,
 ) -> Result<(), EvaluationError> {
@@ -20,7 +21,7 @@ pub(super) fn require_law<L: HyperelasticLaw, N: Number>(
     if N::all_le(N::of(least::<L>(largest)), ratio) && N::all_le(ratio, N::of(largest)) {
         return Ok(());
     }
-    Err(refused_among::<L>(&lanes(ratio), tag))
+    Err(refused_among(law, &lanes(ratio), tag))
 }
 
 /// [`require_law`] for fibres.
@@ -66,12 +67,13 @@ const fn least<L: HyperelasticLaw>(largest: f64) -> f64 {
 #[cold]
 #[inline(never)]
 fn refused_among<L: HyperelasticLaw>(
+    law: &L,
     ratios: &[f64; LANES],
     tag: impl Fn(usize) -> u64,
 ) -> EvaluationError {
     let is_refused = |ratio: &f64| !(least::<L>(f64::MAX)..=f64::MAX).contains(ratio);
     let lane = ratios.iter().position(is_refused).unwrap_or(0);
-    refused::<L>(tag(lane), ratios[lane])
+    refused(law.id(), tag(lane), ratios[lane])
 }
 
 /// The first lane of these volume ratios that is not above 0.

@@ -2,8 +2,6 @@
 
 use sinew_core::EvaluationError;
 
-use crate::hyperelastic::HyperelasticLaw;
-
 /// A ratio of volumes in words: to three places, where these say how large it is.
 fn in_words(volume_ratio: f64) -> String {
     if (1e-3..1e4).contains(&volume_ratio.abs()) || volume_ratio == 0.0 {
@@ -41,13 +39,12 @@ pub(super) fn memory_refused(tag: u64, volume_ratio: f64) -> EvaluationError {
 
 /// The error for a tetrahedron, or the mean of some, that a law is not defined for.
 #[cold]
-pub(super) fn refused<L: HyperelasticLaw>(tag: u64, volume_ratio: f64) -> EvaluationError {
+pub(super) fn refused(law: &str, tag: u64, volume_ratio: f64) -> EvaluationError {
     let reason = if volume_ratio.is_finite() {
         format!(
-            "its volume is {} of that at rest, and the law `{}` has no meaning from 0 down: shorter steps avoid that unless \
+            "its volume is {} of that at rest, and the law `{law}` has no meaning from 0 down: shorter steps avoid that unless \
              the motion itself leads there, and a law for elements that invert, such as `stable-neo-hookean`, goes on",
-            in_words(volume_ratio),
-            L::ID
+            in_words(volume_ratio)
         )
     } else {
         "its displacement is not finite".to_owned()

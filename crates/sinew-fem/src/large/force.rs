@@ -18,8 +18,8 @@ use super::region::{HyperelasticRegion, Numbers};
 use super::rooms::{RegionRooms, Rooms};
 use super::schedule::{Piece, Task};
 use super::scratch::Places;
+use crate::hyperelastic::HyperelasticLaw;
 use crate::hyperelastic::prony::{deviatoric, first_piola};
-use crate::hyperelastic::{HyperelasticLaw, LawVisitor};
 
 /// An evaluation of forces.
 #[derive(Clone, Copy, Debug)]
@@ -39,38 +39,34 @@ pub(super) struct Evaluation<'a, T> {
     pub(super) with_energy: bool,
 }
 
-impl<T: Vectors> Evaluation<'_, T> {
-    /// Does the tasks of a piece of a part, and tells what is found.
-    ///
-    /// # Safety
-    /// The parts of a schedule of these regions are done pass by pass; what else uses the places waits for the end.
-    pub(super) unsafe fn make(
-        &self,
-        part: usize,
-        piece: &Piece,
-    ) -> Result<Deformed, EvaluationError> {
-        let region = &self.regions[piece.region];
-        if self.remembered.is_some() && region.memory.is_none() {
-            return Ok(Deformed::default());
-        }
-        region.law.with_law(Forces {
-            evaluation: self,
-            part,
-            piece,
-        })
-    }
-}
-
-struct Forces<'a, T> {
+/// The tasks of a piece of a part.
+pub(crate) struct Forces<'a, T> {
     evaluation: &'a Evaluation<'a, T>,
     part: usize,
     piece: &'a Piece,
 }
 
-impl<T: Vectors> LawVisitor for Forces<'_, T> {
-    type Output = Result<Deformed, EvaluationError>;
+impl<'a, T: Vectors> Forces<'a, T> {
+    /// The tasks of a piece; `None` if it has nothing to do.
+    ///
+    /// # Safety
+    /// The parts of a schedule of these regions are done pass by pass; other users of the places wait for the end.
+    pub(super) unsafe fn of(
+        evaluation: &'a Evaluation<'a, T>,
+        part: usize,
+        piece: &'a Piece,
+    ) -> Option<Self> {
+        let region = &evaluation.regions[piece.region];
+        let is_idle = evaluation.remembered.is_some() && region.memory.is_none();
+        (!is_idle).then_some(Self {
+            evaluation,
+            part,
+            piece,
+        })
+    }
 
-    fn visit<L: HyperelasticLaw>(self, law: L) -> Self::Output {
+    /// Does them for the law of the region, and returns their findings.
+    pub(super) fn run<L: HyperelasticLaw>(self, law: L) -> Result<Deformed, EvaluationError> {
         let Evaluation {
             regions,
             numbers,
@@ -177,7 +173,7 @@ impl<T: Vectors, L: HyperelasticLaw> Sweep<'_, T, L> {
             let own = first - chunk.slots.start;
             let gradient = rest.gradient_of::<N>(first, places.displacement);
             let at = self.law.at(gradient);
-            require_law::<L, N>(&at.deformation, |lane| rest.tag(first + lane))?;
+            require_law(&self.law, &at.deformation, |lane| rest.tag(first + lane))?;
             let volume = rest.volumes::<N>(first);
             let dilation = volume * self.law.dilation(&at);
             dilation.store(&mut dilations[own..]);
@@ -238,7 +234,7 @@ impl<T: Vectors, L: HyperelasticLaw> Sweep<'_, T, L> {
                 let tets = region.edges.of(region.edge_at(first + lane));
                 tets.first().map_or(0, |tet| rest.tag(*tet as usize))
             };
-            require_law::<L, N>(&at.deformation, tag)?;
+            require_law(&self.law, &at.deformation, tag)?;
             let mut stress = self.law.stress(&at);
             if let Some(stiffness) = stiffness {
                 stress = stress.scaled(stiffness.at_edges(first));
@@ -355,7 +351,7 @@ impl<T: Vectors, L: HyperelasticLaw> Sweep<'_, T, L> {
                 rest.gradient_of::<N>(first, places.displacement)
             };
             let at = self.law.at(gradient);
-            require_law::<L, N>(&at.deformation, |lane| rest.tag(first + lane))?;
+            require_law(&self.law, &at.deformation, |lane| rest.tag(first + lane))?;
             let dilation = if is_smoothed {
                 N::load(&dilations[own..])
             } else {

@@ -4,55 +4,27 @@ use sinew_core::{AssemblyError, BlockMatrix, ElementStiffness, EvaluationError};
 
 use super::beside::TangentBeside;
 use super::means::{at_edges, means, require, take_dilation};
-use super::memory::{Past, Relaxing};
+use super::memory::Relaxing;
 use super::product::{EdgeTangent, OwnTangent, left_of_smoothed, left_of_tets};
 use super::region::HyperelasticRegion;
 use super::scratch::Scratch;
-use super::wanted::Wanted;
+use super::wanted::{OnLaw, Wanted};
 use crate::cells::Cells;
 use crate::elements::moving_part;
-use crate::hyperelastic::{Deformation, HyperelasticLaw, LawVisitor, Tensor};
+use crate::hyperelastic::{Deformation, HyperelasticLaw, Tensor};
 use crate::smoothing::Average;
 
-/// Adds so many times the tangent, or the viscosity, of a region.
-///
-/// # Errors
-/// [`EvaluationError`] when the law is outside its domain, or the matrix has no block for a coupling.
-pub(super) fn add(
-    region: &HyperelasticRegion,
-    scratch: &mut Scratch,
-    past: Past<'_>,
-    wanted: Wanted,
-    (cells, factor, out): (&Cells, f64, &mut BlockMatrix),
-) -> Result<(), EvaluationError> {
-    let mut sum = Sum {
-        cells,
-        factor,
-        out,
-        average: Average::default(),
-        whole: Vec::new(),
-        moving: ElementStiffness::default(),
-    };
-    let tangents = Tangents {
-        region,
-        scratch,
-        relaxing: wanted.relaxing(region, past),
-        wanted,
-        sum: &mut sum,
-    };
-    wanted.with_law(region, tangents)
-}
-
-struct Tangents<'a, 'o> {
-    region: &'a HyperelasticRegion,
-    scratch: &'a mut Scratch,
-    relaxing: Relaxing<'a>,
-    wanted: Wanted,
-    sum: &'a mut Sum<'o>,
+/// The tangent, or the viscosity, of a region, which is added to a matrix.
+pub(crate) struct Tangents<'a, 'o> {
+    pub(super) region: &'a HyperelasticRegion,
+    pub(super) scratch: &'a mut Scratch,
+    pub(super) relaxing: Relaxing<'a>,
+    pub(super) wanted: Wanted,
+    pub(super) sum: &'a mut Sum<'o>,
 }
 
 /// The matrix, and room for one part of it.
-struct Sum<'o> {
+pub(crate) struct Sum<'o> {
     cells: &'o Cells,
     /// By which it is multiplied.
     factor: f64,
@@ -63,10 +35,10 @@ struct Sum<'o> {
     moving: ElementStiffness,
 }
 
-impl LawVisitor for Tangents<'_, '_> {
+impl OnLaw for Tangents<'_, '_> {
     type Output = Result<(), EvaluationError>;
 
-    fn visit<L: HyperelasticLaw>(self, law: L) -> Self::Output {
+    fn run<L: HyperelasticLaw>(self, law: L) -> Self::Output {
         let Self {
             region,
             scratch,
@@ -82,7 +54,7 @@ impl LawVisitor for Tangents<'_, '_> {
         if !region.is_smoothed() {
             for tet in rest.tets() {
                 let at = law.at(rest.gradient_of::<f64>(tet, &scratch.displacement));
-                require::<L, f64>(region, &relaxing, &at.deformation, tet)?;
+                require(&law, region, &relaxing, &at.deformation, tet)?;
                 let left = left_of_tets(region, &relaxing, &law, &at, tet);
                 let own = OwnTangent::of(&law, &at, left, kind);
                 let beside = beside_of(tet, &at.deformation);
@@ -119,7 +91,19 @@ impl LawVisitor for Tangents<'_, '_> {
     }
 }
 
-impl Sum<'_> {
+impl<'o> Sum<'o> {
+    /// The matrix `out`, to which `factor` times a tangent is added.
+    pub(super) fn new(cells: &'o Cells, factor: f64, out: &'o mut BlockMatrix) -> Self {
+        Self {
+            cells,
+            factor,
+            out,
+            average: Average::default(),
+            whole: Vec::new(),
+            moving: ElementStiffness::default(),
+        }
+    }
+
     /// Adds `V g_aJ H_iJkL g_bL` between the nodes of the average, for a share of its volume V.
     fn add(
         &mut self,

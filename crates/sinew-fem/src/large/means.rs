@@ -28,7 +28,7 @@ pub(super) fn means<N: Number<Real = f64>, L: HyperelasticLaw>(
         let gradient = rest.gradient_of::<N>(first, &scratch.displacement);
         store(gradient, &mut scratch.gradients[side_by_side.clone()]);
         let at = law.at(gradient);
-        require::<L, N>(region, relaxing, &at.deformation, first)?;
+        require(law, region, relaxing, &at.deformation, first)?;
         let [dilations, changes] = &mut scratch.dilations_of_tets;
         let volume = rest.volumes::<N>(first);
         (volume * law.dilation(&at)).store(&mut dilations[first..]);
@@ -70,7 +70,7 @@ pub(super) fn at_edges<N: Number<Real = f64>, L: HyperelasticLaw>(
         let tets = region.edges.of(region.edge_at(first + lane));
         tets.first().map_or(0, |tet| region.rest.tag(*tet as usize))
     };
-    require_law::<L, N>(&at.deformation, tag)?;
+    require_law(law, &at.deformation, tag)?;
     require_memory(relaxing, &at.deformation, tag)?;
     Ok(at)
 }
@@ -121,13 +121,14 @@ pub(super) fn take_dilation<L: HyperelasticLaw>(
 /// Refuses tetrahedra side by side that the law, the fibres or the memory are not defined for.
 #[inline(always)]
 pub(super) fn require<L: HyperelasticLaw, N: Number>(
+    law: &L,
     region: &HyperelasticRegion,
     relaxing: &Relaxing<'_>,
     deformation: &Deformation<N>,
     first: usize,
 ) -> Result<(), EvaluationError> {
     let tag = |lane: usize| region.rest.tag(first + lane);
-    require_law::<L, N>(deformation, tag)?;
+    require_law(law, deformation, tag)?;
     require_memory(relaxing, deformation, tag)?;
     match &region.fibres {
         Some(own) => require_fibres(own, deformation, tag),

@@ -2,6 +2,7 @@
 
 mod beside;
 mod chunks;
+mod compiled;
 mod defined;
 mod error;
 mod fibres;
@@ -26,6 +27,7 @@ mod threads;
 mod wanted;
 mod when;
 
+pub(crate) use compiled::{Compiled, Own, Precision};
 pub(crate) use memory::Past;
 pub(crate) use region::{HyperelasticRegion, RegionLaw};
 pub(crate) use scratch::{Scratch, fill};
@@ -43,9 +45,13 @@ use crate::smoothing::Smoothing;
 use chunks::chunks;
 use force::Evaluation;
 use gather::Gather;
-use memory::Remembered;
+use matrix::{Sum, Tangents};
+use memory::{Relaxing, Remembered};
+use node_blocks::Blocks;
+use product::Products;
 use region::{FirstPlaces, Numbers};
 use regions::{Regions, evaluate_alone};
+use stress::Cauchy;
 
 /// Marks a tetrahedron that is in no hyperelastic region.
 const NO_PLACE: u32 = u32::MAX;
@@ -74,12 +80,12 @@ impl LargeDeformation {
     pub(crate) fn new<'a>(
         mesh: &TetMesh,
         smoothing: &Smoothing,
-        regions: impl Iterator<Item = (RegionLaw<'a>, &'a [u32])>,
+        regions: impl Iterator<Item = (Arc<dyn Compiled>, RegionLaw<'a>, &'a [u32])>,
     ) -> Option<Self> {
-        let (mut made, mut count) = (Vec::new(), 0);
+        let (mut made, mut laws, mut count) = (Vec::new(), Vec::new(), 0);
         let mut kept = FirstPlaces::default();
         let mut place_of_tet = vec![NO_PLACE; mesh.tets.len()];
-        for (law, members) in regions {
+        for (law, stated, members) in regions {
             let (slots, chunks) = chunks(members, |tet| smoothing.patch_of(tet as usize));
             for (place, slot) in (count as u32..).zip(&slots) {
                 if !slot.is_padding {
@@ -87,7 +93,8 @@ impl LargeDeformation {
                 }
             }
             let places = (count, kept);
-            let region = HyperelasticRegion::new(mesh, smoothing, law, (&slots, chunks), places);
+            let region = HyperelasticRegion::new(mesh, smoothing, stated, (&slots, chunks), places);
+            laws.push(law);
             kept = region.next_places();
             made.push(region);
             count += slots.len();
@@ -103,7 +110,7 @@ impl LargeDeformation {
         let gather = Gather::new(mesh.points.len(), nodes.iter().copied());
         Some(Self {
             numbers: made.iter().map(HyperelasticRegion::numbers).collect(),
-            all: Arc::new(Regions::new(made, gather)),
+            all: Arc::new(Regions::new((made, laws), gather)),
             nodes: mesh.points.len(),
             slots: count,
             variables: kept.variables,
@@ -145,7 +152,7 @@ impl LargeDeformation {
             set: self.set,
             with_energy,
         };
-        evaluate_alone(self.all.alone(), &evaluation)
+        evaluate_alone(self.all.alone(), &self.all.laws, &evaluation)
     }
 
     /// Number of internal variables.
@@ -172,7 +179,7 @@ impl LargeDeformation {
             set: self.set,
             with_energy: false,
         };
-        evaluate_alone(self.all.alone(), &evaluation).map(drop)
+        evaluate_alone(self.all.alone(), &self.all.laws, &evaluation).map(drop)
     }
 
     /// Its forces in double precision, by instructions of choice, in so many parts that threads compute at the same time.
@@ -205,8 +212,14 @@ impl LargeDeformation {
         wanted: Wanted,
     ) -> Result<(), EvaluationError> {
         scratch.corners.resize(4 * self.slots, [0.0; 4]);
-        for region in &self.all.regions {
-            product::product(region, scratch, past, wanted, self.set)?;
+        for (region, law) in self.with_laws() {
+            law.products(Products {
+                region,
+                scratch,
+                relaxing: wanted.relaxing(region, past),
+                wanted,
+                set: self.set,
+            })?;
         }
         self.all
             .gather
@@ -229,9 +242,15 @@ impl LargeDeformation {
         wanted: Wanted,
         (cells, factor, out): (&Cells, f64, &mut BlockMatrix),
     ) -> Result<(), EvaluationError> {
-        let mut regions = self.all.regions.iter();
-        regions.try_for_each(|region| {
-            matrix::add(region, scratch, past, wanted, (cells, factor, &mut *out))
+        let mut sum = Sum::new(cells, factor, out);
+        self.with_laws().try_for_each(|(region, law)| {
+            law.tangents(Tangents {
+                region,
+                scratch,
+                relaxing: wanted.relaxing(region, past),
+                wanted,
+                sum: &mut sum,
+            })
         })
     }
 
@@ -243,8 +262,16 @@ impl LargeDeformation {
         wanted: Wanted,
         mut add: impl FnMut(u32, [[f64; 3]; 3]),
     ) -> Result<(), EvaluationError> {
-        let (how, mut regions) = ((wanted, self.set), self.all.regions.iter());
-        regions.try_for_each(|region| node_blocks::add(region, scratch, past, how, &mut add))
+        self.with_laws().try_for_each(|(region, law)| {
+            law.blocks(Blocks {
+                region,
+                scratch,
+                relaxing: wanted.relaxing(region, past),
+                wanted,
+                set: self.set,
+                add: &mut add,
+            })
+        })
     }
 
     /// The Cauchy stress (Pa) of a tetrahedron of the mesh, in the order of [`crate::stress`], with the displacement (m) of each node; `None`
@@ -257,14 +284,22 @@ impl LargeDeformation {
     ) -> Option<[f64; 6]> {
         let place = *self.place_of_tet.get(tet)?;
         let place = (place != NO_PLACE).then_some(place as usize)?;
-        let region = self
-            .all
-            .regions
-            .iter()
+        let (region, law) = self
+            .with_laws()
             .rev()
-            .find(|region| region.first <= place)?;
-        let tet = place - region.first;
-        Some(stress::cauchy(region, tet, past, displacement))
+            .find(|(region, _)| region.first <= place)?;
+        Some(law.cauchy(Cauchy {
+            region,
+            tet: place - region.first,
+            relaxing: Relaxing::of(region.memory.as_ref(), past),
+            displacement: &displacement,
+        }))
+    }
+
+    /// The regions with their laws.
+    fn with_laws(&self) -> impl DoubleEndedIterator<Item = (&HyperelasticRegion, &dyn Compiled)> {
+        let laws = self.all.laws.iter().map(|law| &**law);
+        self.all.regions.iter().zip(laws)
     }
 }
 
@@ -272,9 +307,9 @@ impl LargeDeformation {
 mod tests {
     use super::schedule::Schedule;
     use super::*;
+    use crate::hyperelastic::Hyperelastic;
     use crate::hyperelastic::fibres::{Fibres, Stiffening};
     use crate::hyperelastic::prony::Term;
-    use crate::hyperelastic::{Hyperelastic, Parameters};
     use crate::shares::Shares;
     use crate::{
         Element, FibreFamily, FromMesh, Law, Memory, Moduli, Problem, Region, Tissue, ViscousPart,
@@ -334,8 +369,8 @@ mod tests {
         tissue: &Tissue,
         is_uneven: bool,
     ) -> LargeDeformation {
-        let mut parameters = Parameters::new(3500.0, 0.45);
-        parameters.c1_over_c2 = (id == "mooney-rivlin").then_some(4.0);
+        let parameters = Hyperelastic::parameters(id, 3500.0, 0.45).unwrap();
+        let law = Hyperelastic::new(id, &parameters).unwrap();
         let problem = Problem {
             regions: vec![Region {
                 group: None,
@@ -347,8 +382,7 @@ mod tests {
             }],
             ..Problem::default()
         };
-        let smoothing = Smoothing::new(mesh, &problem, &vec![0; mesh.tets.len()]);
-        let law = Hyperelastic::new(id, &parameters).unwrap();
+        let smoothing = Smoothing::new(mesh, &problem.elements(), &vec![0; mesh.tets.len()]);
         let tets: Vec<u32> = (0..mesh.tets.len() as u32).collect();
         let uneven = || (0..mesh.tets.len()).map(|tet| (tet as f64 * 1.7).sin());
         let shares: Vec<f64> = uneven().map(|x| 0.6 + 0.4 * x).collect();
@@ -358,13 +392,13 @@ mod tests {
         };
         let directions: Vec<[f64; 3]> = uneven().map(|x| [x.cos(), 0.0, x.sin()]).collect();
         let region = RegionLaw {
-            law,
+            mu: law.lame().1,
             edge_share: element.edge_share(),
             tissue,
             shares: &shares,
             directions: is_uneven.then_some(&directions),
         };
-        let regions = std::iter::once((region, tets.as_slice()));
+        let regions = std::iter::once((law.compiled(), region, tets.as_slice()));
         LargeDeformation::new(mesh, &smoothing, regions).unwrap()
     }
 
@@ -503,7 +537,7 @@ mod tests {
             for part in order {
                 for piece in &pass[part] {
                     // SAFETY: the parts of all passes, one after the other.
-                    unsafe { evaluation.make(part, piece) }.unwrap();
+                    unsafe { regions::make(&large.all.laws, &evaluation, part, piece) }.unwrap();
                 }
             }
         }

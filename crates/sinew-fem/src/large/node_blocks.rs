@@ -7,46 +7,28 @@ use super::beside::{block_beside, carried_block};
 use super::chunks::LANES;
 use super::kept::{load, store};
 use super::means::{at_edges, means, require, take_dilation};
-use super::memory::{Past, Points, Relaxing};
+use super::memory::{Points, Relaxing};
 use super::product::{left_of_smoothed, left_of_tets};
 use super::region::HyperelasticRegion;
 use super::scratch::Scratch;
-use super::wanted::Wanted;
-use crate::hyperelastic::{Bulk, HyperelasticLaw, LawVisitor, Point, Tensor};
+use super::wanted::{OnLaw, Wanted};
+use crate::hyperelastic::{Bulk, HyperelasticLaw, Point, Tensor};
 use crate::smoothing::Average;
 
-/// Calls `add` with each node and parts of its block (N/m), which are computed by these instructions.
-pub(super) fn add(
-    region: &HyperelasticRegion,
-    scratch: &mut Scratch,
-    past: Past<'_>,
-    (wanted, set): (Wanted, InstructionSet),
-    add: &mut dyn FnMut(u32, [[f64; 3]; 3]),
-) -> Result<(), EvaluationError> {
-    let blocks = Blocks {
-        region,
-        scratch,
-        relaxing: wanted.relaxing(region, past),
-        wanted,
-        set,
-        add,
-    };
-    wanted.with_law(region, blocks)
+/// Own blocks of nodes, computed by these instructions: calls `add` with each node and parts of its block (N/m).
+pub(crate) struct Blocks<'a> {
+    pub(super) region: &'a HyperelasticRegion,
+    pub(super) scratch: &'a mut Scratch,
+    pub(super) relaxing: Relaxing<'a>,
+    pub(super) wanted: Wanted,
+    pub(super) set: InstructionSet,
+    pub(super) add: &'a mut dyn FnMut(u32, [[f64; 3]; 3]),
 }
 
-struct Blocks<'a> {
-    region: &'a HyperelasticRegion,
-    scratch: &'a mut Scratch,
-    relaxing: Relaxing<'a>,
-    wanted: Wanted,
-    set: InstructionSet,
-    add: &'a mut dyn FnMut(u32, [[f64; 3]; 3]),
-}
-
-impl LawVisitor for Blocks<'_> {
+impl OnLaw for Blocks<'_> {
     type Output = Result<(), EvaluationError>;
 
-    fn visit<L: HyperelasticLaw>(mut self, law: L) -> Self::Output {
+    fn run<L: HyperelasticLaw>(mut self, law: L) -> Self::Output {
         let (set, blocks) = (self.set, &mut self);
         if blocks.wanted.has_beside(blocks.region) {
             Sweep::<L, true> { blocks, law }.run::<f64>()?;
@@ -107,7 +89,7 @@ impl<L: HyperelasticLaw, const ALL: bool> WithReal<f64> for Sweep<'_, '_, L, ALL
                 let dilation = N::from_lanes(|lane| scratch.dilations[patch(lane)][0]);
                 left_of_smoothed(region, relaxing, law, &at, (first, dilation))
             } else {
-                require::<L, N>(region, relaxing, &at.deformation, first)?;
+                require(law, region, relaxing, &at.deformation, first)?;
                 left_of_tets(region, relaxing, law, &at, first)
             };
             let gradients = rest.all_gradients::<N>(first);

@@ -7,36 +7,19 @@ use super::beside::TangentBeside;
 use super::chunks::LANES;
 use super::kept::{load, store};
 use super::means::{add, at_edges, mean_at_edges, means, require};
-use super::memory::{Past, Points, Relaxing};
+use super::memory::{Points, Relaxing};
 use super::region::HyperelasticRegion;
 use super::scratch::Scratch;
-use super::wanted::Wanted;
-use crate::hyperelastic::{Bulk, HyperelasticLaw, LawVisitor, Linearised, Point, Tensor};
+use super::wanted::{OnLaw, Wanted};
+use crate::hyperelastic::{Bulk, HyperelasticLaw, Linearised, Point, Tensor};
 
-/// Writes the change of the forces at the corners of a region's tetrahedra, by these instructions.
-pub(super) fn product(
-    region: &HyperelasticRegion,
-    scratch: &mut Scratch,
-    past: Past<'_>,
-    wanted: Wanted,
-    set: InstructionSet,
-) -> Result<(), EvaluationError> {
-    let products = Products {
-        region,
-        scratch,
-        relaxing: wanted.relaxing(region, past),
-        wanted,
-        set,
-    };
-    wanted.with_law(region, products)
-}
-
-struct Products<'a> {
-    region: &'a HyperelasticRegion,
-    scratch: &'a mut Scratch,
-    relaxing: Relaxing<'a>,
-    wanted: Wanted,
-    set: InstructionSet,
+/// The change of the forces at the corners of a region's tetrahedra, computed by these instructions.
+pub(crate) struct Products<'a> {
+    pub(super) region: &'a HyperelasticRegion,
+    pub(super) scratch: &'a mut Scratch,
+    pub(super) relaxing: Relaxing<'a>,
+    pub(super) wanted: Wanted,
+    pub(super) set: InstructionSet,
 }
 
 impl Products<'_> {
@@ -45,10 +28,10 @@ impl Products<'_> {
     }
 }
 
-impl LawVisitor for Products<'_> {
+impl OnLaw for Products<'_> {
     type Output = Result<(), EvaluationError>;
 
-    fn visit<L: HyperelasticLaw>(self, law: L) -> Self::Output {
+    fn run<L: HyperelasticLaw>(self, law: L) -> Self::Output {
         let kind = self.wanted.kind();
         let set = self.set;
         let projects = Linearised::<f64, L>::projects(&law, kind);
@@ -155,7 +138,7 @@ impl<'a, L: HyperelasticLaw, const ALL: bool> Sweep<'a, L, ALL> {
                 });
                 left_of_smoothed(region, &relaxing, &law, &at, (first, dilation))
             } else {
-                require::<L, N>(region, &relaxing, &at.deformation, first)?;
+                require(&law, region, &relaxing, &at.deformation, first)?;
                 left_of_tets(region, &relaxing, &law, &at, first)
             };
             let own = OwnTangent::among::<ALL>(&law, &at, left, kind);

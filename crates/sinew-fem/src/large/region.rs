@@ -10,15 +10,16 @@ use super::fibres::{Directions, RegionFibres};
 use super::memory::RegionMemory;
 use super::rest::Rest;
 use super::stiffness::Stiffness;
-use crate::hyperelastic::{Hyperelastic, Tensor};
+use crate::hyperelastic::Tensor;
 use crate::shares::Shares;
 use crate::smoothing::{Average, Sets, Smoothing};
 use crate::tissue::Tissue;
 
-/// What a region of hyperelastic tetrahedra is made of.
+/// A region of hyperelastic tetrahedra as its material states it, beside the law.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RegionLaw<'a> {
-    pub(crate) law: Hyperelastic,
+    /// Lame's second constant (Pa) of the stiffest tetrahedron.
+    pub(crate) mu: f64,
     /// Share of the local energy that is averaged over edges.
     pub(crate) edge_share: f64,
     pub(crate) tissue: &'a Tissue,
@@ -31,8 +32,6 @@ pub(crate) struct RegionLaw<'a> {
 /// A region of hyperelastic tetrahedra, numbered by itself.
 #[derive(Clone, Debug)]
 pub(crate) struct HyperelasticRegion {
-    /// The law of the stiffest tetrahedron.
-    pub(super) law: Hyperelastic,
     /// What its energies are multiplied by; `None` where all tetrahedra are equally stiff.
     stiffness: Option<Arc<Stiffness>>,
     pub(super) fibres: Option<RegionFibres>,
@@ -68,7 +67,7 @@ impl HyperelasticRegion {
         mesh: &TetMesh,
         smoothing: &Smoothing,
         RegionLaw {
-            law,
+            mu,
             edge_share,
             tissue,
             shares,
@@ -112,14 +111,13 @@ impl HyperelasticRegion {
             Arc::new(Stiffness::new(&of_slots, &rest, [&edges, &patches]))
         });
         Self {
-            law,
             stiffness,
             fibres: tissue.fibres.as_ref().map(|family| {
                 RegionFibres::new(family, tissue.factor_of_fibres(), slots, directions)
             }),
             memory: tissue.memory.as_ref().map(|memory| {
                 let points = [rest.count(), edge_volumes.len()];
-                RegionMemory::new(memory, law.lame().1, kept.variables, points)
+                RegionMemory::new(memory, mu, kept.variables, points)
             }),
             first,
             kept,

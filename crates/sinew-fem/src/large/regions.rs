@@ -1,28 +1,34 @@
 //! All hyperelastic regions of a body, and the order of work of one thread.
 
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use sinew_core::{Deformed, EvaluationError};
-use sinew_sparse::simd::Vectors;
 
-use super::force::Evaluation;
+use super::compiled::{Compiled, Precision};
+use super::force::{Evaluation, Forces};
 use super::gather::Gather;
 use super::region::HyperelasticRegion;
-use super::schedule::Schedule;
+use super::schedule::{Piece, Schedule};
 
 /// All regions, with the sums at their nodes.
 #[derive(Debug)]
 pub(super) struct Regions {
     pub(super) regions: Vec<HyperelasticRegion>,
+    /// The law of each.
+    pub(super) laws: Vec<Arc<dyn Compiled>>,
     pub(super) gather: Gather,
     /// Made for the first evaluation: machines have schedules of their own.
     alone: OnceLock<Schedule>,
 }
 
 impl Regions {
-    pub(super) fn new(regions: Vec<HyperelasticRegion>, gather: Gather) -> Self {
+    pub(super) fn new(
+        (regions, laws): (Vec<HyperelasticRegion>, Vec<Arc<dyn Compiled>>),
+        gather: Gather,
+    ) -> Self {
         Self {
             regions,
+            laws,
             gather,
             alone: OnceLock::new(),
         }
@@ -35,16 +41,35 @@ impl Regions {
     }
 }
 
+/// Does the tasks of a piece of a part with the law of its region, and returns their findings.
+///
+/// # Safety
+/// The parts of a schedule of these regions are done pass by pass; other users of the places wait for the end.
+#[allow(unsafe_code, reason = "a kernel; ARCHITECTURE.md names it")]
+pub(super) unsafe fn make<T: Precision>(
+    laws: &[Arc<dyn Compiled>],
+    evaluation: &Evaluation<'_, T>,
+    part: usize,
+    piece: &Piece,
+) -> Result<Deformed, EvaluationError> {
+    // SAFETY: the caller's promise.
+    match unsafe { Forces::of(evaluation, part, piece) } {
+        Some(forces) => T::forces(&*laws[piece.region], forces),
+        None => Ok(Deformed::default()),
+    }
+}
+
 /// Makes an evaluation, whose places nobody else uses meanwhile, by one thread.
 #[allow(unsafe_code, reason = "a kernel; ARCHITECTURE.md names it")]
-pub(super) fn evaluate_alone<T: Vectors>(
+pub(super) fn evaluate_alone<T: Precision>(
     schedule: &Schedule,
+    laws: &[Arc<dyn Compiled>],
     evaluation: &Evaluation<'_, T>,
 ) -> Result<Deformed, EvaluationError> {
     let mut all = Deformed::default();
     for piece in schedule.passes().iter().flatten().flatten() {
         // SAFETY: the pieces of all passes, one after the other.
-        let found = unsafe { evaluation.make(0, piece) }?;
+        let found = unsafe { make(laws, evaluation, 0, piece) }?;
         all.energy += found.energy;
         all.inverted += found.inverted;
         if found.smallest_volume_ratio < all.smallest_volume_ratio {

@@ -1,38 +1,23 @@
 //! Stresses of deformed tetrahedra.
 
-use super::memory::{Past, Points, Relaxing};
+use super::memory::{Points, Relaxing};
 use super::product::{left_of_smoothed, left_of_tets};
 use super::region::HyperelasticRegion;
 use crate::hyperelastic::prony::first_piola;
-use crate::hyperelastic::{Bulk, HyperelasticLaw, LawVisitor, Point};
+use crate::hyperelastic::{Bulk, HyperelasticLaw, Point};
 
-/// The Cauchy stress (Pa), `P F'/J`, of a tetrahedron, with the displacement (m) of each mesh node; not a number where the law has no
-/// meaning.
-pub(super) fn cauchy(
-    region: &HyperelasticRegion,
-    tet: usize,
-    past: Past<'_>,
-    displacement: impl Fn(u32) -> [f64; 3],
-) -> [f64; 6] {
-    region.law.with_law(Cauchy {
-        region,
-        tet,
-        relaxing: Relaxing::of(region.memory.as_ref(), past),
-        displacement,
-    })
+/// The Cauchy stress (Pa), `P F'/J`, of a tetrahedron, with the displacement (m) of each mesh node; NaN if the law,
+/// fibres or memory are undefined there.
+pub(crate) struct Cauchy<'a> {
+    pub(super) region: &'a HyperelasticRegion,
+    pub(super) tet: usize,
+    pub(super) relaxing: Relaxing<'a>,
+    pub(super) displacement: &'a dyn Fn(u32) -> [f64; 3],
 }
 
-struct Cauchy<'a, U> {
-    region: &'a HyperelasticRegion,
-    tet: usize,
-    relaxing: Relaxing<'a>,
-    displacement: U,
-}
-
-impl<U: Fn(u32) -> [f64; 3]> LawVisitor for Cauchy<'_, U> {
-    type Output = [f64; 6];
-
-    fn visit<L: HyperelasticLaw>(self, law: L) -> [f64; 6] {
+impl Cauchy<'_> {
+    /// Computes it for the law of the region.
+    pub(super) fn run<L: HyperelasticLaw>(self, law: L) -> [f64; 6] {
         let Self {
             region,
             tet,
@@ -40,7 +25,7 @@ impl<U: Fn(u32) -> [f64; 3]> LawVisitor for Cauchy<'_, U> {
             displacement,
         } = self;
         let rest = &region.rest;
-        let gradient = |tet: usize| rest.gradient_by(tet, &displacement);
+        let gradient = |tet: usize| rest.gradient_by(tet, displacement);
         let at = law.at(gradient(tet));
         let is_possible = |at: &Point<f64, L::Own<f64>>| {
             law.admits(&at.deformation) && relaxing.admits(&at.deformation)

@@ -5,12 +5,13 @@
 use std::sync::Arc;
 
 use sinew_core::EvaluationError;
-use sinew_sparse::simd::{InstructionSet, Shared, SharedSlice, Vectors};
+use sinew_sparse::simd::{InstructionSet, Shared, SharedSlice};
 
+use super::compiled::Precision;
 use super::force::Evaluation;
 use super::memory::Past;
 use super::region::Numbers;
-use super::regions::{Regions, evaluate_alone};
+use super::regions::{Regions, evaluate_alone, make};
 use super::schedule::Schedule;
 use super::scratch::Kept;
 
@@ -26,7 +27,7 @@ pub(crate) struct SharedForces<T> {
     sums: Shared<[T; 4]>,
 }
 
-impl<T: Vectors> SharedForces<T> {
+impl<T: Precision> SharedForces<T> {
     pub(super) fn new(
         all: Arc<Regions>,
         numbers: Vec<Numbers<T>>,
@@ -83,7 +84,7 @@ impl<T: Vectors> SharedForces<T> {
         let mut pieces = self.schedule.passes()[pass][part].iter();
         pieces.try_for_each(|piece| {
             // SAFETY: the caller's promise.
-            unsafe { evaluation.make(part, piece) }.map(|_| ())
+            unsafe { make(&self.all.laws, &evaluation, part, piece) }.map(|_| ())
         })
     }
 
@@ -92,7 +93,8 @@ impl<T: Vectors> SharedForces<T> {
         let alone = self.all.alone();
         let kept = Kept::new(&self.all.regions, alone.rooms(), 1);
         // Nobody else uses what belongs to `self`.
-        evaluate_alone(alone, &self.evaluation(alone, &kept, displacement)).map(|_| ())
+        let evaluation = self.evaluation(alone, &kept, displacement);
+        evaluate_alone(alone, &self.all.laws, &evaluation).map(|_| ())
     }
 
     /// The sums of the forces (N) at nodes, in the order of [`super::gather::Gather`].

@@ -4,7 +4,7 @@ use sinew_core::TangentKind;
 
 use super::memory::{Past, Relaxing};
 use super::region::HyperelasticRegion;
-use crate::hyperelastic::LawVisitor;
+use crate::hyperelastic::{HyperelasticLaw, Viscous};
 
 /// A tangent, or the viscosity of stiffness damping, which is one of another law.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -57,15 +57,24 @@ impl Wanted {
         }
     }
 
-    /// Does something with the law of which it is a tangent.
-    pub(super) fn with_law<V: LawVisitor>(
-        self,
-        region: &HyperelasticRegion,
-        visitor: V,
-    ) -> V::Output {
-        match self.is_viscosity() {
-            true => region.law.with_viscosity(visitor),
-            false => region.law.with_law(visitor),
+    /// Runs loops over a tangent of `law`, or of its viscosity.
+    pub(super) fn on<L: HyperelasticLaw, V: OnLaw>(self, law: L, loops: V) -> V::Output {
+        if !self.is_viscosity() {
+            return loops.run(law);
+        }
+        // Laws with the same dilation have the same viscosity, whose loops are compiled once.
+        if L::OWN_DILATION {
+            loops.run(Viscous::new(law, law.lame()))
+        } else {
+            loops.run(Viscous::of_volume(law.lame()))
         }
     }
+}
+
+/// Loops over a region that are written for any law.
+pub(super) trait OnLaw {
+    type Output;
+
+    /// Runs them.
+    fn run<L: HyperelasticLaw>(self, law: L) -> Self::Output;
 }

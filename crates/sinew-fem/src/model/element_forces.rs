@@ -9,13 +9,13 @@ use sinew_core::{
     ElementForces, ElementPrecision, ElementSweep, EvaluationError, LinearOperators, LoadTime,
     SweepShape,
 };
-use sinew_sparse::simd::{Real, Shared, Vectors};
+use sinew_sparse::simd::{Real, Shared};
 use sinew_sparse::sweep::{Fields, Numbering};
 
 use super::Model;
 use super::field_error::require_inputs;
 use crate::following::FollowingPressure;
-use crate::large::SharedForces;
+use crate::large::{Precision, SharedForces};
 use crate::motion::{Field, Motions};
 
 /// Marks what is not there.
@@ -143,7 +143,7 @@ impl Following {
     }
 }
 
-impl<T: Vectors> Sweep<T> {
+impl<T: Precision> Sweep<T> {
     fn new(model: &Model, forces: Option<SharedForces<T>>, shape: SweepShape<'_>) -> Self {
         let numbering: &Numbering = shape.numbering;
         let cells = &model.body.cells;
@@ -199,7 +199,7 @@ impl<T: Vectors> Sweep<T> {
     }
 }
 
-impl<T: Vectors + ElementPrecision> ElementSweep<T> for Sweep<T> {
+impl<T: Precision + ElementPrecision> ElementSweep<T> for Sweep<T> {
     fn passes(&self) -> usize {
         self.forces.as_ref().map_or(0, SharedForces::passes)
     }

@@ -133,7 +133,8 @@ impl Model {
     pub fn with_problem(&self, problem: &Problem) -> Result<Self, FemError> {
         check::numbers(problem)?;
         let (mesh, body) = (&self.mesh, Arc::clone(&self.body));
-        match body.cells.first_held_otherwise(mesh, problem)? {
+        let held = (&problem.fixed[..], &problem.moves[..]);
+        match body.cells.first_held_otherwise(mesh, held)? {
             None => {
                 let region_of = regions(mesh, problem)?;
                 let kept = || Arc::clone(mesh);

@@ -1,7 +1,7 @@
 //! The tetrahedra at each edge.
 
 use super::sets::Sets;
-use crate::springs::EDGES;
+use crate::tetra::EDGES;
 
 /// The edges of regions that average over them.
 #[derive(Clone, Debug, Default)]

@@ -14,7 +14,7 @@ pub(crate) use strain::{MeanStrains, SmoothedStrain, scaled};
 
 use sinew_mesh::TetMesh;
 
-use crate::{Element, Problem};
+use crate::Element;
 use patches::{NO_PATCH, patches};
 
 /// The edges and patches of a body; empty where all regions are made of plain tetrahedra. None crosses a region.
@@ -28,18 +28,13 @@ pub(crate) struct Smoothing {
 }
 
 impl Smoothing {
-    /// The sets of a body whose tetrahedra are in the regions `region_of`.
-    pub(crate) fn new(mesh: &TetMesh, problem: &Problem, region_of: &[u32]) -> Self {
-        let elements: Vec<Element> = problem
-            .regions
-            .iter()
-            .map(|region| region.element)
-            .collect();
+    /// The sets of a body whose tetrahedra are in the regions `region_of`, of these elements.
+    pub(crate) fn new(mesh: &TetMesh, elements: &[Element], region_of: &[u32]) -> Self {
         if !elements.iter().any(|element| element.has_patches()) {
             return Self::default();
         }
         let by_edges = |region: u32| elements[region as usize].edge_share() > 0.0;
-        let (patch_of_tet, count) = patches(&mesh.tets, region_of, &elements);
+        let (patch_of_tet, count) = patches(&mesh.tets, region_of, elements);
         let members = (0..).zip(&patch_of_tet);
         let members = members.filter(|(_, patch)| **patch != NO_PATCH);
         Self {

@@ -74,7 +74,7 @@ fn models(mesh: &TetMesh) -> Vec<(String, Model)> {
     problems.push(("moved".into(), moved));
     let mut uneven = problem(law("neo-hookean"), EDGES);
     let region = &mut uneven.regions[0];
-    *region.law.youngs_modulus_mut() = 1.0;
+    region.law.set_youngs_modulus(1.0);
     region.tissue.fibres = Some(FibreFamily {
         fibres: Fibres::new(Stiffening::Quadratic { eta: 2000.0 }).unwrap(),
         direction: [0.0; 3],

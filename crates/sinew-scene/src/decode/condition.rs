@@ -9,7 +9,12 @@ pub(crate) struct Condition {
     pub(crate) reason: &'static str,
     /// Remedy, if there is one.
     pub(crate) help: Option<&'static str>,
+    /// Another key and the words of it with which a required key must be given, if it may be left out with others.
+    pub(crate) required: Option<(&'static str, AllWords)>,
 }
+
+/// Words that are known at run time.
+pub(crate) type AllWords = fn() -> &'static [&'static str];
 
 /// Requirement for the other keys of a table.
 #[derive(Debug, Clone, Copy)]
@@ -20,8 +25,21 @@ pub(crate) enum Goes {
     Without(&'static str),
     /// This key is one of these words.
     If(&'static str, &'static [&'static str]),
+    /// This key is one of these words, which are known at run time.
+    Among(&'static str, AllWords),
     /// Nothing can: the key is known here only to be refused with a reason.
     Never,
+}
+
+impl Goes {
+    /// The other key and the words that it may be; `None` for a condition of another kind.
+    pub(crate) fn words(self) -> Option<(&'static str, &'static [&'static str])> {
+        match self {
+            Self::If(other, words) => Some((other, words)),
+            Self::Among(other, words) => Some((other, words())),
+            Self::With(_) | Self::Without(_) | Self::Never => None,
+        }
+    }
 }
 
 impl Condition {
@@ -30,6 +48,7 @@ impl Condition {
             goes,
             reason,
             help: None,
+            required: None,
         }
     }
 
@@ -50,6 +69,19 @@ impl Condition {
         reason: &'static str,
     ) -> Self {
         Self::new(Goes::If(other, words), reason)
+    }
+
+    /// The other key must be one of the words that are known then.
+    pub(crate) const fn among(other: &'static str, words: AllWords, reason: &'static str) -> Self {
+        Self::new(Goes::Among(other, words), reason)
+    }
+
+    /// The words of the other key with which a required key must be given.
+    pub(crate) const fn required_with(self, other: &'static str, words: AllWords) -> Self {
+        Self {
+            required: Some((other, words)),
+            ..self
+        }
     }
 
     /// The key is refused.

@@ -19,6 +19,31 @@ pub(crate) struct TableDescription {
     pub(crate) examples: &'static [&'static str],
 }
 
+impl TableDescription {
+    /// The keys, with those that stand in the place of another ([`Described::parts`]).
+    pub(crate) fn all_keys(&self) -> Vec<&'static dyn Described> {
+        let keys = self.keys.iter();
+        let keys = keys.flat_map(|key| key.parts().map_or_else(|| vec![*key], |parts| parts.keys));
+        keys.collect()
+    }
+
+    /// The examples, with those of keys that stand in the place of another.
+    pub(crate) fn all_examples(&self) -> Vec<&'static str> {
+        let parts = self.keys.iter().filter_map(|key| key.parts());
+        let more = parts.flat_map(|parts| parts.examples);
+        self.examples.iter().copied().chain(more).collect()
+    }
+}
+
+/// Keys that are known at run time only, in the place of one key.
+#[derive(Debug)]
+pub(crate) struct Parts {
+    /// The keys.
+    pub(crate) keys: Vec<&'static dyn Described>,
+    /// Examples of the whole table that give them.
+    pub(crate) examples: Vec<&'static str>,
+}
+
 /// The number of keys that must be given in a table.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Needs {
@@ -40,6 +65,11 @@ pub(crate) trait Described: Sync {
 
     /// All that there is to say about it.
     fn describe(&self) -> KeyDescription;
+
+    /// The keys in whose place it stands; `None` for a key of its own.
+    fn parts(&self) -> Option<Parts> {
+        None
+    }
 }
 
 impl std::fmt::Debug for dyn Described {
@@ -54,7 +84,7 @@ pub(crate) struct KeyDescription {
     /// Its name.
     pub(crate) name: &'static str,
     /// Its meaning, in sentences.
-    pub(crate) meaning: &'static str,
+    pub(crate) meaning: String,
     /// Its unit; empty where it has none.
     pub(crate) unit: &'static str,
     /// The values that fit, in words.
@@ -72,6 +102,8 @@ pub(crate) struct KeyDescription {
 pub(crate) enum Stated {
     /// It must be given.
     Required,
+    /// It must be given where another key is one of these words.
+    RequiredWith(&'static str, Vec<&'static str>),
     /// This, in words.
     InWords(&'static str),
     /// This value, in TOML.

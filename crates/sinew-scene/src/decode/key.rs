@@ -100,13 +100,21 @@ impl<V: Kind, P> Key<V, P> {
     fn describe_with(&self, otherwise: Stated) -> KeyDescription {
         KeyDescription {
             name: self.name,
-            meaning: self.meaning,
+            meaning: format!("{}{}", self.meaning, self.values.details()),
             unit: self.unit,
             expected: self.values.expected(),
             shape: self.values.shape(),
-            otherwise,
+            otherwise: self.conditions.iter().fold(otherwise, narrowed),
             conditions: self.conditions,
         }
+    }
+}
+
+/// The rule for a key that is left out, narrowed by one of its conditions.
+fn narrowed(otherwise: Stated, condition: &Condition) -> Stated {
+    match (otherwise, condition.required) {
+        (Stated::Required, Some((key, words))) => Stated::RequiredWith(key, words().to_vec()),
+        (otherwise, _) => otherwise,
     }
 }
 

@@ -10,7 +10,9 @@ pub(crate) mod value;
 mod values;
 
 pub(crate) use condition::{Condition, Goes};
-pub(crate) use description::{Described, KeyDescription, Needs, Shape, Stated, TableDescription};
+pub(crate) use description::{
+    Described, KeyDescription, Needs, Parts, Shape, Stated, TableDescription,
+};
 pub(crate) use key::Key;
 pub(crate) use place::Place;
 pub(crate) use presence::{Optional, Or, Usual};

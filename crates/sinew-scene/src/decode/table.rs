@@ -7,7 +7,7 @@ use toml::Spanned;
 use toml::de::{DeString, DeTable, DeValue};
 
 use super::condition::{Condition, Goes};
-use super::description::{Needs, TableDescription};
+use super::description::{Described, Needs, TableDescription};
 use super::key::Key;
 use super::place::{KeyPlace, Place};
 use super::presence::Presence;
@@ -67,18 +67,24 @@ impl<'a> Table<'a> {
 
     /// The error for a key that means nothing here.
     pub(crate) fn unknown(&self, key: &Spanned<DeString<'_>>) -> SceneError {
-        let known: Vec<&'static str> = self.known().collect();
+        let known = self.description.all_keys();
+        let nearest = nearest(key.get_ref(), known.iter().map(|key| key.name()));
         let fault = Fault::UnknownKey {
             key: key.get_ref().clone().into_owned(),
-            nearest: nearest(key.get_ref(), known.iter().copied()),
-            known,
+            nearest,
+            known: known
+                .into_iter()
+                .filter(|key| self.may_be_given(*key))
+                .map(|key| key.name())
+                .collect(),
         };
         self.place.key_fault(key.get_ref(), fault)
     }
 
     /// The names of the keys that are described.
     fn known(&self) -> impl Iterator<Item = &'static str> + use<> {
-        self.description.keys.iter().map(|key| key.name())
+        let keys = self.description.all_keys();
+        keys.into_iter().map(|key| key.name())
     }
 
     /// The entries whose keys are not described.
@@ -259,7 +265,7 @@ impl<'a> Table<'a> {
 
     /// Returns an error for the first key that is given and does not go with the others.
     pub(crate) fn check_conditions(&self) -> Result<(), SceneError> {
-        for key in self.description.keys {
+        for key in self.description.all_keys() {
             let key_is_given = self.has(key.name());
             let broken = key
                 .conditions()
@@ -276,13 +282,38 @@ impl<'a> Table<'a> {
         match condition.goes {
             Goes::With(other) => self.has(other),
             Goes::Without(other) => !self.has(other),
-            Goes::If(other, words) => {
-                let value = self.entries.get(other);
-                let word = value.and_then(|value| value.get_ref().as_str());
-                word.is_some_and(|word| words.contains(&word))
+            Goes::If(..) | Goes::Among(..) => {
+                condition.goes.words().is_some_and(|(other, words)| {
+                    let word = self.word(other);
+                    word.is_some_and(|word| words.contains(&word))
+                })
             }
             Goes::Never => false,
         }
+    }
+
+    /// The text that a key holds; `None` if it holds none.
+    fn word(&self, key: &str) -> Option<&str> {
+        self.entries.get(key)?.get_ref().as_str()
+    }
+
+    /// False for a key that does not go with a word that another key holds, or that goes with a key of which this is
+    /// false.
+    fn may_be_given(&self, key: &dyn Described) -> bool {
+        let is_possible = |other: &str| {
+            let keys = self.description.all_keys();
+            let other = keys.into_iter().find(|key| key.name() == other);
+            other.is_none_or(|other| self.may_be_given(other))
+        };
+        key.conditions()
+            .iter()
+            .all(|condition| match condition.goes {
+                Goes::With(other) => is_possible(other),
+                Goes::If(other, _) | Goes::Among(other, _) => {
+                    is_possible(other) && (self.word(other).is_none() || self.meets(condition))
+                }
+                Goes::Without(_) | Goes::Never => true,
+            })
     }
 
     fn misplaced(&self, key: &'static str, condition: &Condition) -> SceneError {

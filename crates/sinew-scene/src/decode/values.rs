@@ -14,6 +14,11 @@ pub(crate) trait Kind: Copy + Sync {
 
     /// The values that fit, as data.
     fn shape(&self) -> Shape;
+
+    /// The end of the meaning of a key with such values, if it follows from them.
+    fn details(&self) -> String {
+        String::new()
+    }
 }
 
 /// A kind of values that can be read.

@@ -1,7 +1,6 @@
 //! Sections about the body: mesh, materials, supports, loads, initial state and probes.
 
 use sinew_core::Ramp;
-use sinew_fem::hyperelastic::Parameters;
 use sinew_fem::{
     Course, FromMesh, Law, LoadFacts, LoadKind, LoadSpec, ModelReport, Region, RegionFacts,
 };
@@ -205,21 +204,19 @@ fn between([least, largest]: [String; 2]) -> String {
 
 /// Relaxation of a region, and the moduli before and after.
 fn memory(region: &Region, facts: &RegionFacts) -> Vec<String> {
-    let (Some(memory), Law::Hyperelastic { parameters, .. }) = (&region.tissue.memory, region.law)
-    else {
+    let Some(memory) = &region.tissue.memory else {
         return Vec::new();
     };
     let [least, largest] = facts.youngs_modulus.map(|youngs_modulus| {
-        region.tissue.moduli(&Parameters {
-            youngs_modulus,
-            ..parameters
-        })
+        let mut law = region.law.clone();
+        law.set_youngs_modulus(youngs_modulus);
+        region.tissue.moduli(&law)
     });
     let words = |when: usize| {
-        let modulus = [least[when], largest[when]].map(|moduli| moduli.youngs_modulus);
+        let modulus = [&least[when], &largest[when]].map(Law::youngs_modulus);
         let (modulus, ratio) = (
             between(modulus.map(short)),
-            short(least[when].poissons_ratio),
+            short(least[when].poissons_ratio().unwrap_or(f64::NAN)),
         );
         format!("E = {modulus} Pa, nu = {ratio}")
     };

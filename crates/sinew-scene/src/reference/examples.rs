@@ -6,7 +6,7 @@ use crate::decode::TableDescription;
 
 /// The value of a key as the first example that has it writes it.
 pub(super) fn of(table: &TableDescription, key: &str) -> Option<String> {
-    table.examples.iter().find_map(|text| {
+    table.all_examples().into_iter().find_map(|text| {
         let document: DocumentMut = toml(text).parse().ok()?;
         let value = in_document(document.as_item(), key)?.to_string();
         Some(value.trim().to_owned())

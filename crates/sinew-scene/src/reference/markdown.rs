@@ -47,7 +47,7 @@ pub(super) fn of(document: &'static TableDescription) -> String {
 
 fn push_table(text: &mut String, table: &TableDescription, sections: &[Section]) {
     let _ = write!(text, "{}{}\n\n{COLUMNS}", table.meaning, needs(table));
-    for key in table.keys.iter().filter(|key| !is_refused(**key)) {
+    for key in table.all_keys().into_iter().filter(|key| !is_refused(*key)) {
         let key = key.describe();
         let example = match tables_in(&key.shape)[..] {
             [(inner, _)] if table_of(sections, inner).is_some_and(|s| s.is_of_the_document) => {
@@ -62,7 +62,7 @@ fn push_table(text: &mut String, table: &TableDescription, sections: &[Section])
                 values(&key, sections),
                 key.unit.to_owned(),
                 otherwise(&key, table),
-                key.meaning.to_owned(),
+                key.meaning.clone(),
                 example,
             ],
         );
@@ -115,6 +115,7 @@ fn otherwise(key: &KeyDescription, table: &TableDescription) -> String {
             Needs::OneOf(keys) if keys.contains(&key.name) => "one of several".to_owned(),
             _ => "required".to_owned(),
         },
+        Stated::RequiredWith(other, words) => format!("required with {}", settings(other, words)),
         Stated::InWords(words) => (*words).to_owned(),
         Stated::Default(value) => code(value),
     };
@@ -124,22 +125,31 @@ fn otherwise(key: &KeyDescription, table: &TableDescription) -> String {
         .filter_map(|condition| match condition.goes {
             Goes::With(other) => Some(format!("only with `{other}`")),
             Goes::Without(other) => Some(format!("not with `{other}`")),
-            Goes::If(other, words) => {
-                let words: Vec<String> = words
-                    .iter()
-                    .map(|word| format!("`{other} = \"{word}\"`"))
-                    .collect();
-                Some(format!("only with {}", words.join(" or ")))
+            Goes::If(..) | Goes::Among(..) => {
+                let (other, words) = condition.goes.words()?;
+                Some(format!("only with {}", settings(other, words)))
             }
             Goes::Never => None,
         });
-    let parts: Vec<String> = std::iter::once(stated).chain(goes).collect();
+    let mut parts: Vec<String> = std::iter::once(stated).chain(goes).collect();
+    // Conditions with different reasons may have the same words.
+    parts.dedup();
     parts.join("; ")
 }
 
+/// The settings of a key to some words.
+fn settings(key: &str, words: &[&str]) -> String {
+    let words: Vec<String> = words
+        .iter()
+        .map(|word| format!("`{key} = \"{word}\"`"))
+        .collect();
+    words.join(" or ")
+}
+
 fn push_examples(text: &mut String, table: &TableDescription, key: &str) {
-    let examples = table.examples.iter();
-    let blocks: Vec<String> = match table.examples {
+    let all = table.all_examples();
+    let examples = all.iter();
+    let blocks: Vec<String> = match &all[..] {
         [first, ..] if first.starts_with('{') => {
             let lines: Vec<String> = examples
                 .map(|example| format!("{key} = {example}\n"))

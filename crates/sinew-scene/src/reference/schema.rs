@@ -34,7 +34,8 @@ pub(super) fn of(document: &'static TableDescription) -> Value {
 
 /// The schema of a table.
 fn table(table: &TableDescription) -> Map<String, Value> {
-    let keys = table.keys.iter().filter(|key| !is_refused(**key));
+    let keys = table.all_keys().into_iter();
+    let keys = keys.filter(|key| !is_refused(*key));
     let keys: Vec<KeyDescription> = keys.map(|key| key.describe()).collect();
     let one_of = match table.needs {
         Needs::OneOf(keys) => keys,
@@ -53,13 +54,19 @@ fn table(table: &TableDescription) -> Map<String, Value> {
         .collect();
     let mut rules: Vec<Value> = Vec::new();
     for key in &keys {
-        let conditions: Vec<Value> = key.conditions.iter().filter_map(holds).collect();
+        let conditions = key.conditions.iter().filter_map(holds);
+        let mut conditions: Vec<Value> = conditions.collect();
+        // Conditions with different reasons may have the same words.
+        conditions.dedup();
         let refused = json!({ "properties": { key.name: false } });
         rules.extend(
             conditions
                 .iter()
                 .map(|holds| json!({ "if": holds, "else": refused })),
         );
+        if let Stated::RequiredWith(other, words) = &key.otherwise {
+            rules.push(json!({ "if": is(other, words), "then": { "required": [key.name] } }));
+        }
         if is_required(&key) && !key.conditions.is_empty() {
             rules
                 .push(json!({ "if": { "allOf": conditions }, "then": { "required": [key.name] } }));
@@ -95,13 +102,19 @@ fn holds(condition: &Condition) -> Option<Value> {
     match condition.goes {
         Goes::With(other) => Some(json!({ "required": [other] })),
         Goes::Without(other) => Some(json!({ "not": { "required": [other] } })),
-        Goes::If(other, [word]) => {
-            Some(json!({ "properties": { other: { "const": word } }, "required": [other] }))
-        }
-        Goes::If(other, words) => {
-            Some(json!({ "properties": { other: { "enum": words } }, "required": [other] }))
-        }
+        Goes::If(..) | Goes::Among(..) => condition
+            .goes
+            .words()
+            .map(|(other, words)| is(other, words)),
         Goes::Never => None,
+    }
+}
+
+/// The schema that a table meets whose key is one of these words.
+fn is(key: &str, words: &[&str]) -> Value {
+    match words {
+        [word] => json!({ "properties": { key: { "const": word } }, "required": [key] }),
+        _ => json!({ "properties": { key: { "enum": words } }, "required": [key] }),
     }
 }
 
@@ -222,7 +235,7 @@ fn add_options(schema: &mut Map<String, Value>, run: &TableDescription) {
     if let Value::Object(properties) = properties {
         properties.extend(described);
     }
-    let own: Vec<&str> = run.keys.iter().map(|key| key.name()).collect();
+    let own: Vec<&str> = run.all_keys().iter().map(|key| key.name()).collect();
     let mut rules: Vec<Value> = Vec::new();
     for entry in sinew_integrators::entries() {
         let all = entry.all_options();

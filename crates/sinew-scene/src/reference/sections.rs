@@ -27,7 +27,7 @@ pub(super) fn below(document: &'static TableDescription) -> Vec<Section> {
 }
 
 fn collect(table: &'static TableDescription, name: Option<&str>, sections: &mut Vec<Section>) {
-    for key in table.keys.iter().filter(|key| !is_refused(**key)) {
+    for key in table.all_keys().into_iter().filter(|key| !is_refused(*key)) {
         for (inner, several) in tables_in(&key.describe().shape) {
             let holder = (name.unwrap_or_default().to_owned(), key.name());
             let known = sections

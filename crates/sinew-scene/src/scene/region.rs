@@ -2,12 +2,12 @@
 
 use std::ops::Bound;
 
-use sinew_fem::hyperelastic::Parameters;
+use sinew_fem::hyperelastic::{KnownLaw, LawParameter, ParameterError, Parameters};
 use sinew_fem::{Element, FromMesh, Law, Region, SpringRule, Tissue};
 
 use super::from_mesh::{self, OrData};
 use super::group_name::GroupName;
-use super::model::{MODEL, MOONEY_RIVLIN, MaterialModel, SOLIDS, SPRINGS_MODEL};
+use super::model::{self, LawKeys, MODEL, MaterialModel, SPRINGS_MODEL};
 use super::selected::{Members, NOT_WHERE, OPTIONAL_GROUP, Selections, WHERE_OF_TETRAHEDRA};
 use super::tissue::{self, FIBRES_OF_REGION, MODULI, PRONY, VISCOUS_PART};
 use crate::decode::{
@@ -27,7 +27,7 @@ pub(super) const REGION: TableDescription = TableDescription {
         &YOUNGS_MODULUS,
         &POISSONS_RATIO,
         &SPRINGS_OF_REGION,
-        &C1_OVER_C2,
+        &LawKeys,
         &ELEMENT,
         &EDGE_SHARE,
         &PATCH,
@@ -43,8 +43,6 @@ pub(super) const REGION: TableDescription = TableDescription {
          youngs_modulus = 3500.0\nsprings = { rule = \"lloyd\" }\n",
         "[[region]]\ndensity = 1060.0\nmodel = \"linear\"\nyoungs_modulus = 3500.0\npoissons_ratio = 0.49\n\
          element = \"fbar-edge\"\nedge_share = 0.9\npatch = 12\n",
-        "[[region]]\ndensity = 1060.0\nmodel = \"mooney-rivlin\"\nyoungs_modulus = 3500.0\npoissons_ratio = 0.45\n\
-         c1_over_c2 = 4.0\n",
         "[[region]]\ndensity = 1060.0\nmodel = \"neo-hookean\"\nyoungs_modulus = 3500.0\npoissons_ratio = 0.45\n\
          fibres = { direction = [0.0, 0.0, 1.0], eta = 2000.0 }\n",
         "[[region]]\ndensity = 1060.0\nmodel = \"mooney-rivlin\"\nyoungs_modulus = 3500.0\npoissons_ratio = 0.45\nc1_over_c2 = 4.0\n\
@@ -69,7 +67,12 @@ const YOUNGS_MODULUS: Key<OrData<Number>> = Key::required(
      element averages have the mean of their tetrahedra by volume, so a jump that is known beforehand is sharper between two regions.",
     OrData(Number::above_zero("a finite Young's modulus above 0 Pa")),
 )
-.unit("Pa");
+.unit("Pa")
+.only(&[Condition::among(
+    MODEL.name,
+    model::by_modulus,
+    "does not go with this model, whose stiffness is stated by moduli of its own",
+)]);
 
 const POISSONS_RATIO: Key<Number> = Key::required(
     "poissons_ratio",
@@ -81,12 +84,20 @@ const POISSONS_RATIO: Key<Number> = Key::required(
         Bound::Excluded(0.5),
     ),
 )
-.only(&[Condition::where_is(
-    MODEL.name,
-    SOLIDS,
-    "does not go with springs: their Poisson's ratio is 1/4, whatever their stiffness",
-)
-.help("take the key out, or use model = \"linear\"")]);
+.only(&[
+    Condition::among(
+        MODEL.name,
+        model::solids,
+        "does not go with springs: their Poisson's ratio is 1/4, whatever their stiffness",
+    )
+    .help("take the key out, or use model = \"linear\""),
+    Condition::among(
+        MODEL.name,
+        model::by_ratio,
+        "does not go with this model, which has none among its parameters",
+    )
+    .required_with(MODEL.name, model::always_by_ratio),
+]);
 
 const SPRINGS_OF_REGION: Key<Inner> = Key::required(
     "springs",
@@ -97,17 +108,6 @@ const SPRINGS_OF_REGION: Key<Inner> = Key::required(
     MODEL.name,
     &[SPRINGS_MODEL],
     "goes with model = \"springs\" only",
-)]);
-
-const C1_OVER_C2: Key<Number> = Key::required(
-    "c1_over_c2",
-    "The ratio of Mooney and Rivlin's two shear constants, of which Young's modulus and Poisson's ratio leave it open.",
-    Number::above_zero("a finite ratio above 0"),
-)
-.only(&[Condition::where_is(
-    MODEL.name,
-    &[MOONEY_RIVLIN],
-    "goes with model = \"mooney-rivlin\" only",
 )]);
 
 /// Elements without the numbers that go with them.
@@ -132,9 +132,9 @@ const ELEMENT: Key<Words<ElementName>, Or<ElementName>> = Key::or(
     ]),
     ElementName::P1,
 )
-.only(&[Condition::where_is(
+.only(&[Condition::among(
     MODEL.name,
-    SOLIDS,
+    model::solids,
     "does not go with springs, which are no elements",
 )]);
 
@@ -256,23 +256,19 @@ fn read(table: &Table<'_>, selections: &mut Selections) -> Result<Region, SceneE
         selections.at_most_one_of(table, (&GROUP, &WHERE_OF_TETRAHEDRA), Members::Tetrahedra)?;
     // Data give the multiples of 1 kg/m^3 and 1 Pa.
     let (density, density_data) = from_mesh::read(table, &DENSITY)?.or(1.0);
-    let (youngs_modulus, modulus_data) = from_mesh::read(table, &YOUNGS_MODULUS)?.or(1.0);
+    let (youngs_modulus, modulus_data) = match model.has_youngs_modulus() {
+        true => from_mesh::read(table, &YOUNGS_MODULUS)?.or(1.0),
+        false => (1.0, None),
+    };
     let law = match model {
         MaterialModel::Springs => springs(&table.table(&SPRINGS_OF_REGION)?, youngs_modulus)?,
         MaterialModel::Linear => Law::Linear {
             youngs_modulus,
             poissons_ratio: poissons_ratio(table)?,
         },
-        MaterialModel::Hyperelastic(id) => Law::Hyperelastic {
-            id,
-            parameters: Parameters {
-                youngs_modulus,
-                poissons_ratio: poissons_ratio(table)?,
-                c1_over_c2: match id {
-                    MOONEY_RIVLIN => Some(table.read(&C1_OVER_C2)?),
-                    _ => None,
-                },
-            },
+        MaterialModel::Hyperelastic(law) => Law::Hyperelastic {
+            id: law.id(),
+            parameters: parameters(table, law, youngs_modulus)?,
         },
     };
     let element = match model {
@@ -281,7 +277,7 @@ fn read(table: &Table<'_>, selections: &mut Selections) -> Result<Region, SceneE
     };
     let (tissue, direction) = match model {
         MaterialModel::Springs | MaterialModel::Linear => (Tissue::default(), None),
-        MaterialModel::Hyperelastic(id) => tissue::read(table, id)?,
+        MaterialModel::Hyperelastic(law) => tissue::read(table, law)?,
     };
     Ok(Region {
         group,
@@ -295,6 +291,40 @@ fn read(table: &Table<'_>, selections: &mut Selections) -> Result<Region, SceneE
             direction,
         },
     })
+}
+
+/// The parameters of a law of large deformation, by its own descriptions.
+fn parameters(
+    table: &Table<'_>,
+    law: &'static KnownLaw,
+    youngs_modulus: f64,
+) -> Result<Parameters, SceneError> {
+    let mut parameters = Parameters::default();
+    for parameter in law.parameters() {
+        if parameter.name == LawParameter::YOUNGS_MODULUS.name {
+            parameters.set(parameter.name, &[youngs_modulus]);
+        } else if parameter.name == LawParameter::POISSONS_RATIO.name {
+            if table.has(POISSONS_RATIO.name) {
+                parameters.set(parameter.name, &[poissons_ratio(table)?]);
+            }
+            model::require(table, parameter)?;
+        } else if let Some(values) = model::read(table, parameter)? {
+            parameters.set(parameter.name, &values);
+        }
+    }
+    match law.make(&parameters) {
+        // Those that all models share are checked when the body is built, where the data of a mesh are known.
+        Err(ParameterError::Value {
+            quantity, expected, ..
+        }) if !law
+            .parameters()
+            .iter()
+            .any(|own| own.name == quantity && model::is_shared(own)) =>
+        {
+            Err(table.value_misfit(quantity, expected))
+        }
+        _ => Ok(parameters),
+    }
 }
 
 fn element(table: &Table<'_>) -> Result<Element, SceneError> {

@@ -2,12 +2,13 @@
 
 use std::ops::Bound;
 
+use sinew_fem::hyperelastic::KnownLaw;
 use sinew_fem::hyperelastic::fibres::{Fibres, Stiffening};
 use sinew_fem::hyperelastic::prony::Term;
 use sinew_fem::{FibreFamily, Memory, Moduli, Tissue, ViscousPart};
 
 use super::from_mesh::{self, OrData};
-use super::model::{ISOCHORIC, LAWS, MODEL};
+use super::model::{MODEL, alternatives, isochoric, laws};
 use crate::decode::{
     Condition, Flag, Inner, Key, Needs, Number, Optional, Or, Pairs, Table, TableDescription,
     Vector, Words,
@@ -29,7 +30,7 @@ pub(super) const FIBRES_OF_REGION: Key<Inner, Optional> = Key::optional(
 
 /// The model must be a law of large deformation.
 const fn of_large_deformation(reason: &'static str) -> Condition {
-    Condition::where_is(MODEL.name, LAWS, reason)
+    Condition::among(MODEL.name, laws, reason)
 }
 
 const FIBRES: TableDescription = TableDescription {
@@ -147,23 +148,27 @@ pub(super) const MODULI: Key<Words<Moduli>, Or<Moduli>> = Key::or(
 
 /// Reads the tissue in the table of a region with this law of large deformation, and the name of the data that contain
 /// the direction of fibres.
-pub(super) fn read(region: &Table<'_>, law: &str) -> Result<(Tissue, Option<String>), SceneError> {
+pub(super) fn read(
+    region: &Table<'_>,
+    law: &KnownLaw,
+) -> Result<(Tissue, Option<String>), SceneError> {
     let fibres = region.table(&FIBRES_OF_REGION)?;
     let (fibres, data) = fibres.as_ref().map(fibre_family).transpose()?.unzip();
     let memory = memory(region, law)?;
     Ok((Tissue { fibres, memory }, data.flatten()))
 }
 
-fn memory(region: &Table<'_>, law: &str) -> Result<Option<Memory>, SceneError> {
+fn memory(region: &Table<'_>, law: &KnownLaw) -> Result<Option<Memory>, SceneError> {
     let Some(pairs) = region.read(&PRONY)? else {
         return Ok(None);
     };
     let part = region.read(&VISCOUS_PART)?;
-    if part == ViscousPart::Deviatoric && !ISOCHORIC.contains(&law) {
+    if part == ViscousPart::Deviatoric && !law.has_isochoric_part() {
         let fault = Fault::Misplaced {
             key: VISCOUS_PART.name,
             reason: format!(
-                "= \"{DEVIATORIC}\" goes with model = \"neo-hookean-iso\" or \"mooney-rivlin\" only, which have a part that keeps the volume"
+                "= \"{DEVIATORIC}\" goes with model = {} only, which have a part that keeps the volume",
+                alternatives(isochoric())
             ),
         };
         return Err(region.place().value_fault(VISCOUS_PART.name, fault));

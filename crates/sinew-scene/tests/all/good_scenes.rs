@@ -213,7 +213,7 @@ substeps = "auto"
         .problem
         .regions
         .iter()
-        .map(|region| region.law)
+        .map(|region| region.law.clone())
         .collect();
     let springs = Law::Springs {
         youngs_modulus: 2e4,
@@ -299,10 +299,7 @@ fn a_scene_of_values_is_that_of_its_text_and_errors_name_keys() {
         said(-3.0, serde_json::json!({}))
     );
     for (more, begins) in [
-        (
-            serde_json::json!({ "gravity": [0, 0, "x"] }),
-            "gravity: ",
-        ),
+        (serde_json::json!({ "gravity": [0, 0, "x"] }), "gravity: "),
         (
             serde_json::json!({ "fixed": [{ "where": { "below": { "w": 1 } } }] }),
             "fixed[1].where.below.w: ",

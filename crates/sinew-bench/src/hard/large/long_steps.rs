@@ -33,9 +33,12 @@ const EXPLICIT: [&str; 6] = [
 
 fn specimens(law: &'static str) -> Result<[(&'static str, Specimen); 3], HardError> {
     let tissue = tissue::law(law, YOUNGS_MODULUS, 0.45);
-    let standing = tissue::standing(tissue, Element::P1);
+    let standing = tissue::standing(tissue.clone(), Element::P1);
     Ok([
-        ("release", tissue::release(CELLS, tissue, Element::P1)?),
+        (
+            "release",
+            tissue::release(CELLS, tissue.clone(), Element::P1)?,
+        ),
         (
             "twist",
             tissue::spun_column([2, 2, 12], COLUMN, 75.0, &standing)?,

@@ -1,10 +1,9 @@
 //! A law with fibres or without, whose type is not known.
 
 use sinew_fem::hyperelastic::Deformation;
-use sinew_fem::hyperelastic::HyperelasticLaw;
+use sinew_fem::hyperelastic::Hyperelastic;
 use sinew_fem::hyperelastic::Tensor;
 use sinew_fem::hyperelastic::fibres::Fibres;
-use sinew_fem::hyperelastic::{Hyperelastic, LawVisitor};
 
 use nalgebra::{Matrix2, SMatrix, Vector2};
 
@@ -30,7 +29,7 @@ impl Material {
     }
 
     pub(super) fn energy(&self, h: Tensor<f64>) -> f64 {
-        self.law.with_law(Energy(h))
+        self.law.energy(h)
     }
 
     /// The first Piola-Kirchhoff stress by the displacement gradient.
@@ -38,14 +37,14 @@ impl Material {
         let of_fibres = self
             .fibres
             .map(|(fibres, direction)| fibres.stress(&fibres.at(&Deformation::of(h), direction)));
-        self.law.with_law(Stress(h)) + of_fibres.unwrap_or_else(Tensor::zero)
+        self.law.stress(h) + of_fibres.unwrap_or_else(Tensor::zero)
     }
 
     pub(super) fn tangent(&self, h: Tensor<f64>, change: Tensor<f64>) -> Tensor<f64> {
         let of_fibres = self.fibres.map(|(fibres, direction)| {
             fibres.tangent(&fibres.at(&Deformation::of(h), direction), change)
         });
-        self.law.with_law(Tangent(h, change)) + of_fibres.unwrap_or_else(Tensor::zero)
+        self.law.tangent(h, change) + of_fibres.unwrap_or_else(Tensor::zero)
     }
 
     /// The two lateral stretches and the nominal stress of a bar that is pulled along x, by Newton's iteration.
@@ -83,38 +82,6 @@ impl Material {
             }
         }
         matrix.symmetric_eigenvalues().min() / self.mu()
-    }
-}
-
-struct Energy(Tensor<f64>);
-
-impl LawVisitor for Energy {
-    type Output = f64;
-
-    fn visit<L: HyperelasticLaw>(self, law: L) -> f64 {
-        law.whole_energy(&law.at(self.0))
-    }
-}
-
-struct Stress(Tensor<f64>);
-
-impl LawVisitor for Stress {
-    type Output = Tensor<f64>;
-
-    fn visit<L: HyperelasticLaw>(self, law: L) -> Tensor<f64> {
-        let at = law.at(self.0);
-        law.stress_with(&at, law.own_bulk(&at))
-    }
-}
-
-struct Tangent(Tensor<f64>, Tensor<f64>);
-
-impl LawVisitor for Tangent {
-    type Output = Tensor<f64>;
-
-    fn visit<L: HyperelasticLaw>(self, law: L) -> Tensor<f64> {
-        let at = law.at(self.0);
-        law.tangent_with(&at, law.own_bulk(&at), self.1)
     }
 }
 

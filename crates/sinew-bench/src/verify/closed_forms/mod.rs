@@ -17,7 +17,7 @@ use material::{Material, stretched};
 pub use form::{ClosedForm, ClosedFormError};
 
 use sinew_fem::hyperelastic::fibres::Fibres;
-use sinew_fem::hyperelastic::{Hyperelastic, Parameters, Tensor};
+use sinew_fem::hyperelastic::{Hyperelastic, Tensor};
 
 const POISSONS_RATIO: f64 = 0.45;
 
@@ -43,8 +43,7 @@ pub fn all() -> Result<Vec<ClosedForm>, ClosedFormError> {
 }
 
 fn law(id: &str) -> Result<Material, ClosedFormError> {
-    let mut parameters = Parameters::new(YOUNGS_MODULUS, POISSONS_RATIO);
-    parameters.c1_over_c2 = (id == "mooney-rivlin").then_some(4.0);
+    let parameters = Hyperelastic::parameters(id, YOUNGS_MODULUS, POISSONS_RATIO)?;
     Ok(Material::new(Hyperelastic::new(id, &parameters)?))
 }
 

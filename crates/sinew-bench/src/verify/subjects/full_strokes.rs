@@ -62,8 +62,8 @@ fn of_law(law: usize, poissons_ratio: f64) -> Problem {
     let mut problem = body(YOUNGS_MODULUS, poissons_ratio, Element::P1);
     let id = ["linear", "stvk", "neo-hookean"][law % LAWS];
     if id != "linear" {
-        let parameters = Parameters::new(YOUNGS_MODULUS, poissons_ratio);
         for region in &mut problem.regions {
+            let parameters = Parameters::new(YOUNGS_MODULUS, poissons_ratio);
             region.law = Law::Hyperelastic { id, parameters };
         }
     }

@@ -1,8 +1,6 @@
 //! A bar that hangs under its own weight, in each law.
 
-use sinew_fem::hyperelastic::{
-    Hyperelastic, HyperelasticLaw, LawVisitor, Parameters, Point, Tensor,
-};
+use sinew_fem::hyperelastic::{Hyperelastic, Tensor};
 use sinew_fem::{Element, Law, Model, Problem};
 use sinew_mesh::structured::{Split, block};
 
@@ -114,58 +112,39 @@ fn sag_of_tetrahedra(law: Law) -> Result<f64, VerifyError> {
 }
 
 /// The sag (m) by Simpson's rule over the length.
-fn sag_as_integral(id: &str) -> Result<f64, VerifyError> {
-    let parameters = match law_parameters(id) {
-        Some(parameters) => parameters,
-        None => return Err(VerifyError::NoBody),
+fn sag_as_integral(id: &'static str) -> Result<f64, VerifyError> {
+    const PARTS: usize = 400;
+    let Law::Hyperelastic { id, parameters } = law(id) else {
+        return Err(VerifyError::NoBody);
     };
-    Ok(Hyperelastic::new(id, &parameters)?.with_law(Sag))
-}
-
-fn law_parameters(id: &str) -> Option<Parameters> {
-    let id = Hyperelastic::IDS.iter().find(|known| **known == id)?;
-    match law(id) {
-        Law::Hyperelastic { parameters, .. } => Some(parameters),
-        _ => None,
+    let law = Hyperelastic::new(id, &parameters)?;
+    // Stretches along and across, which go on from place to place.
+    let mut stretch = [1.0, 1.0];
+    let mut sum = 0.0;
+    for place in 0..=PARTS {
+        let below = LENGTH * place as f64 / PARTS as f64;
+        stretch = uniaxial(&law, DENSITY * GRAVITY * below, stretch);
+        let weight = match place {
+            0 | PARTS => 1.0,
+            _ if place % 2 == 1 => 4.0,
+            _ => 2.0,
+        };
+        sum += weight * (stretch[0] - 1.0);
     }
-}
-
-struct Sag;
-
-impl LawVisitor for Sag {
-    type Output = f64;
-
-    fn visit<L: HyperelasticLaw>(self, law: L) -> f64 {
-        const PARTS: usize = 400;
-        // Stretches along and across, which go on from place to place.
-        let mut stretch = [1.0, 1.0];
-        let mut sum = 0.0;
-        for place in 0..=PARTS {
-            let below = LENGTH * place as f64 / PARTS as f64;
-            stretch = uniaxial(law, DENSITY * GRAVITY * below, stretch);
-            let weight = match place {
-                0 | PARTS => 1.0,
-                _ if place % 2 == 1 => 4.0,
-                _ => 2.0,
-            };
-            sum += weight * (stretch[0] - 1.0);
-        }
-        sum * LENGTH / (3.0 * PARTS as f64)
-    }
+    Ok(sum * LENGTH / (3.0 * PARTS as f64))
 }
 
 /// Stretches along and across under a nominal stress (Pa), by Newton's method from a guess.
-fn uniaxial<L: HyperelasticLaw>(law: L, stress: f64, mut stretch: [f64; 2]) -> [f64; 2] {
+fn uniaxial(law: &Hyperelastic, stress: f64, mut stretch: [f64; 2]) -> [f64; 2] {
     let diagonal = |along: f64, across: f64| {
         Tensor::<f64>::of([[along, 0.0, 0.0], [0.0, across, 0.0], [0.0, 0.0, across]])
     };
     for _ in 0..20 {
-        let at: Point<f64, L::Own<f64>> = law.at(diagonal(stretch[0] - 1.0, stretch[1] - 1.0));
-        let bulk = law.own_bulk(&at);
-        let left = law.stress_with(&at, bulk).0;
+        let h = diagonal(stretch[0] - 1.0, stretch[1] - 1.0);
+        let left = law.stress(h).0;
         let (f, g) = (left[0][0] - stress, left[1][1]);
-        let along = law.tangent_with(&at, bulk, diagonal(1.0, 0.0)).0;
-        let across = law.tangent_with(&at, bulk, diagonal(0.0, 1.0)).0;
+        let along = law.tangent(h, diagonal(1.0, 0.0)).0;
+        let across = law.tangent(h, diagonal(0.0, 1.0)).0;
         let determinant = along[0][0] * across[1][1] - across[0][0] * along[1][1];
         stretch[0] -= (f * across[1][1] - g * across[0][0]) / determinant;
         stretch[1] -= (g * along[0][0] - f * along[1][1]) / determinant;

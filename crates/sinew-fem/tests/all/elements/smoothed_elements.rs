@@ -303,7 +303,7 @@ fn impossible_elements_are_refused_by_name() {
     let refused = |problem: &Problem| Model::build(&mesh, problem).unwrap_err().to_string();
     let law = linear(3500.0, 0.45);
     assert_eq!(
-        refused(&of(edges(1.5, None), law)),
+        refused(&of(edges(1.5, None), law.clone())),
         "region 1: edge_share = 1.5: expected a number from 0 to 1"
     );
     assert_eq!(

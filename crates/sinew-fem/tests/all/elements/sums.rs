@@ -41,7 +41,7 @@ fn elements_add_up_to_the_matrix() {
     for law in laws() {
         // Held in all directions, and in one, which keeps the cell and clears a component.
         for axes in [[true; 3], [true, false, false]] {
-            let model = model(law, axes);
+            let model = model(law.clone(), axes);
             let n = model.dofs();
             let x: Vec<f64> = (0..n).map(|i| (1.7 * i as f64).sin()).collect();
             let mut expected = vec![0.0; n];

@@ -6,8 +6,8 @@ use crate::common::{
 };
 use sinew_core::{BlockMatrix, ElasticLaw, ForceLaw, Layers, Ramp, System, TangentKind, Trial};
 use sinew_core::{LoadTime, Velocities};
+use sinew_fem::hyperelastic::Hyperelastic;
 use sinew_fem::hyperelastic::fibres::{Fibres, Stiffening};
-use sinew_fem::hyperelastic::{Hyperelastic, Parameters};
 use sinew_fem::{Course, Element, FibreFamily, Law, Model, Moving, Problem, Tissue};
 use sinew_mesh::TetMesh;
 
@@ -18,10 +18,7 @@ const NU: f64 = 0.45;
 const BETA: f64 = 0.005;
 
 fn of(id: &'static str, element: Element) -> Problem {
-    let parameters = Parameters {
-        c1_over_c2: (id == "mooney-rivlin").then_some(4.0),
-        ..Parameters::new(YOUNGS_MODULUS, NU)
-    };
+    let parameters = Hyperelastic::parameters(id, YOUNGS_MODULUS, NU).unwrap();
     let mut problem = body(Law::Hyperelastic { id, parameters });
     problem.regions[0].element = element;
     problem.damping.stiffness = BETA;

@@ -1,7 +1,7 @@
 //! Large deformation.
 
+mod added_laws;
 mod damping;
 mod fibrous_bodies;
 mod hyperelastic_bodies;
-mod laws_on_vectors;
 mod relaxing_bodies;

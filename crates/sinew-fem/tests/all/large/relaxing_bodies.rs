@@ -7,7 +7,7 @@ use crate::common::{
 use sinew_core::{
     BlockMatrix, ElasticLaw, ForceLaw, Inputs, Layers, LoadTime, State, System, TangentKind, Trial,
 };
-use sinew_fem::hyperelastic::Parameters;
+use sinew_fem::hyperelastic::Hyperelastic;
 use sinew_fem::hyperelastic::fibres::{Fibres, Stiffening};
 use sinew_fem::hyperelastic::prony::Term;
 use sinew_fem::{
@@ -32,8 +32,7 @@ fn memory(part: ViscousPart) -> Memory {
 
 /// E = 3500 Pa, nu = .45.
 fn of(id: &'static str, element: Element, memory: Option<Memory>) -> Problem {
-    let mut parameters = Parameters::new(3500.0, 0.45);
-    parameters.c1_over_c2 = (id == "mooney-rivlin").then_some(4.0);
+    let parameters = Hyperelastic::parameters(id, 3500.0, 0.45).unwrap();
     let mut problem = body(Law::Hyperelastic { id, parameters });
     problem.regions[0].element = element;
     problem.regions[0].tissue.memory = memory;
@@ -294,7 +293,7 @@ fn in_the_long_term_a_body_has_the_long_term_moduli() {
         let mut problem = of("neo-hookean", element, Some(memory(ViscousPart::All)));
         let model = build(&mesh, &problem);
         problem.regions[0].tissue = Tissue::default();
-        *problem.regions[0].law.youngs_modulus_mut() *= 0.5;
+        problem.regions[0].law.scale_stiffness(0.5);
         let soft = build(&mesh, &problem);
         let mut state = used(&mesh, &model);
         model

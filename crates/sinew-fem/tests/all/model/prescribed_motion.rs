@@ -329,7 +329,7 @@ fn refusal(moves: Vec<Moving>, damping: Rayleigh, law: Law) -> FemError {
 fn motions_that_make_no_sense_are_refused() {
     let undamped = Rayleigh::default();
     let elastic = linear(YOUNGS_MODULUS, 0.3);
-    let refused = |moves: Vec<Moving>| refusal(moves, undamped, elastic);
+    let refused = |moves: Vec<Moving>| refusal(moves, undamped, elastic.clone());
     let up = |on: &str| moving(on, Z, [0.0, 0.0, 1e-3], rise());
 
     let held_too = refused(vec![up("top"), up("bottom")]);
@@ -340,7 +340,7 @@ fn motions_that_make_no_sense_are_refused() {
     let problem = Problem {
         fixed: vec![held_along("bottom", [true, false, true])],
         moves: vec![along_y],
-        ..body(elastic)
+        ..body(elastic.clone())
     };
     assert!(Model::build(&bar(), &problem).is_ok());
 
@@ -408,7 +408,7 @@ fn a_jump_is_refused_where_damping_would_see_its_velocity() {
         calibrate: true,
         damping_ratio: 0.1,
     };
-    for (damping, law) in [(by_stiffness, elastic), (by_mass, dashpots)] {
+    for (damping, law) in [(by_stiffness, elastic.clone()), (by_mass, dashpots)] {
         let error = refusal(jump(), damping, law);
         assert_eq!((error.item(), error.cause()), (Item::Move(0), &refused));
     }
@@ -416,7 +416,7 @@ fn a_jump_is_refused_where_damping_would_see_its_velocity() {
         fixed: vec![held("bottom")],
         moves: jump(),
         damping: by_mass,
-        ..body(elastic)
+        ..body(elastic.clone())
     };
     let model = build(&bar(), &problem);
     assert_eq!(model.report().moves[0].jump, Some(0.1));

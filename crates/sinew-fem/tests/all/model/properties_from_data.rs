@@ -9,9 +9,9 @@ use sinew_core::{
     BlockMatrix, ElasticLaw, Inputs, Layers, LinearSystem, LoadTime, State, System, TangentKind,
     Trial,
 };
+use sinew_fem::hyperelastic::Hyperelastic;
 use sinew_fem::hyperelastic::fibres::{Fibres, Stiffening};
 use sinew_fem::hyperelastic::prony::Term;
-use sinew_fem::hyperelastic::{Hyperelastic, Parameters};
 use sinew_fem::{
     Element, FibreFamily, FromMesh, Law, LoadKind, Memory, Model, Moduli, Problem, SpringRule,
     ViscousPart,
@@ -20,8 +20,7 @@ use sinew_mesh::structured::{self, Split};
 use sinew_mesh::{Group, GroupMembers, TetData, TetMesh};
 
 fn large(id: &'static str, youngs_modulus: f64, nu: f64) -> Law {
-    let mut parameters = Parameters::new(youngs_modulus, nu);
-    parameters.c1_over_c2 = (id == "mooney-rivlin").then_some(4.0);
+    let parameters = Hyperelastic::parameters(id, youngs_modulus, nu).unwrap();
     Law::Hyperelastic { id, parameters }
 }
 
@@ -64,7 +63,7 @@ fn modulus(tet: usize) -> f64 {
 /// A problem with these moduli, those of the data `E`.
 fn by_data(law: Law, element: Element) -> Problem {
     let mut problem = body(law);
-    *problem.regions[0].law.youngs_modulus_mut() = 1.0;
+    problem.regions[0].law.set_youngs_modulus(1.0);
     problem.regions[0].element = element;
     problem.regions[0].from_mesh.youngs_modulus = named("E");
     problem
@@ -102,7 +101,7 @@ fn kinds() -> Vec<(String, Problem)> {
     let mut kinds = Vec::new();
     for element in ELEMENTS {
         let mut add = |law: Law, with: &dyn Fn(&mut Problem)| {
-            let mut problem = body(law);
+            let mut problem = body(law.clone());
             problem.regions[0].element = element;
             with(&mut problem);
             let name = format!("{law}, {element}, {:?}", problem.regions[0].tissue);
@@ -198,7 +197,7 @@ fn data_that_are_the_same_everywhere_give_the_bits_of_numbers() {
         problem.fixed = vec![held("bottom")];
         let expected = build(&mesh, &problem);
         let region = &mut problem.regions[0];
-        *region.law.youngs_modulus_mut() = 1.0;
+        region.law.set_youngs_modulus(1.0);
         region.density = 1.0;
         let has_fibres = region.tissue.fibres.is_some();
         region.from_mesh = FromMesh {
@@ -231,7 +230,7 @@ fn in_regions(mesh: &TetMesh, problem: &Problem) -> (TetMesh, Problem) {
         });
         let mut region = whole.clone();
         region.group = Some(format!("E {wanted}"));
-        *region.law.youngs_modulus_mut() = wanted;
+        region.law.set_youngs_modulus(wanted);
         region.from_mesh.youngs_modulus = None;
         problem.regions.push(region);
     }
@@ -250,7 +249,7 @@ fn plain_tetrahedra_of_moduli_by_data_are_those_of_regions() {
         }
         problem.fixed = vec![held("bottom")];
         let region = &mut problem.regions[0];
-        *region.law.youngs_modulus_mut() = 1.0;
+        region.law.set_youngs_modulus(1.0);
         region.from_mesh.youngs_modulus = named("E");
         let model = build(&mesh, &problem);
         let (cut, problem) = in_regions(&mesh, &problem);
@@ -275,7 +274,7 @@ fn forces_are_the_slope_of_the_energy_and_tangents_that_of_the_forces() {
             continue;
         };
         let element = problem.regions[0].element;
-        let mut uneven = by_data(problem.regions[0].law, element);
+        let mut uneven = by_data(problem.regions[0].law.clone(), element);
         uneven.regions[0].tissue = problem.regions[0].tissue.clone();
         if uneven.regions[0].tissue.fibres.is_some() {
             uneven.regions[0].from_mesh.direction = named("along");

@@ -74,7 +74,7 @@ fn at_rest_reactions_balance_all_loads() {
         damped_springs(),
     ];
     for law in laws {
-        let model = build(&mesh, &held_and_loaded(law));
+        let model = build(&mesh, &held_and_loaded(law.clone()));
         let u = equilibrium(&model);
         let v = vec![0.0; u.len()];
         let mut reactions = vec![[f64::NAN; 3]; mesh.points.len()];
@@ -146,7 +146,7 @@ fn moving_supports_feel_the_rows_of_the_free_body() {
             times: vec![0.0, 1.0],
             values: vec![0.0, 1.0],
         };
-        let mut problem = held_and_loaded(law);
+        let mut problem = held_and_loaded(law.clone());
         problem.loads.truncate(2);
         problem.loads[0].ramp = rise;
         problem.loads.push(LoadSpec {
@@ -217,7 +217,7 @@ fn supports_that_move_pull_by_the_columns_of_the_free_body() {
         (linear(YOUNGS_MODULUS, 0.45), 0.02),
         (damped_springs(), 0.02),
     ] {
-        let mut problem = held_and_loaded(law);
+        let mut problem = held_and_loaded(law.clone());
         problem.damping = Rayleigh {
             mass: 3.0,
             stiffness,

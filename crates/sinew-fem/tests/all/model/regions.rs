@@ -98,8 +98,8 @@ fn cutting_a_body_into_regions_changes_nothing() {
     let mesh = bar();
     for rule in [SpringRule::Lloyd, SpringRule::VanGelder] {
         let law = damped_springs(rule, 0.3);
-        let whole = build(&mesh, &body(law));
-        let cut = build(&mesh, &in_two_regions(law, law));
+        let whole = build(&mesh, &body(law.clone()));
+        let cut = build(&mesh, &in_two_regions(law.clone(), law));
         let stiffness = |model: &Model| BlockMatrix::clone(model.operators().stiffness());
         let off = difference(&stiffness(&cut), &stiffness(&whole));
         at_most(&format!("{rule:?}: stiffness of the parts"), off, 1e-14);

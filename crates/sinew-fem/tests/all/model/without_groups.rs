@@ -84,7 +84,7 @@ fn a_mesh_without_groups_is_held_and_loaded_as_one_with_them() {
         springs(3500.0, SpringRule::Lloyd, true),
     ] {
         let with_law = |mut problem: Problem| {
-            problem.regions[0].law = law;
+            problem.regions[0].law = law.clone();
             problem
         };
         let by_groups = with_law(problem(|group, _| group.into()));

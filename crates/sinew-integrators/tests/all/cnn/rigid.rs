@@ -308,11 +308,7 @@ fn the_slowest_motion_is_slowed_by_the_factor_that_is_told() {
 fn tissue(mesh: &TetMesh, gravity: Option<[f64; 3]>, law: usize) -> Model {
     let law = Law::Hyperelastic {
         id: Hyperelastic::IDS[law],
-        parameters: Parameters {
-            youngs_modulus: 5000.0,
-            poissons_ratio: 0.3,
-            c1_over_c2: None,
-        },
+        parameters: Parameters::new(5000.0, 0.3),
     };
     let falling = Problem {
         gravity,

@@ -114,7 +114,7 @@ fn bodies() -> Vec<Body> {
                 parameters,
             } = &mut region.law
             {
-                parameters.c1_over_c2 = Some(4.0);
+                parameters.set("c1_over_c2", &[4.0]);
             }
         }
         let model = Model::build(&mesh, &problem).unwrap();

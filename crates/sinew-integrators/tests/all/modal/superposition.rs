@@ -238,7 +238,13 @@ fn frequencies_of_the_cube() {
         (linear(0.49), 45.9),
     ] {
         let traction = LoadKind::Traction([0.0, 0.0, -100.0]);
-        let model = body(10, law, &[("sides", ALL)], traction, Rayleigh::default());
+        let model = body(
+            10,
+            law.clone(),
+            &[("sides", ALL)],
+            traction,
+            Rayleigh::default(),
+        );
         let modal = prepared(&model, &modes(10.0).with_number("basis", 60.0));
         let lowest = modal.frequencies()[0];
         assert!((lowest - expected).abs() <= 0.05, "{law:?}: {lowest}");

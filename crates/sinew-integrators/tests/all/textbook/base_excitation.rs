@@ -230,7 +230,7 @@ fn every_method_follows_a_moving_base_at_its_order() {
         let damping = Rayleigh { mass, stiffness };
         let tower_in_theory = Tower::elastic(youngs_modulus, damping);
         for (way, smooth) in ways() {
-            let model = tower(law, damping, way.courses());
+            let model = tower(law.clone(), damping, way.courses());
             let expected = |t: f64| tower_in_theory.at(&way, t)[0];
             for entry in entries() {
                 let integrator = entry.build(&Options::new()).unwrap();
@@ -298,7 +298,7 @@ fn ritz_vectors_follow_a_moving_base() {
         let damping = Rayleigh { mass, stiffness };
         let theory = Tower::elastic(5e3, damping);
         for (way, _) in ways() {
-            let model = tower(law, damping, way.courses());
+            let model = tower(law.clone(), damping, way.courses());
             let expected = |t: f64| theory.at(&way, t)[0];
             let error = error(("modal", &ritz), &model, expected, 40, 1).unwrap();
             assert!(error <= 1e-9, "{way:?}: {error:e}");
@@ -362,7 +362,7 @@ fn a_base_moved_by_an_input_is_one_moved_by_its_table() {
     let channel = inputs.add_channel(Between::Line);
     let law = linear(5e3, 0.0);
     let known = tower(
-        law,
+        law.clone(),
         damping,
         Way::Lines(times.clone(), values.clone()).courses(),
     );

@@ -58,7 +58,7 @@ fn distance(a: &Dense, b: &Dense) -> f64 {
 
 fn scale_moduli(body: &mut Body, factor: f64) {
     for region in &mut body.problem.regions {
-        *region.law.youngs_modulus_mut() *= factor;
+        region.law.scale_stiffness(factor);
     }
 }
 

@@ -116,7 +116,12 @@ fn a_body_and_its_clamp_at_one_speed_feel_no_force() {
     let mesh = structured::block([4, 1, 1], size, Split::Kuhn).unwrap();
     let soft = linear(YOUNGS_MODULUS, 0.3);
     let large = hyperelastic("neo-hookean", 0.3);
-    for (law, stiffness) in [(soft, 0.0), (soft, 2e-3), (large, 0.0), (large, 2e-3)] {
+    for (law, stiffness) in [
+        (soft.clone(), 0.0),
+        (soft.clone(), 2e-3),
+        (large.clone(), 0.0),
+        (large, 2e-3),
+    ] {
         let problem = |law| Problem {
             moves: vec![Moving {
                 on: face(&mesh, 0, 0.0),
@@ -129,7 +134,8 @@ fn a_body_and_its_clamp_at_one_speed_feel_no_force() {
             },
             ..body(law)
         };
-        let [model, small] = [law, soft].map(|law| Model::build(&mesh, &problem(law)).unwrap());
+        let [model, small] =
+            [law.clone(), soft.clone()].map(|law| Model::build(&mesh, &problem(law)).unwrap());
         let v: Vec<f64> = velocity
             .iter()
             .copied()
@@ -302,7 +308,11 @@ fn a_bar_in_tension_pulls_by_its_law_whatever_the_cells() {
     let (strain, duration) = (0.02, 0.2);
     let area = size[1] * size[2];
     let soft = linear(YOUNGS_MODULUS, 0.0);
-    for (cells, law) in [(10, soft), (20, soft), (10, hyperelastic("stvk", 0.0))] {
+    for (cells, law) in [
+        (10, soft.clone()),
+        (20, soft.clone()),
+        (10, hyperelastic("stvk", 0.0)),
+    ] {
         let mesh = structured::block([cells, 1, 1], size, Split::Mirrored).unwrap();
         let along = [true, false, false];
         let speed = strain * size[0] / duration;
@@ -321,7 +331,8 @@ fn a_bar_in_tension_pulls_by_its_law_whatever_the_cells() {
             }],
             ..body(law)
         };
-        let [model, small] = [law, soft].map(|law| Model::build(&mesh, &problem(law)).unwrap());
+        let [model, small] =
+            [law.clone(), soft.clone()].map(|law| Model::build(&mesh, &problem(law)).unwrap());
         let of_node = |node: &u32| [mesh.points[*node as usize][0] / size[0] * speed, 0.0, 0.0];
         let v: Vec<f64> = model.nodes().iter().flat_map(of_node).collect();
         for mut method in methods(&model, &small, 0.02) {
@@ -380,7 +391,7 @@ fn a_shaken_block_is_pushed_by_its_mass_times_the_acceleration() {
         }],
         ..body(law)
     };
-    let small = Model::build(&mesh, &problem(soft, Vec::new())).unwrap();
+    let small = Model::build(&mesh, &problem(soft.clone(), Vec::new())).unwrap();
     let critical = 2.0 / Spectrum::of(small.operators()).omega_max;
     // Hangs behind from the start on, so that nothing swings.
     let along_x = |size: f64| -> Vec<f64> {
@@ -413,9 +424,9 @@ fn a_shaken_block_is_pushed_by_its_mass_times_the_acceleration() {
                     Course::along(&times, &places)
                 }
             };
-            let resting = Model::build(&mesh, &problem(law, Vec::new())).unwrap();
+            let resting = Model::build(&mesh, &problem(law.clone(), Vec::new())).unwrap();
             for mut method in methods(&resting, &small, critical / 20.0) {
-                let model = Model::build(&mesh, &problem(law, courses(method.dt))).unwrap();
+                let model = Model::build(&mesh, &problem(law.clone(), courses(method.dt))).unwrap();
                 let start = State::new(u.clone(), along_x(speed));
                 let mut worst = 0.0_f64;
                 follow(&mut method, &model, (start, steps), |step, t, forces| {

@@ -52,7 +52,7 @@ impl Spot {
 
     /// The descriptions of the table's keys.
     pub(super) fn keys(&self) -> impl Iterator<Item = KeyDescription> + use<> {
-        self.table.keys.iter().map(|key| key.describe())
+        self.table.all_keys().into_iter().map(|key| key.describe())
     }
 
     /// True if a key's conditions hold with the other keys that are given.
@@ -61,7 +61,8 @@ impl Spot {
         key.conditions.iter().all(|condition| match condition.goes {
             Goes::With(other) => entries.contains_key(other),
             Goes::Without(other) => !entries.contains_key(other),
-            Goes::If(other, words) => {
+            Goes::If(..) | Goes::Among(..) => {
+                let (other, words) = condition.goes.words().unwrap();
                 let word = entries.get(other).and_then(Value::as_str);
                 word.is_some_and(|word| words.contains(&word))
             }
@@ -85,7 +86,7 @@ pub(super) fn all() -> Vec<Spot> {
     }];
     for key in DOCUMENT.keys {
         for (table, _) in tables_in(&key.describe().shape) {
-            for example in table.examples {
+            for example in table.all_examples() {
                 let own: Table = example.parse().unwrap();
                 let mut scene = body();
                 if own.contains_key("oscillator") {
@@ -119,7 +120,7 @@ fn push_with_inner(spots: &mut Vec<Spot>, spot: Spot) {
     for key in spot.keys() {
         let is_table = spot.entries().get(key.name).is_some_and(Value::is_table);
         for (table, _) in tables_in(&key.shape).into_iter().filter(|_| is_table) {
-            for example in table.examples {
+            for example in table.all_examples() {
                 let example: Table = examples::toml(example).parse().unwrap();
                 let mut inner = spot.with(key.name, example["table"].clone());
                 inner.path.push(key.name);

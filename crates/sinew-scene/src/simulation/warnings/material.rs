@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use sinew_fem::hyperelastic::{HyperelasticLaw, Parameters, Stvk};
+use sinew_fem::hyperelastic::{KnownLaw, known_law};
 use sinew_fem::{Element, Law};
 use sinew_mesh::structured::Split;
 
@@ -34,13 +34,9 @@ fn longest_cell(mesh: &MeshSource) -> Option<f64> {
 pub(super) fn locking(body: &Body) -> Vec<Warning> {
     let regions = body.problem.regions.iter().enumerate();
     let plain = regions.filter(|(_, region)| region.element == Element::P1);
-    let locking = plain.filter_map(|(index, region)| match region.law {
-        Law::Linear { poissons_ratio, .. }
-        | Law::Hyperelastic {
-            parameters: Parameters { poissons_ratio, .. },
-            ..
-        } if poissons_ratio > LOCKS => Some((index, poissons_ratio)),
-        _ => None,
+    let locking = plain.filter_map(|(index, region)| {
+        let ratio = region.law.poissons_ratio()?;
+        (ratio > LOCKS).then_some((index, ratio))
     });
     let split = match body.mesh {
         MeshSource::Cube { split, .. } | MeshSource::Block { split, .. } => Some(split),
@@ -85,22 +81,18 @@ pub(super) fn locking(body: &Body) -> Vec<Warning> {
         .collect()
 }
 
-/// A warning for each region of Saint Venant and Kirchhoff's law: under tension or compression along one axis its
-/// resistance is `E/2 (l^3 - l)`, l being the stretch, which is least at `l = 1/sqrt 3`.
+/// A warning for each region of a law that warns of itself.
 pub(super) fn weak_laws(body: &Body) -> Vec<Warning> {
     let regions = (1..).zip(&body.problem.regions);
-    let weak = regions
-        .filter(|(_, region)| matches!(region.law, Law::Hyperelastic { id, .. } if id == Stvk::ID));
-    weak.map(|(number, _)| {
-        let what = format!(
-            "[[region]] {number} has model = \"{}\": pressed to less than 58 % of its length it gives way, and turns inside out \
-             without resistance",
-            Stvk::ID
-        );
-        let mend = "model = \"neo-hookean\" resists the more the farther it is pressed";
-        Warning::new(WarningKind::WeakLaw, what, mend)
-    })
-    .collect()
+    let weak = regions.filter_map(|(number, region)| {
+        let Law::Hyperelastic { id, .. } = region.law else {
+            return None;
+        };
+        let [fact, mend] = known_law(id).and_then(KnownLaw::weakness)?;
+        let what = format!("[[region]] {number} has model = \"{id}\": {fact}");
+        Some(Warning::new(WarningKind::WeakLaw, what, mend))
+    });
+    weak.collect()
 }
 
 /// Deflection of a cantilever of plain tetrahedra, ten times as long as thick and three or four cells thick, under an

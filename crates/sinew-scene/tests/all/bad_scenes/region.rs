@@ -84,7 +84,7 @@ fn misspelt_density() {
         refusal(BODY, "density = 1060.0", "densty = 1060.0"),
         @"
     scene.toml:5: [[region]] 1: unknown key `densty`; did you mean `density`?
-    help: the keys here are `group`, `where`, `density`, `model`, `youngs_modulus`, `poissons_ratio`, `springs`, `c1_over_c2`, `element`, `edge_share`, `patch`, `fibres`, `prony`, `viscous_part`, `moduli`
+    help: the keys here are `group`, `where`, `density`, `model`, `youngs_modulus`, `springs`
     "
     );
 }
@@ -117,7 +117,7 @@ fn infinite_modulus() {
 fn unknown_model() {
     insta::assert_snapshot!(
         refusal(BODY, "model = \"springs\"", "model = \"ogden\""),
-        @r#"scene.toml:6: [[region]] 1: model = "ogden": expected "springs", "linear", "neo-hookean", "stable-neo-hookean", "corotational", "stvk", "mooney-rivlin", "neo-hookean-log", "neo-hookean-iso" or "stable-neo-hookean-log""#
+        @r#"scene.toml:6: [[region]] 1: model = "ogden": expected "springs", "linear", "neo-hookean", "stable-neo-hookean", "corotational", "stvk", "mooney-rivlin", "neo-hookean-log", "neo-hookean-iso", "stable-neo-hookean-log" or "yeoh""#
     );
 }
 
@@ -125,7 +125,7 @@ fn unknown_model() {
 fn no_model() {
     insta::assert_snapshot!(
         refusal(BODY, "model = \"springs\"\n", ""),
-        @r#"scene.toml:4: [[region]] 1: `model` is missing: expected "springs", "linear", "neo-hookean", "stable-neo-hookean", "corotational", "stvk", "mooney-rivlin", "neo-hookean-log", "neo-hookean-iso" or "stable-neo-hookean-log""#
+        @r#"scene.toml:4: [[region]] 1: `model` is missing: expected "springs", "linear", "neo-hookean", "stable-neo-hookean", "corotational", "stvk", "mooney-rivlin", "neo-hookean-log", "neo-hookean-iso", "stable-neo-hookean-log" or "yeoh""#
     );
 }
 
@@ -324,6 +324,50 @@ fn refused_law(law: &str, lines: &str) -> String {
 #[test]
 fn mooney_and_rivlin_without_their_constants() {
     insta::assert_snapshot!(refused_law("mooney-rivlin", "poissons_ratio = 0.45\n"), @r#"scene.toml:4: [[region]] 1: `c1_over_c2` is missing: expected a finite ratio above 0"#);
+}
+
+/// The refusal of a region of the law of Yeoh with these lines.
+fn refused_yeoh(lines: &str) -> String {
+    let springs = "model = \"springs\"\nyoungs_modulus = 3500.0\nsprings = { rule = \"lloyd\" }\n";
+    refusal(BODY, springs, &format!("model = \"yeoh\"\n{lines}"))
+}
+
+#[test]
+fn an_unknown_key_of_a_law_lists_the_keys_of_that_law() {
+    let said = refused_yeoh("c1 = 600.0\npoissons_ratio = 0.45\n");
+    insta::assert_snapshot!(said, @"
+    scene.toml:7: [[region]] 1: unknown key `c1`; did you mean `c`?
+    help: the keys here are `group`, `where`, `density`, `model`, `poissons_ratio`, `c`, `bulk_modulus`, `element`, `edge_share`, `patch`, `fibres`, `prony`, `viscous_part`, `moduli`
+    ");
+}
+
+#[test]
+fn a_law_with_moduli_of_its_own_takes_no_youngs_modulus() {
+    let said = refused_yeoh("c = [600.0]\nyoungs_modulus = 3500.0\npoissons_ratio = 0.45\n");
+    insta::assert_snapshot!(said, @"scene.toml:8: [[region]] 1: `youngs_modulus` does not go with this model, whose stiffness is stated by moduli of its own");
+}
+
+#[test]
+fn a_first_constant_below_zero() {
+    let said = refused_yeoh("c = [-600.0, 3.0]\npoissons_ratio = 0.45\n");
+    insta::assert_snapshot!(said, @"scene.toml:7: [[region]] 1: c = [-600.0, 3.0]: expected c1 above 0 Pa");
+}
+
+#[test]
+fn four_constants() {
+    let said = refused_yeoh("c = [1.0, 2.0, 3.0, 4.0]\npoissons_ratio = 0.45\n");
+    insta::assert_snapshot!(said, @"scene.toml:7: [[region]] 1: c = [1.0, 2.0, 3.0, 4.0]: expected a list of 1 to 3, each a finite modulus in Pa, the first above 0");
+}
+
+#[test]
+fn neither_stiffness_of_volume() {
+    insta::assert_snapshot!(refused_yeoh("c = [600.0]\n"), @"scene.toml:4: [[region]] 1: expected exactly one of `poissons_ratio`, `bulk_modulus`, found none");
+}
+
+#[test]
+fn constants_of_yeoh_with_another_law() {
+    let lines = "poissons_ratio = 0.45\nc = [600.0]\n";
+    insta::assert_snapshot!(refused_law("neo-hookean", lines), @r#"scene.toml:9: [[region]] 1: `c` goes with model = "yeoh" only"#);
 }
 
 #[test]

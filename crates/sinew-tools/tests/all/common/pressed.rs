@@ -82,11 +82,7 @@ impl Block {
                     },
                     Some(id) => Law::Hyperelastic {
                         id,
-                        parameters: Parameters {
-                            youngs_modulus: E,
-                            poissons_ratio: self.nu,
-                            c1_over_c2: None,
-                        },
+                        parameters: Parameters::new(E, self.nu),
                     },
                 },
                 element: self.element,

@@ -1,0 +1,37 @@
+//! Supports and prescribed motions as a user states them.
+
+use sinew_core::Ramp;
+
+use crate::on::On;
+
+/// A support: components of displacement that stay zero.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Fixed {
+    /// The part of the mesh that is held: all its nodes.
+    pub on: On,
+    /// True for those of x, y and z that are held.
+    pub axes: [bool; 3],
+}
+
+/// A prescribed motion: components of displacement that follow a course. All nodes move alike; the
+/// displacement is the sum of the courses.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Moving {
+    /// The part of the mesh that is moved: all its nodes.
+    pub on: On,
+    /// True for those of x, y and z that are prescribed; the other components stay free.
+    pub axes: [bool; 3],
+    /// The courses; without one the components are held.
+    pub courses: Vec<Course>,
+}
+
+/// A displacement in one direction, times a factor over time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Course {
+    /// Displacement from rest (m) at factor 1; for [`Ramp::Linear`], whose factor is the time, the velocity (m/s). 0
+    /// along axes that are not prescribed.
+    pub displacement: [f64; 3],
+    /// The factor over time. An [`Ramp::Input`] must be given by [`sinew_core::Between::Line`] where the body has
+    /// stiffness damping or dashpots: a position that jumps has no velocity that damping could see.
+    pub ramp: Ramp,
+}

@@ -1,0 +1,110 @@
+//! The law of Demiray.
+
+use sinew_fem::hyperelastic::{
+    Bulk, Deformation, HyperelasticLaw, LawParameter, LawValues, NodeBlock, ParameterError, Point,
+    Range, Tensor,
+};
+use sinew_sparse::simd::Number;
+
+/// `psi = mu/(2 b) (exp(b (I1 - 3)) - 1) - mu ln J + lambda/2 (J - 1)^2` (Demiray, Journal of Biomechanics 5, 1972,
+/// with the volume terms of Simo and Pister): tissue that stiffens exponentially. Refused at J <= 0.
+#[derive(Clone, Copy, Debug)]
+pub struct Demiray {
+    lambda: f64,
+    mu: f64,
+    b: f64,
+}
+
+const B: LawParameter = LawParameter::number(
+    "stiffening",
+    "b",
+    "The exponent b of exp(b (I1 - 3)): with 0 the law would be neo-Hookean.",
+    Range::above_zero("a finite number above 0"),
+    &[0.5],
+);
+
+impl HyperelasticLaw for Demiray {
+    const ID: &'static str = "demiray";
+    const MEANING: &'static str = "stiffens exponentially";
+    const PARAMETERS: &'static [LawParameter] = &[
+        LawParameter::YOUNGS_MODULUS,
+        LawParameter::POISSONS_RATIO,
+        B,
+    ];
+    const DEFINED_WHEN_INVERTED: bool = false;
+    const NODE_BLOCK: NodeBlock = NodeBlock::Exact;
+
+    /// `exp(b (I1 - 3))`.
+    type Own<N: Number> = N;
+
+    fn from_values(values: &LawValues<'_>) -> Result<Self, ParameterError> {
+        let (lambda, mu) = values.lame();
+        let b = values.number(&B);
+        Ok(Self { lambda, mu, b })
+    }
+
+    fn lame(&self) -> (f64, f64) {
+        (self.lambda, self.mu)
+    }
+
+    #[inline(always)]
+    fn own<N: Number>(&self, deformation: &Deformation<N>) -> N {
+        (N::of(self.b) * deformation.first_invariant_change()).exp()
+    }
+
+    #[inline(always)]
+    fn energy<N: Number>(&self, at: &Point<N, N>) -> N {
+        let grown = (N::of(self.b) * at.first_invariant_change()).exp_m1();
+        N::of(self.mu) * (N::of(0.5 / self.b) * grown - at.volume_change.ln_1p())
+    }
+
+    /// `mu (exp F - c/J)`, by parts that are small near rest.
+    #[inline(always)]
+    fn stress<N: Number>(&self, at: &Point<N, N>) -> Tensor<N> {
+        let grown = (N::of(self.b) * at.first_invariant_change()).exp_m1();
+        let share = at.volume_change / at.volume_ratio;
+        let stress = at
+            .distortion
+            .plus(grown, at.gradient)
+            .plus(share, at.cofactor);
+        stress.scaled(N::of(self.mu))
+    }
+
+    #[inline(always)]
+    fn tangent<N: Number>(&self, at: &Point<N, N>, change: Tensor<N>) -> Tensor<N> {
+        let over = at.volume_ratio.recip();
+        let along = N::of(2.0 * self.b) * at.own * at.gradient.contracted(change);
+        let changed = change.scaled(at.own).plus(along, at.gradient);
+        let volume = over * over * at.cofactor.contracted(change);
+        let changed = changed
+            .plus(-over, at.cofactor_change(change))
+            .plus(volume, at.cofactor);
+        changed.scaled(N::of(self.mu))
+    }
+
+    /// `mu (exp (|g|^2 I + 2 b F g (F g)') + c g (c g)'/J^2) + modulus c g (c g)'`.
+    #[inline(always)]
+    fn node_block<N: Number>(&self, at: &Point<N, N>, bulk: Bulk<N>, g: [N; 3]) -> Tensor<N> {
+        let (mu, [x, y, z]) = (N::of(self.mu), g);
+        let (along, normal) = (at.gradient.on(g), at.cofactor.on(g));
+        let of_volume = mu / (at.volume_ratio * at.volume_ratio) + bulk.modulus;
+        Tensor::diagonal(mu * at.own * (x * x + y * y + z * z))
+            .plus(
+                mu * N::of(2.0 * self.b) * at.own,
+                Tensor::outer(along, along),
+            )
+            .plus(of_volume, Tensor::outer(normal, normal))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sinew_fem::hyperelastic::{Parameters, conformance};
+
+    #[test]
+    fn the_suite_holds() {
+        let parameters = Parameters::new(3500.0, 0.45).with("stiffening", &[0.5]);
+        conformance::check(Demiray::new(&parameters).unwrap());
+    }
+}
