@@ -135,7 +135,7 @@ fn a_body_and_its_clamp_at_one_speed_feel_no_force() {
             ..body(law)
         };
         let [model, small] =
-            [law.clone(), soft].map(|law| Model::build(&mesh, &problem(law)).unwrap());
+            [law.clone(), soft.clone()].map(|law| Model::build(&mesh, &problem(law)).unwrap());
         let v: Vec<f64> = velocity
             .iter()
             .copied()
@@ -332,7 +332,7 @@ fn a_bar_in_tension_pulls_by_its_law_whatever_the_cells() {
             ..body(law)
         };
         let [model, small] =
-            [law.clone(), soft].map(|law| Model::build(&mesh, &problem(law)).unwrap());
+            [law.clone(), soft.clone()].map(|law| Model::build(&mesh, &problem(law)).unwrap());
         let of_node = |node: &u32| [mesh.points[*node as usize][0] / size[0] * speed, 0.0, 0.0];
         let v: Vec<f64> = model.nodes().iter().flat_map(of_node).collect();
         for mut method in methods(&model, &small, 0.02) {
