@@ -6,8 +6,9 @@ use sinew_fem::hyperelastic::{
 };
 use sinew_sparse::simd::Number;
 
-/// `psi = mu/(2 b) (exp(b (I1 - 3)) - 1) - mu ln J + lambda/2 (J - 1)^2` (Demiray, Journal of Biomechanics 5, 1972,
-/// with the volume terms of Simo and Pister): tissue that stiffens exponentially. Refused at J <= 0.
+/// `psi = mu/(2 b) (exp(b (I1 - 3)) - 1) - mu ln J + (lambda/2 - b mu) (J - 1)^2` (Demiray, Journal of Biomechanics 5, 1972,
+/// with the volume terms of Simo and Pister, so that lambda and mu are those at small strain): tissue that stiffens
+/// exponentially. The term with lambda is added by the loops. Refused at J <= 0.
 #[derive(Clone, Copy, Debug)]
 pub struct Demiray {
     lambda: f64,
@@ -55,14 +56,16 @@ impl HyperelasticLaw for Demiray {
     #[inline(always)]
     fn energy<N: Number>(&self, at: &Point<N, N>) -> N {
         let grown = (N::of(self.b) * at.first_invariant_change()).exp_m1();
-        N::of(self.mu) * (N::of(0.5 / self.b) * grown - at.volume_change.ln_1p())
+        let change = at.volume_change;
+        N::of(self.mu)
+            * (N::of(0.5 / self.b) * grown - change.ln_1p() - N::of(self.b) * change * change)
     }
 
-    /// `mu (exp F - c/J)`, by parts that are small near rest.
+    /// `mu (exp F - c/J - 2 b (J - 1) c)`, by parts that are small near rest.
     #[inline(always)]
     fn stress<N: Number>(&self, at: &Point<N, N>) -> Tensor<N> {
         let grown = (N::of(self.b) * at.first_invariant_change()).exp_m1();
-        let share = at.volume_change / at.volume_ratio;
+        let share = at.volume_change / at.volume_ratio - N::of(2.0 * self.b) * at.volume_change;
         let stress = at
             .distortion
             .plus(grown, at.gradient)
@@ -72,22 +75,23 @@ impl HyperelasticLaw for Demiray {
 
     #[inline(always)]
     fn tangent<N: Number>(&self, at: &Point<N, N>, change: Tensor<N>) -> Tensor<N> {
-        let over = at.volume_ratio.recip();
-        let along = N::of(2.0 * self.b) * at.own * at.gradient.contracted(change);
+        let (over, twice) = (at.volume_ratio.recip(), N::of(2.0 * self.b));
+        let along = twice * at.own * at.gradient.contracted(change);
         let changed = change.scaled(at.own).plus(along, at.gradient);
-        let volume = over * over * at.cofactor.contracted(change);
+        let volume = (over * over - twice) * at.cofactor.contracted(change);
         let changed = changed
-            .plus(-over, at.cofactor_change(change))
+            .plus(-over - twice * at.volume_change, at.cofactor_change(change))
             .plus(volume, at.cofactor);
         changed.scaled(N::of(self.mu))
     }
 
-    /// `mu (exp (|g|^2 I + 2 b F g (F g)') + c g (c g)'/J^2) + modulus c g (c g)'`.
+    /// `mu (exp (|g|^2 I + 2 b F g (F g)') + (1/J^2 - 2 b) c g (c g)') + modulus c g (c g)'`.
     #[inline(always)]
     fn node_block<N: Number>(&self, at: &Point<N, N>, bulk: Bulk<N>, g: [N; 3]) -> Tensor<N> {
         let (mu, [x, y, z]) = (N::of(self.mu), g);
         let (along, normal) = (at.gradient.on(g), at.cofactor.on(g));
-        let of_volume = mu / (at.volume_ratio * at.volume_ratio) + bulk.modulus;
+        let ratio = at.volume_ratio;
+        let of_volume = mu / (ratio * ratio) - N::of(2.0 * self.b) * mu + bulk.modulus;
         Tensor::diagonal(mu * at.own * (x * x + y * y + z * z))
             .plus(
                 mu * N::of(2.0 * self.b) * at.own,

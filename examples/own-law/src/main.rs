@@ -50,13 +50,13 @@ integrator = "central-difference"
 dt = "auto"
 "#;
 
-/// Nominal stress (Pa) of the law along the only stretch: `mu (l exp(b (l^2 - 1)) - 1/l) + lambda (l - 1)`.
+/// Nominal stress (Pa) of the law along the only stretch: `mu (l exp(b (l^2 - 1)) - 1/l) + (lambda - 2 b mu) (l - 1)`.
 fn closed_form(stretch: f64) -> f64 {
     let (modulus, nu, b) = (3500.0, 0.3, 0.5);
     let mu = modulus / (2.0 * (1.0 + nu));
     let lambda = 2.0 * mu * nu / (1.0 - 2.0 * nu);
     let grown = (b * (stretch * stretch - 1.0_f64)).exp();
-    mu * (stretch * grown - 1.0 / stretch) + lambda * (stretch - 1.0)
+    mu * (stretch * grown - 1.0 / stretch) + (lambda - 2.0 * b * mu) * (stretch - 1.0)
 }
 
 fn main() -> Result<(), Box<dyn Error>> {

@@ -300,10 +300,17 @@ impl<'a> Table<'a> {
     /// False for a key that does not go with a word that another key holds, or that goes with a key of which this is
     /// false.
     fn may_be_given(&self, key: &dyn Described) -> bool {
-        let is_possible = |other: &str| {
+        self.may_be_given_after(key, &mut Vec::new())
+    }
+
+    /// The same, for keys that go with each other: of `seen` nothing more is asked.
+    fn may_be_given_after(&self, key: &dyn Described, seen: &mut Vec<&'static str>) -> bool {
+        seen.push(key.name());
+        let mut is_possible = |other: &str| {
             let keys = self.description.all_keys();
             let other = keys.into_iter().find(|key| key.name() == other);
-            other.is_none_or(|other| self.may_be_given(other))
+            let other = other.filter(|other| !seen.contains(&other.name()));
+            other.is_none_or(|other| self.may_be_given_after(other, seen))
         };
         key.conditions()
             .iter()

@@ -11,7 +11,7 @@ fn cube() -> String {
 
 /// Commands of every kind at their steps.
 fn drive(world: &mut World, steps: std::ops::Range<usize>) {
-    let blade = |z: f64| [[0.03, -0.01, z], [0.03, 0.07, z]];
+    let blade = |z: f64| [[0.022, -0.01, z], [0.022, 0.07, z]];
     for step in steps {
         let command = match step {
             5 | 70 => Some(Command::Pose {
@@ -25,11 +25,11 @@ fn drive(world: &mut World, steps: std::ops::Range<usize>) {
             }),
             20 => Some(Command::Cut {
                 from: blade(0.07),
-                to: blade(0.045),
+                to: blade(0.035),
             }),
             66 => Some(Command::Cut {
-                from: blade(0.045),
-                to: blade(0.03),
+                from: blade(0.035),
+                to: blade(0.018),
             }),
             30 => Some(Command::Dt(0.001)),
             _ => None,
