@@ -75,7 +75,7 @@ impl<'a> Table<'a> {
             known: known
                 .into_iter()
                 .filter(|key| self.may_be_given(*key))
-                .map(|key| key.name())
+                .map(Described::name)
                 .collect(),
         };
         self.place.key_fault(key.get_ref(), fault)
@@ -84,7 +84,7 @@ impl<'a> Table<'a> {
     /// The names of the keys that are described.
     fn known(&self) -> impl Iterator<Item = &'static str> + use<> {
         let keys = self.description.all_keys();
-        keys.into_iter().map(|key| key.name())
+        keys.into_iter().map(Described::name)
     }
 
     /// The entries whose keys are not described.

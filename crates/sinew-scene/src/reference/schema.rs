@@ -8,7 +8,9 @@ use sinew_integrators::{OptionDefault, OptionHelp, OptionKind};
 use super::examples;
 use super::options::{self, SharedOption};
 use super::sections::{self, is_refused};
-use crate::decode::{Condition, Goes, KeyDescription, Needs, Shape, Stated, TableDescription};
+use crate::decode::{
+    Condition, Described, Goes, KeyDescription, Needs, Shape, Stated, TableDescription,
+};
 use crate::scene::{INTEGRATOR, RUN};
 
 /// The schema of a document.
@@ -36,7 +38,7 @@ pub(super) fn of(document: &'static TableDescription) -> Value {
 fn table(table: &TableDescription) -> Map<String, Value> {
     let keys = table.all_keys().into_iter();
     let keys = keys.filter(|key| !is_refused(*key));
-    let keys: Vec<KeyDescription> = keys.map(|key| key.describe()).collect();
+    let keys: Vec<KeyDescription> = keys.map(Described::describe).collect();
     let one_of = match table.needs {
         Needs::OneOf(keys) => keys,
         Needs::Any | Needs::Some => &[],

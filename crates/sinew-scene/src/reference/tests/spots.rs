@@ -2,7 +2,7 @@
 
 use toml::{Table, Value};
 
-use crate::decode::{Goes, KeyDescription, TableDescription};
+use crate::decode::{Described, Goes, KeyDescription, TableDescription};
 use crate::reference::examples;
 use crate::reference::sections::tables_in;
 use crate::scene::DOCUMENT;
@@ -52,7 +52,7 @@ impl Spot {
 
     /// The descriptions of the table's keys.
     pub(super) fn keys(&self) -> impl Iterator<Item = KeyDescription> + use<> {
-        self.table.all_keys().into_iter().map(|key| key.describe())
+        self.table.all_keys().into_iter().map(Described::describe)
     }
 
     /// True if a key's conditions hold with the other keys that are given.
