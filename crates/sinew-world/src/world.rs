@@ -25,8 +25,8 @@ pub use saved::{Commanded, Saved};
 
 /// A scene in motion: the only thing that takes its steps.
 ///
-/// It holds the scene as it was built, the body after its cuts, state, integrator, tools and inputs. A [`Recorder`]
-/// observes the motion of [`World::advance`]; [`Command`]s between steps steer tools, scale loads, cut, and switch
+/// It holds the scene as it was built, the body after its cuts, state, integrator, tools and inputs. A [`Recorder`](crate::Recorder)
+/// observes the motion of [`World::advance`]; [`Command`](crate::Command)s between steps steer tools, scale loads, cut, and switch
 /// methods.
 ///
 /// A world of [`World::new`] takes commands, and its [`Log`] repeats it bit for bit. Without commands it takes the

@@ -2,7 +2,7 @@
 //!
 //! A law is a struct that implements [`HyperelasticLaw`](sinew_fem::hyperelastic::HyperelasticLaw): its energy, stress
 //! and tangent, and its parameters, from which keys of scenes, their checks and their help follow. `src/demiray.rs` is
-//! the whole law, with a parameter that no other law has. [`register`](sinew_fem::hyperelastic::register) adds it to
+//! the whole law, with a parameter that no other law has. [`register`] adds it to
 //! the models that scenes know; its loops are compiled for its own type.
 //!
 //! ```sh

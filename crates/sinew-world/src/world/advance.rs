@@ -16,7 +16,7 @@ impl World {
     ///
     /// # Errors
     /// [`WorldStepError`] if the motion diverges, a law refuses a state or a method finds no solution: only
-    /// [`Command::Reset`] continues from there, and every other step gives the same error.
+    /// [`Command::Reset`](crate::Command::Reset) continues from there, and every other step gives the same error.
     pub fn step(&mut self) -> Result<StepReport, WorldStepError> {
         self.guarded(|world| {
             world.begin_step()?;
