@@ -36,7 +36,7 @@ pub use {
     sinew_cnn as cnn, sinew_core as core, sinew_cutting as cutting, sinew_fem as fem,
     sinew_integrators as integrators, sinew_machines as machines, sinew_measure as measure,
     sinew_mesh as mesh, sinew_scene as scene, sinew_sparse as sparse, sinew_tools as tools,
-    sinew_world as session,
+    sinew_world as world,
 };
 
 #[cfg(feature = "haptics")]
