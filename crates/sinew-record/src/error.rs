@@ -6,7 +6,7 @@ use sinew_core::{EvaluationError, OptionError, SimulateError, StateBytesError};
 use sinew_fem::FieldError;
 use sinew_mesh::vtu::WriteVtuError;
 use sinew_scene::output::OutputError;
-use sinew_scene::{CuttingError, DrivenLoadError, ProbeRowError, ReactionError, SceneError};
+use sinew_scene::{CuttingError, ProbeRowError, ReactionError, SceneError};
 use sinew_world::{InputFileError, ReplayError, WorldStepError};
 
 /// A reason for which a run leaves no result, or cannot go on.
@@ -110,7 +110,4 @@ pub enum RecordRunError {
     /// A step that cannot be taken.
     #[error(transparent)]
     Step(#[from] WorldStepError),
-    /// Loads that cannot be driven.
-    #[error(transparent)]
-    Driven(#[from] DrivenLoadError),
 }

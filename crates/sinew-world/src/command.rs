@@ -106,8 +106,8 @@ pub enum CommandError {
     /// A method that cannot take a step from here.
     #[error("no step can be taken with that: {0}")]
     Step(#[from] StepError),
-    /// A tool or a load of a world that follows its scene.
-    #[error("this world follows its scene: tools and loads take commands in one of `World::new`")]
+    /// A world that follows its scene.
+    #[error("this world follows its scene and takes no commands: build one by `World::new`")]
     Follows,
     /// A session whose last step failed.
     #[error("the last step failed: only a reset goes on from here")]

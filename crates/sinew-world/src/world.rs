@@ -70,7 +70,7 @@ pub struct World {
     tools: Vec<Hand>,
     loads: Vec<Knob>,
     state: State,
-    /// Buffer for a step that is tried.
+    /// Buffer for a step that is tried, and for the state before a cut.
     trial: State,
     steps: usize,
     /// Time (s) after the last step that was taken whole; a step that fails may leave a part of it behind.
@@ -212,7 +212,7 @@ impl World {
     }
 
     /// A world that follows its scene, by an integrator that is set up for it: tools and loads have their courses, and
-    /// commands to them are refused.
+    /// commands are refused.
     ///
     /// # Errors
     /// [`CuttingError`] for a body that cannot be cut, which building the scene rules out.
@@ -248,7 +248,7 @@ impl World {
             simulation,
             fresh: Inputs::new(),
             inputs: Inputs::new(),
-            trial: state.clone(),
+            trial: State::at_rest(0),
             reached: state.t(),
             state,
             steps: 0,

@@ -212,7 +212,8 @@ impl World {
         if self.sheets.is_empty() && cutter.idle_until(t) >= end {
             return Ok(());
         }
-        let (energy, before) = (cutter.totals().energy(), self.state.clone());
+        let energy = cutter.totals().energy();
+        self.trial.clone_from(&self.state);
         let (state, inputs) = (&mut self.state, &self.inputs);
         let mut all_acts = || {
             let mut changed: Option<Simulation> = None;
@@ -231,12 +232,12 @@ impl World {
             Ok(None) => return Ok(()),
             Err(error) => {
                 // What is shown of a session that failed is one body with its own state.
-                self.state = before;
+                self.state.clone_from(&self.trial);
                 return Err(WorldStepError::Cutting(error));
             }
         };
         self.change = Some(BodyCut {
-            before,
+            before: self.trial.clone(),
             after: self.state.clone(),
             energy: cutter.totals().energy() - energy,
         });

@@ -93,10 +93,10 @@ impl World {
 
     /// Checks names and numbers of a command.
     fn check_words(&self, command: &Command) -> Result<(), CommandError> {
+        if self.follows {
+            return Err(CommandError::Follows);
+        }
         match command {
-            Command::Pose { .. } | Command::LoadFactor { .. } if self.follows => {
-                Err(CommandError::Follows)
-            }
             Command::Pose {
                 tool,
                 position,

@@ -1,7 +1,7 @@
 //! A motion that is kept and continued: undone, and carried over to another world.
 
 use sinew_scene::Scene;
-use sinew_world::{Command, Replay, RestoreError, World};
+use sinew_world::{Command, CommandError, Replay, RestoreError, World};
 
 use crate::common::{CUBE, build, following, scene, session};
 
@@ -74,6 +74,8 @@ fn a_driven_and_cut_world_continues_bit_for_bit_here_and_in_another_world() {
 #[test]
 fn a_world_takes_the_motion_of_its_own_scene_and_kind_only() {
     let mut followed = following(build(&cube()));
+    let refused = followed.command(Command::Dt(0.001));
+    assert!(matches!(refused, Err(CommandError::Follows)));
     followed.advance(20, &mut ()).unwrap();
     let saved = followed.save();
     followed.advance(20, &mut ()).unwrap();
