@@ -1,9 +1,11 @@
 //! A tool of a simulated body in the hand of a device.
 
+use std::sync::Arc;
+
 use sinew_core::{EvaluationError, LoadTime, Trial};
 use sinew_tools::Tools;
 use sinew_tools::vector::{add, length, scaled, sub};
-use sinew_world::{Command, CommandError, World, WorldStepError};
+use sinew_world::{CommandError, ToolId, World, WorldStepError};
 
 use crate::local_model::LocalModel;
 use crate::published::{DeviceMotion, Published, Simulated};
@@ -15,8 +17,7 @@ use crate::stiffness::{Carried, Carry, LocalStiffness};
 /// is a command in the log of the world, which repeats the session without the device.
 pub struct ToolSimulation {
     world: World,
-    tool: usize,
-    name: String,
+    tool: ToolId,
     iterations: usize,
     steps: u64,
     stiffness: LocalStiffness,
@@ -47,11 +48,10 @@ impl ToolSimulation {
     /// # Errors
     /// [`ToolStepError::Device`] for a tool that the world does not have.
     pub fn new(world: World, tool: &str) -> Result<Self, ToolStepError> {
-        let index = world.tool(tool)?;
+        let tool = world.tool(tool)?;
         let dofs = world.state().u.len();
         Ok(Self {
-            tool: index,
-            name: tool.to_owned(),
+            tool,
             iterations: 2,
             steps: 0,
             stiffness: LocalStiffness::new(dofs),
@@ -84,7 +84,7 @@ impl ToolSimulation {
     /// node that meets the tool gives up its momentum within one step, a push that is the harder the shorter the step; a
     /// tool of mass m takes it up before the coupling does.
     fn felt(&self, tools: &Tools, force: [f64; 3], at: [f64; 3]) -> [f64; 3] {
-        let body = tools.tools()[self.tool].body;
+        let body = tools.tools()[self.tool.index()].body;
         match (&self.last, body) {
             (Some(last), Some(body)) if body.coupling > 0.0 => {
                 let foreseen = LocalModel::of(last).force(at);
@@ -98,7 +98,7 @@ impl ToolSimulation {
 
     /// Lists the cells that the tool moves along.
     fn carry(&mut self, tools: &Tools) {
-        let own = &tools.tools()[self.tool];
+        let own = &tools.tools()[self.tool.index()];
         self.carried.clear();
         let forces = tools.forces(self.world.state());
         let pushed = tools.touched_cells().iter().zip(forces);
@@ -141,22 +141,18 @@ impl Simulated for ToolSimulation {
 
     fn step(&mut self, device: &DeviceMotion) -> Result<Published, ToolStepError> {
         let dt = self.world.dt();
-        self.world.command(Command::Pose {
-            tool: self.name.clone(),
-            position: add(device.position, scaled(device.velocity, dt)),
-            rotation_vector: device.rotation_vector,
-        })?;
+        let position = add(device.position, scaled(device.velocity, dt));
+        self.world
+            .steer(self.tool, position, device.rotation_vector)?;
         self.world.step()?;
         self.steps += 1;
         self.fit();
-        let scene = self.world.simulation().clone();
-        let Some(tools) = scene.model().tools() else {
+        let body = Arc::clone(self.world.body());
+        let (Some(tools), Some(report)) = (body.model().tools(), self.world.tool_report(self.tool))
+        else {
             return Ok(Published::free_at(device.position));
         };
-        let (pose, report) = (
-            self.world.tool_pose(self.tool),
-            tools.report(self.world.state(), self.tool),
-        );
+        let pose = self.world.tool_pose(self.tool);
         self.carry(tools);
         let state = self.world.state();
         let trial = Trial {
@@ -166,7 +162,7 @@ impl Simulated for ToolSimulation {
             v: &self.at_rest,
             internal: &state.internal,
         };
-        let stiffness = match scene.system().as_elastic() {
+        let stiffness = match body.system().as_elastic() {
             Some(law) => self
                 .stiffness
                 .refine(law, &trial, &self.carried, self.iterations)?,
@@ -186,7 +182,7 @@ impl Simulated for ToolSimulation {
             force: self.felt(tools, report.force, pose.position()),
             torque: report.torque,
             stiffness,
-            may_pull: tools.tools()[self.tool].grasp.is_some(),
+            may_pull: tools.tools()[self.tool.index()].grasp.is_some(),
         };
         self.last = Some(published);
         Ok(published)

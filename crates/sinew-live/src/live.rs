@@ -100,7 +100,7 @@ impl Live {
             })?;
         let address = listener.local_addr().map_err(LiveError::Serve)?;
         let session = World::new(scene.clone())?.with_values(&values);
-        let simulation = Arc::clone(session.simulation());
+        let simulation = Arc::clone(session.scene());
         let body = simulation.model().body().ok_or(LiveError::NoBody)?;
         let surface = Surface::of(&body.mesh);
         let loads = loads_of(&simulation, body);
@@ -122,7 +122,9 @@ impl Live {
                 scene,
                 values,
                 files: session.log().header().inputs.clone(),
-                first_factors: pulled.map(|load| (load.name.clone(), 0.0)).collect(),
+                first_factors: pulled
+                    .map(|load| (load.name.as_str().into(), 0.0))
+                    .collect(),
             },
             panes,
             second,
@@ -186,7 +188,8 @@ impl Live {
             simulation,
             ..
         } = self;
-        let survey = Survey::start(&shared, &simulation).map_err(LiveError::Serve)?;
+        let survey =
+            Survey::start(&shared, &simulation, simulation.body()).map_err(LiveError::Serve)?;
         let simulated = {
             let shared = Arc::clone(&shared);
             thread::Builder::new()
@@ -229,7 +232,7 @@ impl Live {
 }
 
 fn loads_of(simulation: &Simulation, body: &BodyModel) -> Vec<LoadFacts> {
-    let names = simulation.load_names().into_iter().enumerate();
+    let names = simulation.body().load_names().into_iter().enumerate();
     let facts = names.map(|(place, name)| {
         let what = match body.problem.loads.get(place) {
             Some(load) => format!("{}, {}", kind_of(&load.kind), load.on),

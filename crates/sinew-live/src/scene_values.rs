@@ -13,7 +13,7 @@ pub(crate) struct SceneValues {
     /// The files of the scene as they were when the page was opened.
     pub(crate) files: Vec<InputFile>,
     /// Loads whose factors are other than 1 at the beginning.
-    pub(crate) first_factors: Vec<(String, f64)>,
+    pub(crate) first_factors: Vec<(std::sync::Arc<str>, f64)>,
 }
 
 impl SceneValues {

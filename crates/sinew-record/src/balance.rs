@@ -6,11 +6,11 @@ use serde::{Deserialize, Serialize};
 use sinew_core::vectors::dot;
 use sinew_core::{
     Acceleration, Contact, ElasticLaw, EnergyBehaviour, Inputs, LinearOperators, LoadTime, Moment,
-    Needs, Properties, Ramp, State,
+    Needs, Properties, Ramp, State, System,
 };
 use sinew_fem::Model;
 use sinew_integrators::{NumericalDissipation, StepEnd, Stepper};
-use sinew_scene::{SceneModel, Schedule, Simulation};
+use sinew_scene::{SceneBody, SceneModel, Schedule, Simulation};
 use sinew_tools::Tools;
 use sinew_world::BodyCut;
 
@@ -96,7 +96,8 @@ pub(crate) struct LastRow {
 /// their kinetic energy and their dissipation, so jumps of its speed do not matter. Loads that jump or bend together
 /// with moved supports remain in part.
 pub(crate) struct Balance {
-    simulation: Arc<Simulation>,
+    body: Arc<SceneBody>,
+    may_be_cut: bool,
     pub(crate) sums: Sums,
     pub(crate) last: Option<LastRow>,
     /// All nodes at the last row, where some are moved.
@@ -183,12 +184,14 @@ struct Nodes {
 impl Balance {
     /// Begins with rows at these steps of the method; of several methods, or steps of several lengths, with `None`.
     pub(crate) fn new(
-        simulation: &Arc<Simulation>,
+        scene: &Simulation,
+        body: &Arc<SceneBody>,
         method: Option<&dyn Stepper>,
         rows: Schedule,
     ) -> Self {
         let mut balance = Self {
-            simulation: Arc::clone(simulation),
+            body: Arc::clone(body),
+            may_be_cut: scene.is_cut(),
             sums: Sums::default(),
             last: None,
             nodes: None,
@@ -198,12 +201,12 @@ impl Balance {
             has_rows_of_steps: rows.is_every_step(),
         };
         // Beside steps that are sweeps a look at each of them costs too much where rows are rare for that reason.
-        balance.takes_energy = method.is_some_and(|method| takes_energy(method, simulation));
+        balance.takes_energy = method.is_some_and(|method| takes_energy(method, body.system()));
         balance.is_watched = balance.takes_energy
             && !balance.has_memory()
             && (rows.is_every_step() || method.is_some_and(|method| !is_program(method)));
         // The form is that of one step of free degrees of freedom.
-        if !simulation.is_cut()
+        if !balance.may_be_cut
             && rows.is_every_step()
             && balance.moved_body().is_none()
             && balance.operators().is_some()
@@ -216,7 +219,7 @@ impl Balance {
     /// True if stress relaxes: energy stored and energy dissipated by memory are not separated, and are part of the
     /// remainder.
     pub(crate) fn has_memory(&self) -> bool {
-        self.simulation.system().internal_variables() > 0
+        self.body.system().internal_variables() > 0
     }
 
     /// True if the scene has tools.
@@ -226,11 +229,11 @@ impl Balance {
 
     /// True if the body may be cut.
     pub(crate) fn has_cuts(&self) -> bool {
-        self.simulation.is_cut()
+        self.may_be_cut
     }
 
     fn tools(&self) -> Option<&Tools> {
-        self.simulation.model().tools().map(|tools| &**tools)
+        self.body.model().tools().map(|tools| &**tools)
     }
 
     /// True if the energy that the method takes is known in closed form.
@@ -264,22 +267,22 @@ impl Balance {
     }
 
     /// Continues with loads that follow inputs, which changes no force yet.
-    pub(crate) fn change_loads(&mut self, simulation: &Arc<Simulation>) {
-        self.simulation = Arc::clone(simulation);
+    pub(crate) fn change_loads(&mut self, body: &Arc<SceneBody>) {
+        self.body = Arc::clone(body);
     }
 
     /// Continues on a body that was cut.
     pub(crate) fn change_body(
         &mut self,
-        simulation: &Arc<Simulation>,
+        body: &Arc<SceneBody>,
         cut: &BodyCut,
     ) -> Result<(), RecordRunError> {
-        self.simulation = Arc::clone(simulation);
+        self.body = Arc::clone(body);
         self.sums.cuts += cut.energy;
         let state = &cut.after;
         let t = state.t();
         let mut v = vec![0.0; state.u.len()];
-        state.velocity_at_t(self.simulation.system(), Inputs::none(), &mut v)?;
+        state.velocity_at_t(self.body.system(), Inputs::none(), &mut v)?;
         let internal = match self.moved_body() {
             Some(_) => state.internal.clone(),
             None => Vec::new(),
@@ -298,12 +301,12 @@ impl Balance {
     }
 
     fn operators(&self) -> Option<&LinearOperators> {
-        Some(self.simulation.system().as_linear()?.operators())
+        Some(self.body.system().as_linear()?.operators())
     }
 
     /// The body, where parts of it are moved.
     fn moved_body(&self) -> Option<&Model> {
-        let body = self.simulation.model().body()?;
+        let body = self.body.model().body()?;
         (!body.problem.moves.is_empty()).then_some(&body.model)
     }
 
@@ -441,10 +444,10 @@ impl Balance {
 
     /// True if a load or a support changed between the last two rows, or may have.
     pub(crate) fn has_changed(&self) -> bool {
-        let (Some(body), Some(last)) = (self.simulation.model().body(), &self.last) else {
+        let (Some(body), Some(last)) = (self.body.model().body(), &self.last) else {
             return true;
         };
-        let law = self.simulation.system().as_elastic();
+        let law = self.body.system().as_elastic();
         let loads = body.problem.loads.iter().map(|load| &load.ramp);
         let courses = body.problem.moves.iter().flat_map(|moving| &moving.courses);
         let mut ramps = loads.chain(courses.map(|course| &course.ramp));
@@ -529,7 +532,7 @@ impl Balance {
     }
 
     fn loads_at(&self, when: LoadTime<'_>, u: &[f64]) -> Vec<f64> {
-        let system = self.simulation.system();
+        let system = self.body.system();
         let mut loads = vec![0.0; system.dofs()];
         system.external_force(when, u, &mut loads);
         loads
@@ -570,8 +573,8 @@ impl Balance {
     /// Kinetic and elastic energy.
     fn stored(&self, row: &LastRow, nodes: Option<&Nodes>) -> Result<(f64, f64), RecordRunError> {
         let (Some(model), Some(nodes)) = (self.moved_body(), nodes) else {
-            let energy = match self.simulation.model() {
-                SceneModel::Body(_) => self.simulation.system().energy(&row.u, &row.v),
+            let energy = match self.body.model() {
+                SceneModel::Body(_) => self.body.system().energy(&row.u, &row.v),
                 SceneModel::Oscillator(_) => self
                     .operators()
                     .map(|operators| operators.energy(&row.u, &row.v)),
@@ -596,7 +599,7 @@ impl Balance {
         let Some(model) = self.moved_body() else {
             return Ok(0.0);
         };
-        let damping = self.simulation.system().as_elastic();
+        let damping = self.body.system().as_elastic();
         let is_damped = damping.map(ElasticLaw::damping).is_some_and(|damping| {
             damping.mass != 0.0 || damping.stiffness != 0.0 || damping.extra.is_some()
         });
@@ -631,7 +634,7 @@ impl Balance {
         [last, here]: [&LastRow; 2],
         nodes: Option<[&[f64]; 2]>,
     ) -> Result<f64, RecordRunError> {
-        let (span, system) = (here.t - last.t, self.simulation.system());
+        let (span, system) = (here.t - last.t, self.body.system());
         let Some(damping) = system.as_elastic().map(ElasticLaw::damping) else {
             return Ok(0.0);
         };
@@ -651,7 +654,7 @@ impl Balance {
             operators.subtract_damping(&w, &mut force);
             return Ok(-span * dot(&force, &w));
         }
-        let Some(body) = self.simulation.model().body() else {
+        let Some(body) = self.body.model().body() else {
             return Ok(0.0);
         };
         let of_body = |row: &LastRow| -> Result<Vec<f64>, RecordRunError> {
@@ -679,10 +682,10 @@ impl Balance {
 
 /// True if a method itself dissipates energy of an undamped motion. Energy properties of methods that solve equations
 /// hold for linear equations only.
-fn takes_energy(method: &dyn Stepper, simulation: &Simulation) -> bool {
+fn takes_energy(method: &dyn Stepper, system: &dyn System) -> bool {
     let Properties { energy, needs, .. } = method.properties();
     let falls = matches!(energy, EnergyBehaviour::Falls | EnergyBehaviour::NeverRises);
-    falls || (needs == Needs::Tangents && simulation.system().as_linear().is_none())
+    falls || (needs == Needs::Tangents && system.as_linear().is_none())
 }
 
 /// True if the steps of a method run as a program of the machine.

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use sinew_core::{Moment, RecordError, Verdict};
 use sinew_integrators::Stepper;
 use sinew_integrators::explicit::GuardOption;
-use sinew_scene::{Schedule, Simulation};
+use sinew_scene::{SceneBody, Schedule, Simulation};
 use sinew_world::Recorder;
 
 use crate::balance::Balance;
@@ -22,7 +22,7 @@ const LOOKS: usize = 100;
 /// A recorder that measures the energy taken by a dissipative method at each step, or by a clamp now and then, and
 /// reports it.
 pub struct EnergyLoss {
-    simulation: Arc<Simulation>,
+    body: Arc<SceneBody>,
     /// None where nothing is looked at.
     looks: Option<(Balance, Schedule)>,
     saturates: bool,
@@ -31,23 +31,24 @@ pub struct EnergyLoss {
 }
 
 impl EnergyLoss {
-    /// Looks at a run of this simulation by a method that is set up for it.
+    /// Looks at a run of this scene by a method that is set up for it.
     #[must_use]
-    pub fn new(simulation: &Arc<Simulation>, method: &dyn Stepper) -> Self {
+    pub fn new(simulation: &Simulation, method: &dyn Stepper) -> Self {
+        let body = simulation.body();
         let rows = Schedules::of(simulation).energy;
-        let balance = Balance::new(simulation, Some(method), rows);
+        let balance = Balance::new(simulation, body, Some(method), rows);
         let steps = simulation.run().steps;
         let looks = if balance.looks_at_every_step() {
             Some((balance, Schedule::at_most(steps, steps)))
         } else if has_clamp(simulation) {
             let most = (steps / STEPS_FOR_A_LOOK).max(LOOKS);
             let rows = Schedule::at_most(most, steps);
-            Some((Balance::new(simulation, Some(method), rows), rows))
+            Some((Balance::new(simulation, body, Some(method), rows), rows))
         } else {
             None
         };
         Self {
-            simulation: Arc::clone(simulation),
+            body: Arc::clone(body),
             looks,
             saturates: false,
             v: Vec::new(),
@@ -58,9 +59,8 @@ impl EnergyLoss {
     /// A sentence about the energy, where the method took much of it.
     #[must_use]
     pub fn in_words(&self) -> Option<String> {
-        let method = format!("`{}`", self.simulation.settings().integrator);
-        self.taken
-            .in_words(&self.simulation, &method, self.saturates)
+        let method = format!("`{}`", self.body.scene().settings().integrator);
+        self.taken.in_words(&self.body, &method, self.saturates)
     }
 
     fn look(&mut self, moment: &Moment<'_>) -> Result<(), RecordRunError> {

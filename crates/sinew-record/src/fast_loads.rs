@@ -1,15 +1,15 @@
 //! Loads and motions that turn faster than energies are looked at.
 
 use sinew_core::Ramp;
-use sinew_scene::Simulation;
+use sinew_scene::SceneBody;
 
 /// Looks within half a wave of a sine from which on its work is known to 10 %.
 const LOOKS: f64 = 5.0;
 
 /// A sentence which says that checks of energy every `span` (s) are too rare to show the effect of the method, since a
 /// load or a motion varies faster; `None` otherwise.
-pub(crate) fn unseen(simulation: &Simulation, span: f64) -> Option<String> {
-    let problem = &simulation.model().body()?.problem;
+pub(crate) fn unseen(body: &SceneBody, span: f64) -> Option<String> {
+    let problem = &body.model().body()?.problem;
     let loads = problem.loads.iter().map(|load| &load.ramp);
     let courses = problem.moves.iter().flat_map(|moving| &moving.courses);
     let ramps = loads.chain(courses.map(|course| &course.ramp));

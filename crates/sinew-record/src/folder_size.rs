@@ -29,11 +29,14 @@ impl FolderSize {
     #[must_use]
     pub fn of(simulation: &Simulation) -> Self {
         let schedules = Schedules::of(simulation);
-        let probes = schedules.probes.count() * ProbeRows::new(simulation).columns().len();
-        let tools = ToolRows::of(simulation);
+        let probes = schedules.probes.count() * ProbeRows::new(simulation.body()).columns().len();
+        let tools = ToolRows::of(simulation.body());
         let tools = tools.map_or(0, |tools| schedules.probes.count() * tools.columns().len());
         // Time, six energies and perhaps that of the method; then six numbers for each support.
-        let supports = simulation.held_parts().map_or(0, |parts| parts.len());
+        let supports = simulation
+            .body()
+            .held_parts()
+            .map_or(0, |parts| parts.len());
         let energies = schedules.energy.count() * (8 + 1 + 6 * supports);
         Self {
             frames: schedules.fields.map_or(0, |fields| fields.count()),

@@ -122,7 +122,7 @@ impl sinew_core::Recorder for FrameLooks {
 
 impl Recorder for FrameLooks {
     fn body_changed(&mut self, change: &BodyChange<'_>) -> Result<(), RecordError> {
-        if let (Some(watch), Some(body)) = (&mut self.watch, change.simulation.model().body()) {
+        if let (Some(watch), Some(body)) = (&mut self.watch, change.body.model().body()) {
             *watch = Watch::new(watch.schedule, body);
         }
         Ok(())

@@ -64,7 +64,7 @@ impl EnergyGrowth {
             load_before: Vec::new(),
             tools: simulation.model().tools().cloned(),
             work_of_tools: 0.0,
-            remedy: remedy(simulation, false),
+            remedy: remedy(simulation.body(), false),
             grown: None,
         }
     }

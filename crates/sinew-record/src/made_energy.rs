@@ -1,6 +1,6 @@
 //! Energy that a motion gains from nothing: limits and remedies.
 
-use sinew_scene::{Simulation, TimeStep};
+use sinew_scene::{SceneBody, Simulation, TimeStep};
 
 /// Energy (J) of a degree of freedom in a body at room temperature: what is below is no motion.
 pub(crate) const THERMAL: f64 = 4e-21;
@@ -12,11 +12,11 @@ pub(crate) fn has_stored_energy(simulation: &Simulation) -> bool {
 }
 
 /// A remedy for a motion that has gained energy from nothing.
-pub(crate) fn remedy(simulation: &Simulation, saturates: bool) -> String {
-    let settings = simulation.settings();
+pub(crate) fn remedy(body: &SceneBody, saturates: bool) -> String {
+    let settings = body.scene().settings();
     let entry = sinew_integrators::entry(&settings.integrator);
     if saturates || entry.is_some_and(|entry| !entry.substeps) {
-        format!("{} keeps it", keeper(simulation, saturates))
+        format!("{} keeps it", keeper(body, saturates))
     } else if settings.dt == TimeStep::Auto {
         "give a shorter dt in seconds".to_owned()
     } else {
@@ -25,16 +25,16 @@ pub(crate) fn remedy(simulation: &Simulation, saturates: bool) -> String {
 }
 
 /// A method that keeps energy in a scene, as its keys.
-pub(crate) fn keeper(simulation: &Simulation, saturates: bool) -> &'static str {
+pub(crate) fn keeper(body: &SceneBody, saturates: bool) -> &'static str {
     const NEWMARK: &str = "newmark";
-    let system = simulation.system();
+    let system = body.system();
     let is_met = system.as_linear().is_some() && system.contact().is_none();
     match sinew_integrators::entry(NEWMARK).filter(|_| is_met) {
         None if saturates => {
             "integrator = \"central-difference\" with dt = \"auto\" and without saturation"
         }
         None => "integrator = \"central-difference\" with dt = \"auto\"",
-        Some(_) if simulation.settings().integrator == NEWMARK => {
+        Some(_) if body.scene().settings().integrator == NEWMARK => {
             "gamma = 0.5 with beta = 0.25, as without these options,"
         }
         Some(_) => "integrator = \"newmark\"",

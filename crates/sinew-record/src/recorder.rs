@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use sinew_core::{Moment, RecordError, StepReport, Verdict};
 use sinew_scene::output::OwnedFolder;
-use sinew_scene::{Instants, ProbeRows, Schedule, Simulation};
+use sinew_scene::{HeldParts, Instants, ProbeRows, SceneBody, Schedule, Simulation};
 use sinew_world::{BodyChange, Recorder, World};
 
 use crate::balance::Balance;
@@ -16,7 +16,7 @@ use crate::frame_writer::{FrameWriter, SeenInFrames};
 use crate::pace::Pace;
 use crate::progress::{Progress, Seals};
 use crate::seal::SealedTable;
-use crate::tables::{self, Reactions};
+use crate::tables;
 use crate::tool_rows::{self, ToolRows};
 
 /// Most rows of a table, where the scene does not ask for more.
@@ -58,7 +58,7 @@ impl Schedules {
             steps,
             probes: Schedule::of_probes(
                 output.probes,
-                ProbeRows::new(simulation).columns().len(),
+                ProbeRows::new(simulation.body()).columns().len(),
                 MOST_ROWS,
                 (steps, dt),
             ),
@@ -82,20 +82,22 @@ impl Tables {
         folder: &OwnedFolder,
         seals: &Seals,
         balance: &Balance,
-        reactions: Option<&Reactions>,
+        reactions: Option<&HeldParts>,
         tools: Option<&ToolRows>,
-        simulation: &Simulation,
+        body: &SceneBody,
     ) -> Result<Self, RecordRunError> {
         Ok(Self {
             probes: SealedTable::open(folder, tables::PROBES, &seals.probes, || {
-                tables::probes_head(simulation)
+                tables::probes_head(body)
             })?,
             energy: SealedTable::open(folder, tables::ENERGY, &seals.energy, || {
                 tables::energy_head(balance)
             })?,
             reactions: reactions
-                .map(|rows| {
-                    SealedTable::open(folder, tables::REACTIONS, &seals.reactions, || rows.head())
+                .map(|held| {
+                    SealedTable::open(folder, tables::REACTIONS, &seals.reactions, || {
+                        tables::reactions_head(held)
+                    })
                 })
                 .transpose()?,
             tools: tools
@@ -126,14 +128,15 @@ impl Tables {
 
 /// Writes what is due after each step of a run.
 pub(crate) struct RunRecorder<'a> {
-    pub(crate) simulation: Arc<Simulation>,
+    pub(crate) scene: Arc<Simulation>,
+    pub(crate) body: Arc<SceneBody>,
     pub(crate) folder: &'a OwnedFolder,
     pub(crate) companion: &'a mut dyn Companion,
     pub(crate) schedules: Schedules,
     pub(crate) tables: Tables,
     pub(crate) probes: ProbeRows,
     pub(crate) balance: Balance,
-    pub(crate) reactions: Option<Reactions>,
+    pub(crate) reactions: Option<HeldParts>,
     pub(crate) tools: Option<ToolRows>,
     /// `None` for an oscillator.
     pub(crate) frames: Option<FrameWriter<'a>>,
@@ -200,8 +203,8 @@ impl RunRecorder<'_> {
                 let t = moment.state.t();
                 let before = self.balance.last.as_ref().map_or(0.0, |row| t - row.before);
                 let next = self.schedules.energy.next(step + 1);
-                let after = next.map_or(before, |next| (next - step) as f64 * self.simulation.dt());
-                reactions.row(&mut self.line, moment, [before, after])?;
+                let after = next.map_or(before, |next| (next - step) as f64 * self.scene.dt());
+                tables::reactions_row(&mut self.line, reactions, moment, [before, after])?;
                 file.push(&self.line)?;
             }
         }
@@ -222,7 +225,7 @@ impl RunRecorder<'_> {
         self.pace.look(step);
         let last = step == self.schedules.steps;
         self.companion.progress(step, moment.state.t());
-        let due = self.saved.elapsed().as_secs_f64() >= self.simulation.scene().output().checkpoint;
+        let due = self.saved.elapsed().as_secs_f64() >= self.scene.scene().output().checkpoint;
         self.stop = match (self.companion.is_interrupted(), self.saves && due) {
             _ if last => None,
             (true, _) => Some(Stop::Interrupted),
@@ -239,7 +242,7 @@ impl RunRecorder<'_> {
         let Some(frames) = &mut self.frames else {
             return Ok(());
         };
-        let has_acceleration = self.simulation.scene().output().acceleration;
+        let has_acceleration = self.scene.scene().output().acceleration;
         frames.write(self.progress.frames, moment, &self.v, has_acceleration)?;
         self.progress.frames += 1;
         self.frame_times.push(moment.state.t());
@@ -289,27 +292,27 @@ impl RunRecorder<'_> {
     }
 
     fn change_body(&mut self, change: &BodyChange<'_>) -> Result<(), RecordRunError> {
-        let simulation = change.simulation;
+        let body = change.body;
         match change.cut {
-            None => self.balance.change_loads(simulation),
+            None => self.balance.change_loads(body),
             Some(cut) => {
                 self.close_balance(&Moment {
-                    system: Arc::clone(&self.simulation).system(),
+                    system: Arc::clone(&self.body).system(),
                     inputs: change.inputs,
                     state: &cut.before,
                     step: change.steps,
                     work: change.work,
                 })?;
-                self.balance.change_body(simulation, cut)?;
-                self.probes = ProbeRows::new(simulation);
-                self.reactions = Reactions::of(simulation)?;
-                self.tools = ToolRows::of(simulation);
-                if let (Some(frames), Some(body)) = (&mut self.frames, simulation.model().body()) {
-                    frames.change_body(body);
+                self.balance.change_body(body, cut)?;
+                self.probes = ProbeRows::new(body);
+                self.reactions = HeldParts::of(body)?;
+                self.tools = ToolRows::of(body);
+                if let (Some(frames), Some(model)) = (&mut self.frames, body.model().body()) {
+                    frames.change_body(model);
                 }
             }
         }
-        self.simulation = Arc::clone(simulation);
+        self.body = Arc::clone(body);
         Ok(())
     }
 }

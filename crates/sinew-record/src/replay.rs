@@ -31,12 +31,12 @@ impl RunFolder {
     ) -> Result<RunEnd, RecordRunError> {
         let begun = Instant::now();
         let course = replay.course();
-        let simulation = replay.world().simulation().clone();
-        let schedules = Schedules::of_steps(&simulation, course.steps, course.dt);
+        let (simulation, body) = (replay.world().scene(), replay.world().body());
+        let schedules = Schedules::of_steps(simulation, course.steps, course.dt);
         Self::check(path, simulation.scene(), None, request.again)?;
         let mut record = Record::of(simulation.scene(), request)?;
         record.log = Some(LOG.to_owned());
-        let folder = Self::claim(path, &simulation, record, &schedules, &[LOG])?;
+        let folder = Self::claim(path, simulation, record, &schedules, &[LOG])?;
         let log = replay.log().to_text();
         folder.folder().write(LOG, log.as_bytes())?;
         let mass = replay.world().cutter().map(Cutter::mass);
@@ -44,7 +44,7 @@ impl RunFolder {
         let method = course.is_even().then_some(method);
         let beginning = Beginning {
             schedules,
-            balance: Balance::new(&simulation, method, schedules.energy),
+            balance: Balance::new(simulation, body, method, schedules.energy),
             progress: Progress::default(),
             largest: Vec::new(),
             resumed: false,
@@ -70,7 +70,7 @@ impl RunFolder {
         let end = End {
             world,
             before: 0,
-            stepping: Stepping::of_session(&replay.course_so_far(), world.simulation()),
+            stepping: Stepping::of_session(&replay.course_so_far(), world.scene()),
             remarks: world.integrator().remarks(),
             outrun: None,
             times: &times,

@@ -30,8 +30,8 @@ pub(crate) fn page(
     largest: &[f64],
     folder: &OwnedFolder,
 ) -> Result<String, RecordRunError> {
-    let simulation = summary.simulation;
-    let title = match simulation.scene().title() {
+    let (scene, body) = (summary.scene.scene(), summary.body);
+    let title = match scene.title() {
         "" => "A run",
         title => title,
     };
@@ -57,7 +57,7 @@ pub(crate) fn page(
     };
     if let Some(probes) = read(tables::PROBES)? {
         page.section("probes", "Probes");
-        let shown = simulation.probes().iter().take(MOST_DRAWN);
+        let shown = body.probes().iter().take(MOST_DRAWN);
         let drawn = shown.map(|probe| {
             let (letter, label, unit) = match probe.quantity {
                 Quantity::Displacement => ("u", "displacement [m]", "m"),
@@ -77,7 +77,7 @@ pub(crate) fn page(
             plot.svg()
         });
         beside::figures(&mut page, &drawn.collect::<Vec<_>>());
-        match simulation.probes().len() {
+        match body.probes().len() {
             0 => page.paragraph(
                 "The scene has none: a table `[[probe]]` with `name` and `point` makes one.",
             ),
@@ -101,10 +101,10 @@ pub(crate) fn page(
     if let Some(reactions) = read(tables::REACTIONS)? {
         page.section("reactions", "Forces of supports");
         let drawn = summary.parts.iter().map(|part| {
-            let begin = format!("{}_f_", part.name);
+            let begin = format!("{}_f_", tables::column_name(part));
             let plot = plot(
                 &reactions,
-                &part.by.replace('`', ""),
+                &tables::table_of(part).replace('`', ""),
                 "force [N]",
                 |column| {
                     let axis = column.strip_prefix(&begin)?.strip_suffix("_N")?;
@@ -117,7 +117,7 @@ pub(crate) fn page(
     }
     if let Some(rows) = read(tool_rows::NAME)? {
         page.section("tools", "Forces on tools");
-        let tools = simulation.model().tools().into_iter();
+        let tools = body.model().tools().into_iter();
         let tools = tools.flat_map(|tools| tools.tools());
         let drawn = tools.map(|tool| {
             let begin = format!("{}_force_", tool.name);
@@ -130,7 +130,7 @@ pub(crate) fn page(
         beside::figures(&mut page, &drawn.collect::<Vec<_>>());
     }
     page.section("scene", "The scene as it was run");
-    let text = sinew_draw::markup::escape(simulation.scene().source().text());
+    let text = sinew_draw::markup::escape(scene.source().text());
     page.folded("Its text", |page| {
         page.markup(&format!("<pre>{text}</pre>\n"));
     });
@@ -138,7 +138,7 @@ pub(crate) fn page(
 }
 
 fn facts(summary: &Summary<'_>) -> Vec<(&'static str, String)> {
-    let (simulation, progress) = (summary.simulation, summary.progress);
+    let (body, progress) = (summary.body, summary.progress);
     let outcome = match summary.ended {
         Ended::Finished => "finished".to_owned(),
         Ended::Diverged { t, place } => format!("diverged at t = {t:.6} s, first at {place}"),
@@ -166,7 +166,7 @@ fn facts(summary: &Summary<'_>) -> Vec<(&'static str, String)> {
             format!("{} sweeps, {} solves", work.sweeps, work.solves),
         ),
     ];
-    if let Some(body) = simulation.model().body() {
+    if let Some(body) = body.model().body() {
         let report = body.model.report();
         facts.push((
             "body",

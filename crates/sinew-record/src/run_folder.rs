@@ -7,7 +7,7 @@ use std::time::Instant;
 
 use sinew_core::{RecordError, SimulateError, StepError, StepReport};
 use sinew_scene::output::{OwnedFolder, Replaced, Tenant};
-use sinew_scene::{Cutter, OverlapWatch, ProbeRows, Scene, Simulation};
+use sinew_scene::{Cutter, HeldParts, OverlapWatch, ProbeRows, Scene, Simulation};
 use sinew_world::{AdvanceError, Shown, World, WorldStepError};
 
 use crate::balance::Balance;
@@ -25,7 +25,7 @@ use crate::run_end::{Ended, RunEnd};
 use crate::stepping::Stepping;
 use crate::summary::{self, CutRecord, Summary};
 use crate::surface;
-use crate::tables::{self, Reactions};
+use crate::tables;
 use crate::tool_rows::{self, ToolRows};
 
 /// The kind of result, in manifests and messages.
@@ -164,9 +164,9 @@ impl RunFolder {
     ) -> Result<Self, RecordRunError> {
         let scene = simulation.scene();
         let frames = schedules.fields.map_or(0, |fields| fields.count());
-        let columns = ProbeRows::new(simulation).columns().len();
+        let columns = ProbeRows::new(simulation.body()).columns().len();
         let numbers = schedules.probes.count().saturating_mul(columns);
-        let supports = simulation.held_parts()?.len();
+        let supports = simulation.body().held_parts()?.len();
         let energies = schedules.energy.count().saturating_mul(8 + 6 * supports);
         for (what, key, asked, most) in [
             ("frames of fields", "fields", frames, MOST_FRAMES),
@@ -199,10 +199,10 @@ impl RunFolder {
         .map(str::to_owned)
         .to_vec();
         names.extend(others.iter().map(|name| (*name).to_owned()));
-        if !simulation.held_parts()?.is_empty() {
+        if !simulation.body().held_parts()?.is_empty() {
             names.push(tables::REACTIONS.to_owned());
         }
-        if ToolRows::of(simulation).is_some() {
+        if ToolRows::of(simulation.body()).is_some() {
             names.push(tool_rows::NAME.to_owned());
         }
         if schedules.fields.is_some() {
@@ -253,10 +253,15 @@ impl RunFolder {
         let checkpoint = Checkpoint::restore(&self.folder, world)?;
         self.folder.remove(summary::NAME)?;
         let resumed = checkpoint.is_some();
-        let scene = Arc::clone(world.simulation());
+        let scene = Arc::clone(world.scene());
         let schedules = Schedules::of(&scene);
         world.set_up()?;
-        let mut balance = Balance::new(&scene, Some(world.integrator()), schedules.energy);
+        let mut balance = Balance::new(
+            &scene,
+            world.body(),
+            Some(world.integrator()),
+            schedules.energy,
+        );
         let (mut progress, mut largest) = (Progress::default(), Vec::new());
         if let Some(checkpoint) = checkpoint {
             balance = balance.resumed(checkpoint.progress.energy, checkpoint.row)?;
@@ -301,13 +306,13 @@ impl RunFolder {
                 *remark = format!("since the checkpoint at t = {begins_at} s: {remark}");
             }
         }
-        let simulation = world.simulation();
+        let outrun = (world.body()).outrun(world.integrator(), scene.dt(), world.state());
         let end = End {
             world,
             before,
-            stepping: Stepping::of_scene(simulation),
+            stepping: Stepping::of_scene(&scene),
             remarks,
-            outrun: simulation.outrun(world.integrator(), world.state()),
+            outrun,
             times: &times,
             resumed,
             begun,
@@ -332,16 +337,17 @@ impl RunFolder {
             resumed,
             saves,
         } = beginning;
-        let simulation = Arc::clone(world.as_ref().simulation());
-        let reactions = Reactions::of(&simulation)?;
-        let tools = ToolRows::of(&simulation);
+        let scene = Arc::clone(world.as_ref().scene());
+        let body = Arc::clone(world.as_ref().body());
+        let reactions = HeldParts::of(&body)?;
+        let tools = ToolRows::of(&body);
         let tables = Tables::open(
             &self.folder,
             &progress.seals,
             &balance,
             reactions.as_ref(),
             tools.as_ref(),
-            &simulation,
+            &body,
         )?;
         let seen = Mutex::new(SeenInFrames {
             seen: progress.seen.clone(),
@@ -350,9 +356,9 @@ impl RunFolder {
         });
         let before = progress.steps;
         thread::scope(|scope| {
-            let frames = simulation.model().body().map(|body| {
-                let settings = (simulation.dt(), *simulation.scene().output());
-                let job = FrameJob::new(&self.folder, body, settings, &seen);
+            let frames = body.model().body().map(|model| {
+                let settings = (scene.dt(), *scene.scene().output());
+                let job = FrameJob::new(&self.folder, model, settings, &seen);
                 FrameWriter::start(scope, job)
             });
             let mut recorder = RunRecorder {
@@ -360,8 +366,9 @@ impl RunFolder {
                 companion,
                 schedules,
                 tables,
-                probes: ProbeRows::new(&simulation),
-                simulation,
+                probes: ProbeRows::new(&body),
+                scene,
+                body,
                 balance,
                 reactions,
                 tools,
@@ -420,17 +427,15 @@ impl RunFolder {
             begun,
             cuts,
         } = end;
-        let (simulation, state) = (&**world.simulation(), world.state());
-        let system = simulation.system();
+        let (scene, moving, state) = (world.scene(), world.body(), world.state());
         progress.work.add(work);
-        let surface = simulation.model().body().map(|body| body.surface());
-        if let (Some(surface), Some(body)) = (surface, simulation.model().body()) {
+        let surface = moving.model().body().map(|body| body.surface());
+        if let (Some(surface), Some(body)) = (surface, moving.model().body()) {
             surface::write(surface, &self.folder, &body.mesh)?;
             frames::write_series(&self.folder, times)?;
         }
-        let reactions = Reactions::of(simulation)?;
-        let parts = reactions.map_or_else(Vec::new, |reactions| reactions.parts);
-        if let Some(body) = simulation.model().body()
+        let parts = moving.held_parts()?;
+        if let Some(body) = moving.model().body()
             && matches!(ended, Ended::Refused { .. } | Ended::Interrupted { .. })
         {
             // A run that came to its end, or beyond all bounds, has been looked at as far as it goes.
@@ -441,16 +446,17 @@ impl RunFolder {
         let mut warnings = summary::warnings(&progress.seen);
         warnings.extend(summary::driven_by_damping(&progress));
         let (methods, saturates) = (stepping.methods_in_words(), progress.work.saturated > 0);
-        let taken = progress.taken.in_words(simulation, &methods, saturates);
-        warnings.extend(summary::made_energy(simulation, &progress));
+        let taken = progress.taken.in_words(moving, &methods, saturates);
+        warnings.extend(summary::made_energy(scene, moving, &progress));
         // Where loads turn too fast for either, both say so.
         warnings.extend(taken.filter(|taken| !warnings.contains(taken)));
         warnings.extend(outrun);
-        warnings.extend(simulation.left_by_tools(state));
+        warnings.extend(moving.left_by_tools(state));
         warnings.extend(cuts.iter().flat_map(|cuts| cuts.left.clone()));
         let wall = begun.elapsed().as_secs_f64();
         let summary = Summary {
-            simulation,
+            scene,
+            body: moving,
             record: &self.record,
             ended: &ended,
             steps: before + steps,
@@ -498,7 +504,7 @@ impl RunFolder {
             own: (own, wall),
             frames: progress.frames,
             work: (work.sweeps, work.solves),
-            saturated: work.saturated_share(steps, system.dofs()),
+            saturated: work.saturated_share(steps, moving.system().dofs()),
             retaken: work.retaken,
             largest: (seen.value, seen.t, seen.at),
             cuts: cuts.map(|cuts| (cuts.totals, cuts.pieces)),
@@ -526,7 +532,7 @@ pub(crate) fn cut_record(world: &World, mass: Option<f64>) -> Option<CutRecord> 
 /// Any other error, as it is.
 fn refusal(error: AdvanceError, world: &World) -> Result<Ended, RecordRunError> {
     let refused = |t: f64, reason: String| Ok(Ended::Refused { t, reason });
-    let is_linear = world.simulation().system().as_linear().is_some();
+    let is_linear = world.body().system().as_linear().is_some();
     match error {
         AdvanceError::Step(WorldStepError::Cutting(source)) => {
             refused(world.t(), source.to_string())

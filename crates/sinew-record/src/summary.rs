@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 use sinew_integrators::Stepper;
-use sinew_scene::{CutTotals, Cutter, RoughStrokes, Simulation};
+use sinew_scene::{CutTotals, Cutter, HeldPlace, RoughStrokes, SceneBody, Simulation};
 
 use crate::fast_loads::unseen;
 use crate::made_energy::{THERMAL, has_stored_energy, remedy};
@@ -11,7 +11,7 @@ use crate::recorder::Schedules;
 use crate::request::Record;
 use crate::run_end::Ended;
 use crate::stepping::Stepping;
-use crate::tables::HeldPart;
+use crate::tables::{column_name, table_of};
 
 pub(crate) const NAME: &str = "summary.json";
 
@@ -26,7 +26,8 @@ const AT_REST: f64 = 1e-6;
 
 /// All data that a summary is made from.
 pub(crate) struct Summary<'a> {
-    pub(crate) simulation: &'a Simulation,
+    pub(crate) scene: &'a Simulation,
+    pub(crate) body: &'a SceneBody,
     pub(crate) record: &'a Record,
     pub(crate) ended: &'a Ended,
     pub(crate) steps: usize,
@@ -35,7 +36,7 @@ pub(crate) struct Summary<'a> {
     pub(crate) t: f64,
     pub(crate) progress: &'a Progress,
     pub(crate) schedules: &'a Schedules,
-    pub(crate) parts: &'a [HeldPart],
+    pub(crate) parts: &'a [HeldPlace],
     pub(crate) integrator: &'a dyn Stepper,
     /// Remarks of the integrator at the end.
     pub(crate) remarks: &'a [String],
@@ -147,11 +148,14 @@ const CREPT_ENERGY: f64 = 0.01;
 
 /// A warning if a motion in large deformation, or a saturated one, has more energy than was supplied. Energy taken by a
 /// method is no such sign.
-pub(crate) fn made_energy(simulation: &Simulation, progress: &Progress) -> Option<String> {
+pub(crate) fn made_energy(
+    scene: &Simulation,
+    body: &SceneBody,
+    progress: &Progress,
+) -> Option<String> {
     let ([most, made], given) = (progress.balance, progress.taken.given);
     let saturates = progress.work.saturated > 0;
-    let is_known =
-        (saturates || simulation.system().as_linear().is_none()) && !has_stored_energy(simulation);
+    let is_known = (saturates || body.system().as_linear().is_none()) && !has_stored_energy(scene);
     let (is_made, crept) = (made > MADE_ENERGY * given, progress.crept.most);
     let has_crept = crept > CREPT_ENERGY * most;
     let made = if is_made { made } else { crept };
@@ -162,9 +166,9 @@ pub(crate) fn made_energy(simulation: &Simulation, progress: &Progress) -> Optio
         };
         let told = format!(
             "the motion has {made:.3e} J more than the {given:.3e} J that it was given{share}: its fastest part is wrong; {}",
-            remedy(simulation, saturates)
+            remedy(body, saturates)
         );
-        unseen(simulation, progress.taken.span).unwrap_or(told)
+        unseen(body, progress.taken.span).unwrap_or(told)
     })
 }
 
@@ -182,12 +186,13 @@ pub(crate) fn driven_by_damping(progress: &Progress) -> Option<String> {
 impl Summary<'_> {
     pub(crate) fn to_json(&self) -> String {
         let Self {
-            simulation,
+            scene,
+            body,
             record,
             progress,
             ..
         } = self;
-        let (settings, seen, work) = (simulation.settings(), &progress.seen, progress.work);
+        let (settings, seen, work) = (scene.settings(), &progress.seen, progress.work);
         let (outcome, diverged) = match self.ended {
             Ended::Finished => ("finished", Value::Null),
             Ended::Diverged { t, place } => ("diverged", json!({ "t_s": t, "at": place })),
@@ -196,7 +201,7 @@ impl Summary<'_> {
         };
         let [most, last] = progress.kinetic;
         let largest = |largest: &Largest, unit: &str, at: &str, factor: f64| json!({ unit: largest.value * factor, "t_s": largest.t, at: largest.at });
-        let extremes = simulation.model().body().map(|_| {
+        let extremes = body.model().body().map(|_| {
             json!({
                 "seen": "at the instants of the fields",
                 "displacement": largest(&seen.displacement, "m", "node", 1.0),
@@ -205,7 +210,7 @@ impl Summary<'_> {
                 "inverted_tetrahedra": seen.inverted,
             })
         });
-        let regions = simulation.model().body().map(|body| {
+        let regions = body.model().body().map(|body| {
             let groups = body.problem.regions.iter();
             let names =
                 groups.map(|region| region.group.clone().unwrap_or_else(|| "whole body".into()));
@@ -215,13 +220,13 @@ impl Summary<'_> {
                 .collect::<Vec<_>>()
         });
         let parts = self.parts.iter().map(
-            |part| json!({ "columns": part.name, "by": part.by, "moment_about_m": part.centre }),
+            |part| json!({ "columns": column_name(part), "by": table_of(part), "moment_about_m": part.centre }),
         );
-        let tools = simulation.model().tools().into_iter();
+        let tools = body.model().tools().into_iter();
         let tools = tools.flat_map(|tools| tools.tools());
         let tools = tools.map(|tool| json!({ "columns": tool.name, "nodes": tool.cells.len() }));
         let json = json!({
-            "title": simulation.scene().title(),
+            "title": scene.scene().title(),
             "outcome": outcome,
             "diverged": diverged,
             "refused": match self.ended {
@@ -230,7 +235,7 @@ impl Summary<'_> {
             },
             "bounded": !matches!(self.ended, Ended::Diverged { .. }),
             "guarded": work.saturated > 0,
-            "saturated_share_of_velocities": work.saturated_share(self.steps, simulation.system().dofs()),
+            "saturated_share_of_velocities": work.saturated_share(self.steps, body.system().dofs()),
             "at_rest_at_the_end": last <= AT_REST * most,
             "t_s": self.t,
             "duration_s": settings.duration,

@@ -1,11 +1,10 @@
 //! Rows of probes, energies and reactions.
 
 use std::fmt::Write;
-use std::sync::Arc;
 
 use sinew_core::{LoadTime, Moment};
 use sinew_fem::On;
-use sinew_scene::{BodyModel, ProbeRows, ReactionOf, Simulation};
+use sinew_scene::{HeldParts, HeldPlace, ProbeRows, ReactionOf, SceneBody};
 
 use crate::balance::{Balance, Energies};
 use crate::error::RecordRunError;
@@ -15,10 +14,10 @@ pub(crate) const ENERGY: &str = "energy.csv";
 pub(crate) const REACTIONS: &str = "reactions.csv";
 
 /// A line that says where each probe is, and the line of column names.
-pub(crate) fn probes_head(simulation: &Simulation) -> String {
+pub(crate) fn probes_head(body: &SceneBody) -> String {
     let mut text = String::new();
-    for probe in simulation.probes().iter() {
-        let place = match (&probe.node, simulation.model().body()) {
+    for probe in body.probes().iter() {
+        let place = match (&probe.node, body.model().body()) {
             (Some(node), Some(body)) => {
                 let [x, y, z] = body.mesh.points[node.index as usize];
                 let (tag, distance) = (node.tag, node.distance);
@@ -31,7 +30,7 @@ pub(crate) fn probes_head(simulation: &Simulation) -> String {
         };
         text.push_str(&format!("# {}: {place}\n", probe.name));
     }
-    text.push_str(&ProbeRows::new(simulation).columns().join(","));
+    text.push_str(&ProbeRows::new(body).columns().join(","));
     text.push('\n');
     text
 }
@@ -68,127 +67,60 @@ pub(crate) fn push(out: &mut String, value: f64) {
     let _ = write!(out, "{value:?}");
 }
 
-/// A part of the body that is held or moved.
-#[derive(Debug, Clone)]
-pub(crate) struct HeldPart {
-    /// The beginning of its columns' names.
-    pub(crate) name: String,
-    /// The table that holds or moves it, in words.
-    pub(crate) by: String,
-    /// Its nodes, with the components that it holds and no part before it does.
-    nodes: Vec<(u32, [bool; 3])>,
-    /// Mean of its nodes at rest (m), about which moments are taken.
-    pub(crate) centre: [f64; 3],
-}
-
-/// Forces and moments of supports.
-pub(crate) struct Reactions {
-    body: Arc<BodyModel>,
-    pub(crate) parts: Vec<HeldPart>,
-    forces: Vec<[f64; 3]>,
-    u: Vec<[f64; 3]>,
-}
-
-impl Reactions {
-    /// `None` where nothing is held or moved.
-    pub(crate) fn of(simulation: &Simulation) -> Result<Option<Self>, RecordRunError> {
-        let Some(body) = simulation.model().body() else {
-            return Ok(None);
-        };
-        let parts: Vec<HeldPart> = simulation
-            .held_parts()?
-            .into_iter()
-            .map(|held| HeldPart {
-                name: column_name(held.by, &held.on),
-                by: format!("{} on {}", held.by, held.on),
-                nodes: held.nodes,
-                centre: held.centre,
-            })
-            .collect();
-        let nodes = body.mesh.points.len();
-        Ok((!parts.is_empty()).then(|| Self {
-            body: Arc::clone(body),
-            parts,
-            forces: vec![[0.0; 3]; nodes],
-            u: vec![[0.0; 3]; nodes],
-        }))
+/// The first lines of the table of the forces and moments of supports.
+pub(crate) fn reactions_head(held: &HeldParts) -> String {
+    let mut text = String::new();
+    let mut columns = vec!["t_s".to_owned()];
+    for part in held.parts() {
+        let (name, [x, y, z]) = (column_name(part), part.centre);
+        text.push_str(&format!(
+            "# {name}: {}; the moment is about {x:?} {y:?} {z:?} m, the mean of its nodes at rest\n",
+            table_of(part)
+        ));
+        columns.extend(["x", "y", "z"].map(|axis| format!("{name}_f_{axis}_N")));
+        columns.extend(["x", "y", "z"].map(|axis| format!("{name}_m_{axis}_Nm")));
     }
+    text.push_str(&columns.join(","));
+    text.push('\n');
+    text
+}
 
-    pub(crate) fn head(&self) -> String {
-        let mut text = String::new();
-        let mut columns = vec!["t_s".to_owned()];
-        for HeldPart {
-            name, by, centre, ..
-        } in &self.parts
-        {
-            let [x, y, z] = centre;
-            text.push_str(&format!(
-                "# {name}: {by}; the moment is about {x:?} {y:?} {z:?} m, the mean of its nodes at rest\n"
-            ));
-            columns.extend(["x", "y", "z"].map(|axis| format!("{name}_f_{axis}_N")));
-            columns.extend(["x", "y", "z"].map(|axis| format!("{name}_m_{axis}_Nm")));
+/// A row of that table, with the times (s) between it and its two neighbours. If the speed of a moved part jumps, each
+/// row includes its share, so that all rows together have the whole impulse.
+pub(crate) fn reactions_row(
+    out: &mut String,
+    held: &mut HeldParts,
+    moment: &Moment<'_>,
+    [before, after]: [f64; 2],
+) -> Result<(), RecordRunError> {
+    let t = moment.state.t();
+    let when = LoadTime::around(t, before, after).under(moment.inputs);
+    held.take(when, moment.state)?;
+    out.clear();
+    push(out, t);
+    for part in held.parts() {
+        for value in held.force_and_moment(part).as_flattened() {
+            out.push(',');
+            push(out, *value);
         }
-        text.push_str(&columns.join(","));
-        text.push('\n');
-        text
     }
-
-    /// A row, with the times (s) between it and its two neighbours. If the speed of a moved part jumps, each row
-    /// includes its share, so that all rows together have the whole impulse.
-    pub(crate) fn row(
-        &mut self,
-        out: &mut String,
-        moment: &Moment<'_>,
-        [before, after]: [f64; 2],
-    ) -> Result<(), RecordRunError> {
-        let body = &self.body;
-        let (t, u) = (moment.state.t(), &moment.state.u);
-        let when = LoadTime::around(t, before, after).under(moment.inputs);
-        body.model
-            .reactions_in(when, moment.state, &mut self.forces)?;
-        body.subtract_contact(moment.state, &mut self.forces);
-        body.model.displacements_at(when, u, &mut self.u)?;
-        out.clear();
-        push(out, t);
-        for part in &self.parts {
-            let (mut force, mut torque) = ([0.0; 3], [0.0; 3]);
-            for (node, own) in &part.nodes {
-                let node = *node as usize;
-                let f: [f64; 3] = std::array::from_fn(|axis| match own[axis] {
-                    true => self.forces[node][axis],
-                    false => 0.0,
-                });
-                let (point, moved) = (body.mesh.points[node], self.u[node]);
-                let arm: [f64; 3] =
-                    std::array::from_fn(|axis| point[axis] + moved[axis] - part.centre[axis]);
-                let cross = [
-                    arm[1] * f[2] - arm[2] * f[1],
-                    arm[2] * f[0] - arm[0] * f[2],
-                    arm[0] * f[1] - arm[1] * f[0],
-                ];
-                for axis in 0..3 {
-                    force[axis] += f[axis];
-                    torque[axis] += cross[axis];
-                }
-            }
-            for value in force.into_iter().chain(torque) {
-                out.push(',');
-                push(out, value);
-            }
-        }
-        out.push('\n');
-        Ok(())
-    }
+    out.push('\n');
+    Ok(())
 }
 
-/// A name without commas and quotes, such as `fixed_1_bottom`.
-fn column_name(by: ReactionOf, on: &On) -> String {
-    let (table, index) = match by {
+/// The table of the scene that holds or moves a part, and the part.
+pub(crate) fn table_of(part: &HeldPlace) -> String {
+    format!("{} on {}", part.by, part.on)
+}
+
+/// The beginning of the names of a part's columns, such as `fixed_1_bottom`: a name without commas and quotes.
+pub(crate) fn column_name(part: &HeldPlace) -> String {
+    let (table, index) = match part.by {
         ReactionOf::Fixed(index) => ("fixed", index),
         ReactionOf::Move(index) => ("move", index),
     };
     let plain = |c: char| if c.is_alphanumeric() { c } else { '_' };
-    let name: String = match on {
+    let name: String = match &part.on {
         On::Group(name) => name.chars().map(plain).collect(),
         _ => String::new(),
     };

@@ -1,7 +1,7 @@
 //! Energy that a method takes away by itself.
 
 use serde::{Deserialize, Serialize};
-use sinew_scene::Simulation;
+use sinew_scene::SceneBody;
 
 use crate::balance::Energies;
 use crate::fast_loads::unseen;
@@ -32,7 +32,7 @@ impl Taken {
     /// steps.
     pub(crate) fn in_words(
         self,
-        simulation: &Simulation,
+        body: &SceneBody,
         methods: &str,
         saturates: bool,
     ) -> Option<String> {
@@ -47,9 +47,9 @@ impl Taken {
                 "{methods}{clamp} took {taken:.3e} J of the {given:.3e} J that were put in, {:.0} %: so much of the motion dies away by the method and not by the tissue; \
                  {} keeps it",
                 100.0 * taken / given,
-                keeper(simulation, saturates)
+                keeper(body, saturates)
             );
-            unseen(simulation, span).unwrap_or(told)
+            unseen(body, span).unwrap_or(told)
         })
     }
 }

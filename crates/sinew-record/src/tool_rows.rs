@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 use sinew_core::Moment;
-use sinew_scene::Simulation;
+use sinew_scene::SceneBody;
 use sinew_tools::{Motion, Tool, ToolReport, Tools};
 
 use crate::tables;
@@ -53,8 +53,8 @@ pub(crate) struct ToolRows {
 
 impl ToolRows {
     /// `None` where there is no tool.
-    pub(crate) fn of(simulation: &Simulation) -> Option<Self> {
-        let tools = Arc::clone(simulation.model().tools()?);
+    pub(crate) fn of(body: &SceneBody) -> Option<Self> {
+        let tools = Arc::clone(body.model().tools()?);
         Some(Self { tools })
     }
 

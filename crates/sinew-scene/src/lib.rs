@@ -68,9 +68,10 @@ pub use scene::{
 };
 pub use schedule::Schedule;
 pub use simulation::{
-    BodyModel, CutFrom, CutTotals, Cutter, CuttingError, DrivenLoadError, Footprint, HeldPlace,
-    LoadRemedy, MeshedScene, MotionTableError, MotionTableFault, NearestNode, Probe, ProbeNode,
-    Reaction, ReactionError, ReactionOf, RefinementError, RefusedLoad, RoughStrokes, SceneModel,
-    SelectedPart, Simulation, ToolFault, UnresolvedLoad, Warning, WarningKind,
+    BodyModel, CutFrom, CutTotals, Cutter, CuttingError, DrivenLoadError, Footprint, HeldParts,
+    HeldPlace, LoadRemedy, MeshedScene, MotionTableError, MotionTableFault, NearestNode, Probe,
+    ProbeNode, Reaction, ReactionError, ReactionOf, RefinementError, RefusedLoad, RoughStrokes,
+    SceneBody, SceneModel, SelectedPart, Simulation, ToolFault, UnresolvedLoad, Warning,
+    WarningKind,
 };
 pub use source::SceneSource;

@@ -9,7 +9,7 @@ use sinew_core::{Moment, RecordError, Recorder, Verdict};
 use crate::output::{Delivery, Output, OutputError};
 use crate::probe_rows::{BEGIN, ProbeRows, is_column};
 use crate::schedule::Schedule;
-use crate::simulation::Simulation;
+use crate::simulation::SceneBody;
 
 /// Writes the values of probes after the steps of a [`Schedule`], in the columns of [`ProbeRows`]. Numbers are written
 /// so that reading them gives the same bits.
@@ -82,8 +82,8 @@ impl ProbeCsv {
     }
 
     /// Continues with the rows of another body, whose probes are the same.
-    pub fn change_body(&mut self, simulation: &Simulation) {
-        self.rows = ProbeRows::new(simulation);
+    pub fn change_body(&mut self, body: &SceneBody) {
+        self.rows = ProbeRows::new(body);
     }
 
     /// Completes the output; see [`Output::finish`].

@@ -7,7 +7,7 @@ use sinew_core::{EvaluationError, Moment};
 use sinew_fem::{FieldError, stress};
 
 use crate::scene::Quantity;
-use crate::simulation::{BodyModel, Probe, ProbeNode, Simulation};
+use crate::simulation::{BodyModel, Probe, ProbeNode, SceneBody};
 
 /// The first column's name: the time.
 pub(crate) const BEGIN: &str = "t_s";
@@ -58,11 +58,11 @@ pub struct ProbeRows {
 }
 
 impl ProbeRows {
-    /// The rows of a simulation's probes.
+    /// The rows of a body's probes.
     #[must_use]
-    pub fn new(simulation: &Simulation) -> Self {
-        let body = simulation.model().body().map(Arc::clone);
-        Self::of(Arc::clone(simulation.probes()), body)
+    pub fn new(body: &SceneBody) -> Self {
+        let model = body.model().body().map(Arc::clone);
+        Self::of(Arc::clone(body.probes()), model)
     }
 
     pub(crate) fn of(probes: Arc<[Probe]>, body: Option<Arc<BodyModel>>) -> Self {

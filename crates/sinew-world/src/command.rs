@@ -1,9 +1,36 @@
 //! Commands of a user to a running scene.
 
+use std::sync::Arc;
+
 use sinew_core::{OptionError, Options, StepError};
 use sinew_scene::{CuttingError, DrivenLoadError};
 
-/// A command to a session. It takes effect with the next step.
+/// A tool of a world, by its place in the scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct ToolId(pub(crate) usize);
+
+/// A load of a world, by its place in the scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct LoadId(pub(crate) usize);
+
+impl ToolId {
+    /// Its place (0-based) among the tools of the scene.
+    #[must_use]
+    pub fn index(self) -> usize {
+        self.0
+    }
+}
+
+impl LoadId {
+    /// Its place (0-based) among the loads of the scene.
+    #[must_use]
+    pub fn index(self) -> usize {
+        self.0
+    }
+}
+
+/// A command to a session. It names tools and loads as scenes and logs do; [`World::steer`](crate::World::steer) and
+/// [`World::scale_load`](crate::World::scale_load) give the same commands by id. It takes effect with the next step.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Command {
@@ -11,7 +38,7 @@ pub enum Command {
     /// until another pose comes. Until the first one it follows the scene.
     Pose {
         /// Name of the tool.
-        tool: String,
+        tool: Arc<str>,
         /// Position (m) of its own origin.
         position: [f64; 3],
         /// Its rotation vector (rad).
@@ -20,7 +47,7 @@ pub enum Command {
     /// A factor of a load, in addition to its own course over time; 1 at the beginning.
     LoadFactor {
         /// Name of the load: that of the scene, `load 2` for the second if it has none, or `gravity`.
-        load: String,
+        load: Arc<str>,
         /// The factor.
         factor: f64,
     },
@@ -73,7 +100,7 @@ pub enum CommandError {
     )]
     Pose {
         /// The tool.
-        tool: String,
+        tool: Arc<str>,
         /// The number at fault.
         value: f64,
         /// The largest size.
@@ -83,7 +110,7 @@ pub enum CommandError {
     #[error("factor of \"{load}\": {factor}: expected a finite number, at most {most:e} in size")]
     Factor {
         /// The load.
-        load: String,
+        load: Arc<str>,
         /// The factor.
         factor: f64,
         /// The largest size.

@@ -1,9 +1,11 @@
 //! Errors of worlds and their steps.
 
 use sinew_core::{
-    InputBytesError, InputError, OptionError, RecordError, StateBytesError, StepError,
+    EvaluationError, InputBytesError, InputError, OptionError, RecordError, StateBytesError,
+    StepError,
 };
-use sinew_scene::{CuttingError, DrivenLoadError, RefusedLoad, SceneError};
+use sinew_fem::FieldError;
+use sinew_scene::{CuttingError, DrivenLoadError, ReactionError, RefusedLoad, SceneError};
 use sinew_tools::ToolsError;
 
 use crate::input_file::InputFileError;
@@ -82,6 +84,24 @@ pub enum AdvanceError {
     /// A recorder that failed.
     #[error(transparent)]
     Record(#[from] RecordError),
+}
+
+/// Reasons for which a world cannot report a field.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ReportError {
+    /// A field over a mesh, of a scene without one.
+    #[error("an oscillator has no mesh, and no fields over one")]
+    NoMesh,
+    /// A slice of the wrong length, or a field that the body does not have.
+    #[error(transparent)]
+    Field(#[from] FieldError),
+    /// A state for which the system has no velocity at its time.
+    #[error(transparent)]
+    State(#[from] EvaluationError),
+    /// Reactions that cannot be computed.
+    #[error(transparent)]
+    Reaction(#[from] ReactionError),
 }
 
 /// Reasons for which [`crate::World::restore`] fails.

@@ -13,9 +13,9 @@ mod recorder;
 mod replay;
 mod world;
 
-pub use command::{Command, CommandError};
+pub use command::{Command, CommandError, LoadId, ToolId};
 pub use course::Course;
-pub use error::{AdvanceError, RestoreError, WorldError, WorldStepError};
+pub use error::{AdvanceError, ReportError, RestoreError, WorldError, WorldStepError};
 pub use input_file::{InputFile, InputFileError};
 pub use log::{Entry, Header, Journal, JournalError, Log, LogError, LogFault};
 pub use recorder::{BodyChange, BodyCut, Recorder, Recorders, Shown};

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use sinew_core::{Inputs, Moment, RecordError, RecordedSteps, State, StepReport, Verdict};
-use sinew_scene::{ProbeCsv, Simulation};
+use sinew_scene::{ProbeCsv, SceneBody};
 
 /// A recorder that is notified when the body becomes another one.
 pub trait Recorder: sinew_core::Recorder {
@@ -25,7 +25,7 @@ impl<F> Recorder for F where F: FnMut(&Moment<'_>) -> Result<Verdict, RecordErro
 
 impl Recorder for ProbeCsv {
     fn body_changed(&mut self, change: &BodyChange<'_>) -> Result<(), RecordError> {
-        self.change_body(change.simulation);
+        self.change_body(change.body);
         Ok(())
     }
 }
@@ -33,8 +33,8 @@ impl Recorder for ProbeCsv {
 /// A change of the body between two steps.
 #[derive(Clone, Copy)]
 pub struct BodyChange<'a> {
-    /// The scene on the body from now on.
-    pub simulation: &'a Arc<Simulation>,
+    /// The body from now on.
+    pub body: &'a Arc<SceneBody>,
     /// Inputs from outside.
     pub inputs: &'a Inputs,
     /// The cut; `None` if only the loads follow inputs from now on, which changes no force yet.
@@ -59,7 +59,7 @@ pub struct BodyCut {
 /// A recorder with what it has seen: however many calls take the steps, it sees one motion.
 pub struct Shown<'r, R: Recorder + ?Sized> {
     pub(crate) steps: RecordedSteps<'r, R>,
-    pub(crate) simulation: Arc<Simulation>,
+    pub(crate) body: Arc<SceneBody>,
 }
 
 impl<R: Recorder + ?Sized> Shown<'_, R> {
@@ -80,19 +80,19 @@ impl<R: Recorder + ?Sized> Shown<'_, R> {
         self.steps.recorder()
     }
 
-    /// Notifies the recorder of a scene that is another one than it has seen.
+    /// Notifies the recorder of a body that is another one than it has seen.
     pub(crate) fn follow(
         &mut self,
-        simulation: &Arc<Simulation>,
+        body: &Arc<SceneBody>,
         inputs: &Inputs,
         cut: Option<&BodyCut>,
     ) -> Result<(), RecordError> {
-        if Arc::ptr_eq(&self.simulation, simulation) {
+        if Arc::ptr_eq(&self.body, body) {
             return Ok(());
         }
-        self.simulation = Arc::clone(simulation);
+        self.body = Arc::clone(body);
         let change = BodyChange {
-            simulation,
+            body,
             inputs,
             cut,
             steps: self.steps(),

@@ -194,13 +194,13 @@ impl Replay {
     /// The motion that [`Replay::advance`] shows.
     #[must_use]
     pub fn course(&self) -> Course {
-        Course::of(&self.log, self.world.simulation(), self.log.steps())
+        Course::of(&self.log, self.world.scene(), self.log.steps())
     }
 
     /// The part of [`Replay::course`] that is already repeated.
     #[must_use]
     pub fn course_so_far(&self) -> Course {
-        Course::of(&self.log, self.world.simulation(), self.world.steps())
+        Course::of(&self.log, self.world.scene(), self.world.steps())
     }
 
     /// Repeats the rest, and shows it to a recorder. Time rises in it.

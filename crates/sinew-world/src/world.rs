@@ -2,6 +2,7 @@
 
 mod advance;
 mod commands;
+mod report;
 mod saved;
 
 use std::cell::OnceCell;
@@ -12,10 +13,9 @@ use sinew_core::{
 };
 use sinew_integrators::Stepper;
 use sinew_scene::{
-    CutTotals, Cutter, CuttingError, DrivenLoadError, Overlap, OverlapWatch, Scene, SceneError,
-    Simulation,
+    CutTotals, Cutter, CuttingError, DrivenLoadError, Scene, SceneBody, SceneError, Simulation,
 };
-use sinew_tools::{Pose, Steering};
+use sinew_tools::Steering;
 
 use crate::error::{WorldError, WorldStepError};
 use crate::log::{Header, Log};
@@ -25,7 +25,7 @@ pub use saved::{Commanded, Saved};
 
 /// A scene in motion: the only thing that takes its steps.
 ///
-/// It holds the scene as it was built, the body after its cuts, state, integrator, tools and inputs. A [`Recorder`](crate::Recorder)
+/// It holds the scene, which does not change, and what does: the body, state, integrator, tools and inputs. A [`Recorder`](crate::Recorder)
 /// observes the motion of [`World::advance`]; [`Command`](crate::Command)s between steps steer tools, scale loads, cut, and switch
 /// methods.
 ///
@@ -51,11 +51,11 @@ pub use saved::{Commanded, Saved};
 pub struct World {
     /// The scene as it was built.
     scene: Arc<Simulation>,
-    /// The scene on the body after its cuts, with its own loads.
-    body: Arc<Simulation>,
-    /// The scene as it runs: its loads follow inputs from the first load factor on. Until then they are known in
+    /// The body as it moves: its loads follow inputs from the first load factor on. Until then they are known in
     /// advance, which some methods need, and every sum has the bits of a run.
-    simulation: Arc<Simulation>,
+    body: Arc<SceneBody>,
+    /// The same body with the loads of the scene.
+    undriven: Arc<SceneBody>,
     cutter: Option<Cutter>,
     /// Sheets that the next step begins with.
     sheets: Vec<Sheet>,
@@ -63,6 +63,10 @@ pub struct World {
     blade: Option<[[f64; 3]; 2]>,
     /// The cut at the beginning of the last step.
     change: Option<BodyCut>,
+    /// Number of bodies so far: it grows with each change of the mesh.
+    topology_epoch: u64,
+    /// Buffer for a field over the degrees of freedom.
+    field: Vec<f64>,
     method: Method,
     /// Channels without values.
     fresh: Inputs,
@@ -113,6 +117,7 @@ struct Method {
 
 /// A tool that commands may steer.
 struct Hand {
+    name: Arc<str>,
     steering: Steering,
     /// Position (m) and rotation vector (rad) to which it moves, and where it stays; `None` while it follows the scene.
     target: Option<([f64; 3], [f64; 3])>,
@@ -122,7 +127,7 @@ struct Hand {
 
 /// A load that commands may scale.
 struct Knob {
-    name: String,
+    name: Arc<str>,
     channel: Channel,
     /// The factor that applies from the next step on.
     next: Option<f64>,
@@ -177,15 +182,18 @@ impl World {
         simulation.end_at_duration();
         let mut inputs = Inputs::new();
         let tools = simulation.steer_tools(&mut inputs)?.into_iter();
-        let tools = tools.map(|steering| Hand {
+        let names = simulation.model().tools().cloned();
+        let names = names.iter().flat_map(|tools| tools.tools());
+        let tools = tools.zip(names).map(|(steering, tool)| Hand {
+            name: tool.name.as_str().into(),
             steering,
             target: None,
             is_steered: false,
         });
-        let channels = simulation.add_load_channels(&mut inputs)?;
-        let names = simulation.load_names().into_iter();
+        let channels = simulation.body().add_load_channels(&mut inputs)?;
+        let names = simulation.body().load_names().into_iter();
         let loads = names.zip(channels).map(|(name, channel)| Knob {
-            name,
+            name: name.into(),
             channel,
             next: None,
         });
@@ -200,14 +208,14 @@ impl World {
             ..Self::still(simulation, method)?
         };
         let Self {
-            simulation,
+            body,
             inputs,
             state,
             trial,
             method,
             ..
         } = &mut world;
-        try_step(simulation.system(), inputs, state, trial, method)?;
+        try_step(body.system(), inputs, state, trial, method)?;
         Ok(world)
     }
 
@@ -243,9 +251,11 @@ impl World {
             sheets: Vec::new(),
             blade: None,
             change: None,
-            scene: Arc::clone(&simulation),
-            body: Arc::clone(&simulation),
-            simulation,
+            topology_epoch: 0,
+            field: Vec::new(),
+            body: Arc::clone(simulation.body()),
+            undriven: Arc::clone(simulation.body()),
+            scene: simulation,
             fresh: Inputs::new(),
             inputs: Inputs::new(),
             trial: State::at_rest(0),
@@ -266,17 +276,23 @@ impl World {
         self
     }
 
-    /// The scene as it is driven: mesh, tools, loads, title. It is replaced at the first factor of a load, with the
-    /// same mesh and tools, and after each cut.
+    /// The scene as it was built, which stays.
     #[must_use]
-    pub fn simulation(&self) -> &Arc<Simulation> {
-        &self.simulation
+    pub fn scene(&self) -> &Arc<Simulation> {
+        &self.scene
     }
 
-    /// The scene with loads that follow inputs.
-    fn driven(&self) -> Result<Simulation, DrivenLoadError> {
+    /// The body as it moves: mesh, matrices, tools, probes. It is replaced at the first factor of a load, with the same
+    /// mesh and tools, and by each cut.
+    #[must_use]
+    pub fn body(&self) -> &Arc<SceneBody> {
+        &self.body
+    }
+
+    /// The body with loads that follow inputs.
+    fn driven(&self) -> Result<Arc<SceneBody>, DrivenLoadError> {
         let channels: Vec<Channel> = self.loads.iter().map(|load| load.channel).collect();
-        self.body.with_driven_loads(&channels)
+        Ok(Arc::new(self.undriven.with_driven_loads(&channels)?))
     }
 
     /// External inputs as given so far.
@@ -290,7 +306,8 @@ impl World {
     /// # Errors
     /// [`SceneError`] at the key for which it is refused.
     pub fn set_up(&mut self) -> Result<StepReport, SceneError> {
-        self.simulation.set_up(&mut *self.method.integrator)
+        self.body
+            .set_up(&mut *self.method.integrator, self.method.dt)
     }
 
     /// The state after the last step.
@@ -328,22 +345,10 @@ impl World {
     #[must_use]
     pub fn stable_step(&self) -> Option<f64> {
         *self.method.stable_step.get_or_init(|| {
-            match self.method.integrator.stable_step(self.simulation.system()) {
+            match self.method.integrator.stable_step(self.body.system()) {
                 Ok(StableStep::UpTo(limit)) => Some(limit),
                 _ => None,
             }
-        })
-    }
-
-    /// The pose of a tool at the time of the state.
-    ///
-    /// # Panics
-    /// Where the scene has no tool of this number.
-    #[must_use]
-    pub fn tool_pose(&self, tool: usize) -> Pose {
-        let tools = self.simulation.model().tools();
-        tools.map_or(Pose::identity(), |tools| {
-            tools.pose(&self.state, &self.inputs, tool)
         })
     }
 
@@ -374,15 +379,6 @@ impl World {
     #[must_use]
     pub fn change(&self) -> Option<&BodyCut> {
         self.change.as_ref()
-    }
-
-    /// Deepest overlap now of parts or surfaces of the body, between which there is no contact. A check costs some
-    /// microseconds per triangle of the surface: a session makes none automatically.
-    #[must_use]
-    pub fn overlap(&self) -> Option<Overlap> {
-        let mut watch = OverlapWatch::new(self.simulation.model().body()?);
-        watch.look_at_state(&self.state).ok()?;
-        watch.into_deepest()
     }
 
     /// All commands so far; none in a world that follows its scene.

@@ -53,7 +53,7 @@ mod tests {
     use super::*;
 
     fn factor(load: &str, factor: f64) -> Command {
-        let load = load.to_owned();
+        let load = load.into();
         Command::LoadFactor { load, factor }
     }
 

@@ -453,7 +453,7 @@ impl Engine {
             return;
         };
         // Without a thread pages keep what they know.
-        if let Ok(begun) = Survey::start(shared, first.simulation()) {
+        if let Ok(begun) = Survey::start(shared, first.scene(), first.body()) {
             *survey = begun;
         }
         (self.cut_at, self.knows_cut) = (None, first.is_cut());
@@ -535,7 +535,7 @@ impl Engine {
         };
         let is_new = hand.is_none();
         self.check(&Command::Pose {
-            tool: name,
+            tool: name.into(),
             position: [x, y, z],
             rotation_vector: [a, b, c],
         })?;
@@ -609,7 +609,11 @@ impl Engine {
             }
             Order::Load { load, factor } => {
                 let place = self.loads.iter().position(|name| *name == load);
-                self.give(client, id, Command::LoadFactor { load, factor })?;
+                let command = Command::LoadFactor {
+                    load: load.into(),
+                    factor,
+                };
+                self.give(client, id, command)?;
                 if let Some(factor_of) = place.and_then(|place| self.factors.get_mut(place)) {
                     *factor_of = factor;
                 }
@@ -763,7 +767,7 @@ impl Engine {
     /// The factors of loads as all panes have them at the beginning.
     fn take_first_factors(&mut self) {
         let first = &self.scene.first_factors;
-        let factor_of = |load: &String| first.iter().find(|(name, _)| name == load);
+        let factor_of = |load: &String| first.iter().find(|(name, _)| **name == **load);
         let factors = self.loads.iter();
         let factors = factors.map(|load| factor_of(load).map_or(1.0, |(_, factor)| *factor));
         self.factors = factors.collect();

@@ -4,9 +4,9 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use sinew_core::vectors::weighted_dot;
-use sinew_core::{Contact, Energy, LoadTime, Options, StableStep, System};
-use sinew_scene::{BodyModel, CutTotals, Simulation};
-use sinew_tools::Tools;
+use sinew_core::{Energy, LoadTime, Options, StableStep, System};
+use sinew_scene::{BodyModel, CutTotals, SceneBody, Simulation};
+use sinew_tools::{Pose, Tools};
 use sinew_world::{Command, CommandError, Log, World};
 
 use super::course::Course;
@@ -33,7 +33,7 @@ pub(crate) struct Pane {
     session: World,
     due: Due,
     /// Loads whose factors are other than 1 at the beginning.
-    first_factors: Vec<(String, f64)>,
+    first_factors: Vec<(Arc<str>, f64)>,
     /// The integrator and the step that it was given, which a reset keeps.
     method: (String, Options, f64),
     /// Why it cannot go on.
@@ -158,19 +158,19 @@ impl Pane {
 
     /// Facts about its tools, for pages.
     pub(crate) fn tool_facts(&self) -> Vec<ToolFacts> {
-        let simulation = self.session.simulation();
-        body(&self.session).map_or_else(Vec::new, |body| tools_of(body, simulation))
+        let scene = self.session.scene();
+        body(&self.session).map_or_else(Vec::new, |body| tools_of(body, scene))
     }
 
     /// The integrator and the options of the scene.
     fn of_scene(&self) -> (String, Options) {
-        let settings = self.session.simulation().settings();
+        let settings = self.session.scene().settings();
         (settings.integrator.clone(), settings.options.clone())
     }
 
     /// Another integrator. The options of the scene hold where it is the scene's own, and so does its limit of velocities.
     pub(crate) fn use_integrator(&mut self, name: &str) -> Result<(), CommandError> {
-        let settings = self.session.simulation().settings();
+        let settings = self.session.scene().settings();
         let own = &settings.options;
         let takes_guard = || {
             let help = sinew_integrators::entry(name).map(|entry| entry.all_options());
@@ -225,7 +225,7 @@ impl Pane {
     /// The largest stable step (s) of an integrator on this body, where it has one.
     pub(crate) fn stable_step_of(&self, name: &str) -> Result<Option<f64>, LiveError> {
         let integrator = sinew_integrators::build(name, &Options::new())?;
-        let found = integrator.stable_step(self.session.simulation().system());
+        let found = integrator.stable_step(self.session.body().system());
         Ok(match found {
             Ok(StableStep::UpTo(step)) => Some(step),
             _ => None,
@@ -265,13 +265,13 @@ impl Pane {
 
     /// Asks for the stable step of the integrator, and for its options.
     pub(crate) fn learn(&mut self) {
-        let (simulation, integrator) = (self.session.simulation(), self.session.integrator());
-        let found = integrator.stable_step(simulation.system());
+        let (system, integrator) = (self.session.body().system(), self.session.integrator());
+        let found = integrator.stable_step(system);
         let (id, options) = &self.given;
         self.step_facts = stability::facts(
             integrator,
-            &simulation.options_of(id, options),
-            simulation,
+            &self.session.scene().options_of(id, options),
+            system,
             found.unwrap_or(StableStep::Unknown),
         );
         self.options = options::facts(id, options);
@@ -320,11 +320,7 @@ impl Pane {
 
     fn take_first_energy(&mut self) {
         let state = self.session.state();
-        let energy = self
-            .session
-            .simulation()
-            .system()
-            .energy(&state.u, &state.v);
+        let energy = self.session.body().system().energy(&state.u, &state.v);
         self.kinetic = energy.as_ref().map_or(0.0, |energy| energy.kinetic);
         self.load_work = 0.0;
         self.energies.first = energy.map_or(0.0, Energy::total);
@@ -393,26 +389,19 @@ impl Pane {
 
     fn step(&mut self, hands: &[Option<Course>]) -> Result<(), String> {
         let (t, dt) = (self.session.t(), self.session.dt());
-        for (tool, hand) in hands.iter().enumerate() {
-            let (Some(hand), Some(tools)) = (hand, self.tools()) else {
+        for (tool, hand) in self.session.tools().zip(hands) {
+            let Some(hand) = hand else {
                 continue;
             };
             let pose = hand.at(t + dt);
-            if self.led[tool] == Some(pose) {
+            if self.led[tool.index()] == Some(pose) {
                 continue;
             }
             let [x, y, z, a, b, c] = pose;
-            let name = tools.tools()[tool].name.clone();
-            self.led[tool] = Some(pose);
+            self.led[tool.index()] = Some(pose);
             self.settling.disturbed(t);
-            let command = Command::Pose {
-                tool: name,
-                position: [x, y, z],
-                rotation_vector: [a, b, c],
-            };
-            self.session
-                .command(command)
-                .map_err(|error| error.to_string())?;
+            let steered = self.session.steer(tool, [x, y, z], [a, b, c]);
+            steered.map_err(|error| error.to_string())?;
         }
         self.before.copy_from_slice(&self.session.state().u);
         self.receive();
@@ -439,25 +428,21 @@ impl Pane {
 
     /// Takes note of what tools have received before a step.
     fn receive(&mut self) {
-        let state = self.session.state();
-        if let Some(tools) = self.session.simulation().model().tools() {
-            for (tool, received) in self.received.iter_mut().enumerate() {
-                *received = tools.report(state, tool).impulse;
-            }
+        for (tool, received) in self.session.tools().zip(&mut self.received) {
+            let report = self.session.tool_report(tool);
+            *received = report.map_or([0.0; 3], |report| report.impulse);
         }
     }
 
     /// Adds a step to impulses, work and other sums.
     fn look(&mut self, dt: f64) {
-        let simulation = self.session.simulation();
-        let (system, state) = (simulation.system(), self.session.state());
-        if let Some(tools) = simulation.model().tools() {
-            let all = self.impulses.iter_mut().zip(&self.received).enumerate();
-            for (tool, (impulse, before)) in all {
-                let after = tools.report(state, tool).impulse;
-                for axis in 0..3 {
-                    impulse[axis] += after[axis] - before[axis];
-                }
+        let (system, state) = (self.session.body().system(), self.session.state());
+        let all = self.impulses.iter_mut().zip(&self.received);
+        for (tool, (impulse, before)) in self.session.tools().zip(all) {
+            let report = self.session.tool_report(tool);
+            let after = report.map_or(*before, |report| report.impulse);
+            for axis in 0..3 {
+                impulse[axis] += after[axis] - before[axis];
             }
         }
         for ((middle, before), u) in self.middle.iter_mut().zip(&self.before).zip(&state.u) {
@@ -480,17 +465,15 @@ impl Pane {
             return;
         }
         let begun = Instant::now();
-        let simulation = self.session.simulation();
         let state = self.session.state();
         let u = match self.has_stepped {
             true => &self.middle,
             false => &state.u,
         };
-        let energy = simulation.system().energy(u, &state.v);
-        let tools = simulation.model().tools();
+        let energy = self.session.body().system().energy(u, &state.v);
         let energies = &mut self.energies;
         (energies.kinetic, energies.loads) = (self.kinetic, self.load_work);
-        energies.tools = tools.map_or(0.0, |tools| tools.work(state));
+        energies.tools = self.session.work_of_tools();
         energies.cuts = self.session.cuts().map_or(0.0, CutTotals::energy);
         energies.elastic = energy.map_or(f64::NAN, |energy| energy.elastic);
         let total = energies.kinetic + energies.elastic;
@@ -583,23 +566,24 @@ impl Pane {
             cuts,
         };
         frame.pane(&head, shown.surface.points.len(), self.impulses.len());
-        for ((tool, impulse), hand) in self.impulses.iter_mut().enumerate().zip(hands) {
-            let Some(tools) = tools else { continue };
-            let (pose, report) = (self.session.tool_pose(tool), tools.report(state, tool));
+        let all = self.session.tools().zip(&mut self.impulses);
+        for ((tool, impulse), hand) in all.zip(hands) {
+            let (Some(tools), Some(report)) = (tools, self.session.tool_report(tool)) else {
+                continue;
+            };
+            let pose = self.session.tool_pose(tool);
             let ([x, y, z], [a, b, c]) = (pose.position(), pose.rotation_vector());
             let own = [x, y, z, a, b, c];
             let force = match self.span > 0.0 {
                 true => impulse.map(|impulse| impulse / self.span),
                 false => report.force,
             };
-            let shape = &tools.tools()[tool].shape;
+            let shape = &tools.tools()[tool.index()].shape;
             frame.tool(&ToolHead {
                 pose: own,
                 force,
                 depth: uncut.depth(shape, &pose),
-                gap: tools
-                    .deepest(&state.u, &pose, tool)
-                    .map_or(f64::INFINITY, |depth| depth.gap),
+                gap: (self.session.tool_gap(tool)).map_or(f64::INFINITY, |depth| depth.gap),
                 hand: hand.as_ref().map_or(own, Course::end),
             });
             *impulse = [0.0; 3];
@@ -655,7 +639,7 @@ impl Pane {
 
     /// Its state as a checkpoint.
     pub(crate) fn state_bytes(&self) -> Vec<u8> {
-        let system = self.session.simulation().system();
+        let system = self.session.body().system();
         self.session.state().to_bytes(system)
     }
 
@@ -685,9 +669,14 @@ impl Pane {
         }
     }
 
-    /// The scene on its body as it is.
-    pub(crate) fn simulation(&self) -> &Arc<Simulation> {
-        self.session.simulation()
+    /// Its scene.
+    pub(crate) fn scene(&self) -> &Arc<Simulation> {
+        self.session.scene()
+    }
+
+    /// Its body as it is.
+    pub(crate) fn body(&self) -> &Arc<SceneBody> {
+        self.session.body()
     }
 
     /// The largest stable step (s) of its integrator on its body as it is, where it has one.
@@ -717,18 +706,19 @@ impl Pane {
 
     /// Position (m) and rotation vector (rad) of a tool now.
     pub(crate) fn tool_pose(&self, tool: usize) -> [f64; 6] {
-        let pose = self.session.tool_pose(tool);
+        let id = self.session.tools().nth(tool);
+        let pose = id.map_or(Pose::identity(), |id| self.session.tool_pose(id));
         let ([x, y, z], [a, b, c]) = (pose.position(), pose.rotation_vector());
         [x, y, z, a, b, c]
     }
 
     /// The tools that touch its body.
     pub(crate) fn tools(&self) -> Option<&Arc<Tools>> {
-        self.session.simulation().model().tools()
+        self.session.body().model().tools()
     }
 }
 
 /// The body of a session.
 fn body(session: &World) -> Option<&BodyModel> {
-    session.simulation().model().body().map(|body| &**body)
+    session.body().model().body().map(|body| &**body)
 }

@@ -88,7 +88,7 @@ impl Shown {
         (field, limit): (Field, Option<f64>),
         anew: bool,
     ) {
-        let body = session.simulation().model().body();
+        let body = session.body().model().body();
         let Some(body) = body.filter(|body| self.is_of(body)) else {
             return;
         };

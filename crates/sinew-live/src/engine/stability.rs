@@ -1,9 +1,8 @@
 //! Facts about the stability of steps.
 
-use sinew_core::{EnergyBehaviour, Options, StableStep};
+use sinew_core::{EnergyBehaviour, Options, StableStep, System};
 use sinew_integrators::Stepper;
 use sinew_integrators::explicit::Substeps;
-use sinew_scene::Simulation;
 
 use crate::protocol::{Stability, StepFacts};
 
@@ -12,10 +11,10 @@ use crate::protocol::{Stability, StepFacts};
 pub(super) fn facts(
     integrator: &dyn Stepper,
     options: &Options,
-    simulation: &Simulation,
+    system: &dyn System,
     found: StableStep,
 ) -> StepFacts {
-    let is_linear = simulation.system().as_linear().is_some();
+    let is_linear = system.as_linear().is_some();
     let cuts = options.get(Substeps::KEY).and_then(|value| value.word());
     let energy = integrator.properties().energy;
     let (stability, stable_step) = match found {

@@ -4,9 +4,9 @@ use std::io;
 use std::sync::Arc;
 use std::thread::{self, JoinHandle};
 
-use sinew_core::Options;
+use sinew_core::{Options, System};
 use sinew_integrators::{Entry, Stepper};
-use sinew_scene::Simulation;
+use sinew_scene::{SceneBody, Simulation};
 
 use super::{options, stability};
 use crate::protocol::{Event, IntegratorFacts, StepFacts};
@@ -18,11 +18,15 @@ pub(crate) struct Survey(JoinHandle<()>);
 
 impl Survey {
     /// Begins to ask, and tells all pages then.
-    pub(crate) fn start(shared: &Arc<Shared>, simulation: &Arc<Simulation>) -> io::Result<Self> {
-        let (shared, simulation) = (Arc::clone(shared), Arc::clone(simulation));
+    pub(crate) fn start(
+        shared: &Arc<Shared>,
+        scene: &Arc<Simulation>,
+        body: &Arc<SceneBody>,
+    ) -> io::Result<Self> {
+        let (shared, scene, body) = (Arc::clone(shared), Arc::clone(scene), Arc::clone(body));
         let thread = thread::Builder::new().name("survey".to_owned());
         let thread = thread.spawn(move || {
-            let list = survey(&simulation);
+            let list = survey(&scene, body.system());
             shared.tell_of_integrators(Event::Integrators { list });
         });
         Ok(Self(thread?))
@@ -38,13 +42,13 @@ impl Survey {
 fn set_up(
     entry: &Entry,
     options: &Options,
-    simulation: &Simulation,
+    (system, dt): (&dyn System, f64),
     is_tried: bool,
 ) -> Result<Box<dyn Stepper>, String> {
     let mut integrator = entry.build(options).map_err(|error| error.to_string())?;
     if is_tried {
         integrator
-            .prepare(simulation.system(), simulation.dt())
+            .prepare(system, dt)
             .map_err(|error| error.to_string())?;
     }
     Ok(integrator)
@@ -52,8 +56,7 @@ fn set_up(
 
 /// Asks every integrator for its stable step, and whether it refuses the scene. Those that factorise are not set up, unless there are tools,
 /// which they refuse before they factorise.
-fn survey(simulation: &Simulation) -> Vec<IntegratorFacts> {
-    let system = simulation.system();
+fn survey(scene: &Simulation, system: &dyn System) -> Vec<IntegratorFacts> {
     let has_tools = system.needs_contact();
     let entries = sinew_integrators::entries().into_iter();
     let facts = entries.map(|entry| {
@@ -71,8 +74,8 @@ fn survey(simulation: &Simulation) -> Vec<IntegratorFacts> {
         let is_tried = has_tools || !entry.factorises;
         let mut found = None;
         for options in all {
-            let options = simulation.options_of(entry.id, &options);
-            match set_up(&entry, &options, simulation, is_tried) {
+            let options = scene.options_of(entry.id, &options);
+            match set_up(&entry, &options, (system, scene.dt()), is_tried) {
                 Ok(integrator) => {
                     found = Some((integrator, options));
                     break;
@@ -86,7 +89,7 @@ fn survey(simulation: &Simulation) -> Vec<IntegratorFacts> {
         };
         facts.refused = None;
         match integrator.stable_step(system) {
-            Ok(found) => facts.step = stability::facts(&*integrator, &options, simulation, found),
+            Ok(found) => facts.step = stability::facts(&*integrator, &options, system, found),
             Err(error) => facts.refused = Some(error.to_string()),
         }
         facts

@@ -5,7 +5,7 @@ use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 
-use sinew_scene::Simulation;
+use sinew_scene::SceneBody;
 use sinew_world::Command;
 
 use super::common::Common;
@@ -47,7 +47,7 @@ struct Look {
     t: f64,
     /// Its displacement (m), and the body that it belongs to.
     u: Vec<f64>,
-    scene: Arc<Simulation>,
+    body: Arc<SceneBody>,
 }
 
 /// Results so far.
@@ -157,7 +157,7 @@ impl Trusted {
                 pane: number,
                 t: pane.t(),
                 u,
-                scene: Arc::clone(pane.simulation()),
+                body: Arc::clone(pane.body()),
             });
         }
         let span = Span {
@@ -266,8 +266,8 @@ impl Follower {
 
     /// The largest distance of a pane from here, at what both bodies have left, over the largest displacement so far; not a number where that is nothing.
     fn error(&mut self, look: &Look) -> f64 {
-        let own = self.pane.simulation().model().body();
-        let (Some(own), Some(other)) = (own, look.scene.model().body()) else {
+        let own = self.pane.body().model().body();
+        let (Some(own), Some(other)) = (own, look.body.model().body()) else {
             return f64::NAN;
         };
         let common = &mut self.common[look.pane];

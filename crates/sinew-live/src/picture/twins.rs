@@ -66,7 +66,7 @@ mod tests {
 
     /// Pairs of nodes with the places of both at rest.
     fn pairs(own: &World, other: &World) -> Vec<(usize, usize)> {
-        let [own, other] = [own, other].map(|session| session.simulation().model().body().unwrap());
+        let [own, other] = [own, other].map(|session| session.body().model().body().unwrap());
         let twins = twins(own, other);
         let pairs = twins.iter().enumerate().filter(|(_, twin)| **twin != NONE);
         let pairs: Vec<(usize, usize)> = pairs.map(|(node, twin)| (node, *twin as usize)).collect();
@@ -83,7 +83,7 @@ mod tests {
         let identity: Vec<(usize, usize)> = (0..27).map(|node| (node, node)).collect();
         assert_eq!(pairs(&whole, &whole), identity);
         assert_eq!(pairs(&whole, &split).len(), 27);
-        let nodes = split.simulation().model().body().unwrap().mesh.points.len();
+        let nodes = split.body().model().body().unwrap().mesh.points.len();
         assert!(nodes > 27);
         assert_eq!(pairs(&split, &whole).len(), nodes);
         // Each node of a body is its own twin.

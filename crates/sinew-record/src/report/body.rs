@@ -40,7 +40,7 @@ pub(super) fn section(
         ));
         return;
     }
-    let extent = summary.simulation.system().extent().unwrap_or(1.0);
+    let extent = summary.body.system().extent().unwrap_or(1.0);
     let scale = match seen.value < SEEN * extent {
         true => round_down(DRAWN * extent / seen.value),
         false => 1.0,
@@ -58,7 +58,7 @@ pub(super) fn section(
     let (rest, then) = (surface.points.clone(), place(scale));
     let view = bounds(rest.iter().chain(&then));
     let range = Some((0.0, 1e3 * seen.value));
-    let body = summary.simulation.model().body();
+    let body = summary.body.model().body();
     let when = match body.is_some_and(|body| body.cut.is_some()) {
         true => "After the cuts, in the last frame".to_owned(),
         false => format!("At t = {:.4} s", seen.t),

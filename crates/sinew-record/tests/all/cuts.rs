@@ -245,7 +245,7 @@ fn sheets_from_outside_are_repeated_bit_for_bit_and_recorded() {
     let half = session.cuts().unwrap().report.area;
     session
         .command(Command::LoadFactor {
-            load: "press".to_owned(),
+            load: "press".into(),
             factor: 3.0,
         })
         .unwrap();

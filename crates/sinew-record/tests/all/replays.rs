@@ -59,7 +59,7 @@ fn a_driven_session_is_recorded_since_its_last_reset_and_its_energy_adds_up() {
     steps(&mut session, 7);
     session.command(Command::Reset).unwrap();
     let factor = |factor| Command::LoadFactor {
-        load: "press".to_owned(),
+        load: "press".into(),
         factor,
     };
     for (command, count) in [

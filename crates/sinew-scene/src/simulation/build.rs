@@ -8,6 +8,7 @@ use super::Simulation;
 use super::body;
 use super::meshed::MeshedScene;
 use super::model::SceneModel;
+use super::scene_body::SceneBody;
 use super::{probe, start, step, tool, touched_steps};
 use crate::error::{Fault, MOST_STEPS, SceneError};
 use crate::scene::{Oscillator, Subject, TimeStep};
@@ -76,10 +77,12 @@ impl MeshedScene {
         }
         Ok(Simulation {
             dt,
-            scene: Arc::new(scene),
-            model,
+            body: Arc::new(SceneBody {
+                scene: Arc::new(scene),
+                model,
+                probes: probes.into(),
+            }),
             initial,
-            probes: probes.into(),
             stable_step,
             cutting,
         })

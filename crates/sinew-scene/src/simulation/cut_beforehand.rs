@@ -1,5 +1,7 @@
 //! Bodies that are cut before they move.
 
+use std::sync::{Arc, OnceLock};
+
 use sinew_core::Inputs;
 
 use super::Simulation;
@@ -34,15 +36,13 @@ impl Simulation {
         };
         let mut state = self.initial_state().clone();
         let t = state.t();
-        let cut = cutter.follow(&self, &mut state, Inputs::none(), t)?;
-        let simulation = match cut {
-            Some(simulation) => simulation,
-            None => self,
-        };
+        let cut = cutter.follow(&self.body, &mut state, Inputs::none(), t)?;
         Ok(Self {
-            cutting: None,
+            body: cut.map_or(self.body, Arc::new),
             initial: state,
-            ..simulation
+            dt: self.dt,
+            stable_step: OnceLock::new(),
+            cutting: None,
         })
     }
 }

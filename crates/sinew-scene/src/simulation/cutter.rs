@@ -3,7 +3,7 @@
 use std::collections::{HashMap, HashSet};
 use std::sync::{Arc, OnceLock};
 
-use sinew_core::{Energy, Inputs, State, System};
+use sinew_core::{Energy, Inputs, State};
 use sinew_cutting::{BladeAct, SavedBodyError};
 use sinew_fem::{CutModel, CutModelError, CutReport, Problem};
 use sinew_mesh::TetMesh;
@@ -14,6 +14,7 @@ use super::cut_plan::CutPlan;
 use super::model::{BodyModel, SceneModel};
 use super::probe::Probe;
 use super::rough_strokes::RoughStrokes;
+use super::scene_body::SceneBody;
 use super::{Simulation, tool};
 use crate::number::length;
 use crate::scene::{Blade, Cutting, LoosePieces, Subject};
@@ -54,7 +55,7 @@ pub enum CuttingError {
 /// Cuts the body of a scene while it moves: by the blade and the tool that the scene names, and by sheets from outside.
 ///
 /// A blade is followed over each step in the configuration at the step's beginning. If the body changes, so does the
-/// scene: [`Cutter::follow`] returns the scene to continue with, and transfers the state to it.
+/// scene: [`Cutter::follow`] returns the body to continue with, and transfers the state to it.
 ///
 /// ```
 /// use sinew_core::{Inputs, System};
@@ -80,7 +81,7 @@ pub enum CuttingError {
 /// let mut cutter = simulation.cutter()?.ok_or("the scene has [cutting]")?;
 /// let mut state = simulation.initial_state().clone();
 /// let blade = |z: f64| [[0.05, -0.01, z], [0.05, 0.11, z]];
-/// let cut = cutter.cut([blade(0.11), blade(0.05)], &simulation, &mut state, Inputs::none())?;
+/// let cut = cutter.cut([blade(0.11), blade(0.05)], simulation.body(), &mut state, Inputs::none())?;
 /// let cut = cut.ok_or("the blade comes half way down")?;
 /// assert_eq!(cut.system().dofs(), state.u.len());
 /// assert!((cutter.totals().report.area - 0.005).abs() < 1e-15);
@@ -113,7 +114,7 @@ impl Simulation {
     /// # Errors
     /// [`CuttingError`] for a body that cannot be cut, which building the scene rules out.
     pub fn cutter(&self) -> Result<Option<Cutter>, CuttingError> {
-        let (Some(plan), Some(body)) = (&self.cutting, self.model.body()) else {
+        let (Some(plan), Some(body)) = (&self.cutting, self.model().body()) else {
             return Ok(None);
         };
         let (uncut, problem) = (Arc::clone(&body.mesh), body.problem.clone());
@@ -122,7 +123,7 @@ impl Simulation {
             plan: Arc::clone(plan),
             uncut,
             problem,
-            probes: Arc::clone(&self.probes),
+            probes: Arc::clone(self.probes()),
             followed: None,
             swept: 0.0,
             is_in: false,
@@ -172,20 +173,20 @@ impl Cutter {
 
     /// Cuts along the path of the scene's blade up to `end` (s), and removes the tetrahedra that are inside the
     /// removing tool then, in the configuration of the state, before the step that ends then. If the body changes,
-    /// returns the scene to continue with, and transfers the state to it.
+    /// returns the body to continue with, and transfers the state to it.
     ///
     /// # Errors
     /// [`CuttingError`]; the run cannot continue then.
     pub fn follow(
         &mut self,
-        simulation: &Simulation,
+        body: &SceneBody,
         state: &mut State,
         inputs: &Inputs,
         end: f64,
-    ) -> Result<Option<Simulation>, CuttingError> {
+    ) -> Result<Option<SceneBody>, CuttingError> {
         let t = state.t();
         let followed = self.followed.replace(end);
-        let epoch = self.begin(simulation, state);
+        let epoch = self.begin(body, state);
         let plan = Arc::clone(&self.plan);
         if let Some(strokes) = &plan.strokes {
             // What comes before the motion cuts the body that it starts with.
@@ -196,7 +197,7 @@ impl Cutter {
                 }
             }
         }
-        let tools = simulation.model().tools();
+        let tools = body.model().tools();
         if let (Blade::Tool(blade), Some(tools)) = (&plan.cutting.blade, tools) {
             let begin = followed.unwrap_or(t);
             let parts = parts_of_turn(tools, *blade, [begin, end], inputs);
@@ -229,24 +230,24 @@ impl Cutter {
             let report = self.cut.remove(is_inside, state, inputs)?;
             self.totals.report.add(&report);
         }
-        self.go_on(epoch, simulation, state, inputs)
+        self.changed_since(epoch, body, state, inputs)
     }
 
     /// Cuts along the path of a blade from one position to another (its two ends, m), in the configuration of the
-    /// state. If the body changes, returns the scene to continue with, and transfers the state to it.
+    /// state. If the body changes, returns the body to continue with, and transfers the state to it.
     ///
     /// # Errors
     /// [`CuttingError`]; the run cannot continue then.
     pub fn cut(
         &mut self,
         poses: [[[f64; 3]; 2]; 2],
-        simulation: &Simulation,
+        body: &SceneBody,
         state: &mut State,
         inputs: &Inputs,
-    ) -> Result<Option<Simulation>, CuttingError> {
-        let epoch = self.begin(simulation, state);
+    ) -> Result<Option<SceneBody>, CuttingError> {
+        let epoch = self.begin(body, state);
         self.sweep(poses, state, inputs)?;
-        self.go_on(epoch, simulation, state, inputs)
+        self.changed_since(epoch, body, state, inputs)
     }
 
     /// Lifts a blade that does not belong to the scene: its next sheet does not continue in tetrahedra that it left
@@ -323,16 +324,16 @@ impl Cutter {
         bytes
     }
 
-    /// Restores the cutter from [`Cutter::to_bytes`] of the same scene, whose uncut body is in `simulation`; returns
-    /// the scene to continue with, if the body was cut.
+    /// Restores the cutter from [`Cutter::to_bytes`] of the same scene, whose uncut body is `uncut`; returns
+    /// the body to continue with, if it was cut.
     ///
     /// # Errors
     /// [`CuttingError`] for other bytes.
     pub fn restore(
         &mut self,
         bytes: &[u8],
-        simulation: &Simulation,
-    ) -> Result<Option<Simulation>, CuttingError> {
+        uncut: &SceneBody,
+    ) -> Result<Option<SceneBody>, CuttingError> {
         let other = || CuttingError::from(CutModelError::from(SavedBodyError));
         let (head, body) = bytes
             .split_at_checked((HEAD + RoughStrokes::WORDS) * 8)
@@ -365,8 +366,7 @@ impl Cutter {
         if self.totals.changes == 0 {
             return Ok(None);
         }
-        let rest = State::at_rest(self.cut.model().dofs());
-        Ok(Some(self.simulation(simulation, &rest)?))
+        Ok(Some(self.body_after(uncut)?))
     }
 
     fn sweep(
@@ -386,23 +386,23 @@ impl Cutter {
 
     /// Saves the contacts of tools before a cut, and keeps the rest positions of the nodes that they hold, which are
     /// not snapped onto the cut; returns the epoch of the body.
-    fn begin(&mut self, simulation: &Simulation, state: &State) -> u64 {
+    fn begin(&mut self, body: &SceneBody, state: &State) -> u64 {
         let before = &mut self.before;
         before.nodes = self.cut.body().nodes();
         before.contact.clone_from(&state.contact);
-        before.held = held_by_tools(simulation, state);
+        before.held = held_by_tools(body, state);
         self.cut.hold(before.held.iter().copied());
         self.cut.epoch()
     }
 
-    /// The scene to continue with, if the body has changed since this epoch.
-    fn go_on(
+    /// The body to continue with, if it has changed since this epoch.
+    fn changed_since(
         &mut self,
         epoch: u64,
-        simulation: &Simulation,
+        body: &SceneBody,
         state: &mut State,
         inputs: &Inputs,
-    ) -> Result<Option<Simulation>, CuttingError> {
+    ) -> Result<Option<SceneBody>, CuttingError> {
         if self.cut.epoch() == epoch {
             return Ok(None);
         }
@@ -419,9 +419,9 @@ impl Cutter {
         };
         self.totals.report.add(&loose);
         self.totals.changes += 1;
-        let cut = self.simulation(simulation, state)?;
-        if let (Some(theirs), Some(own)) = (simulation.model().contact(), cut.model().contact()) {
-            let place_of = self.places_before(simulation, &cut);
+        let cut = self.body_after(body)?;
+        if let (Some(theirs), Some(own)) = (body.model().contact(), cut.model().contact()) {
+            let place_of = self.places_before(body, &cut);
             state.contact = own.carried(theirs, &self.before.contact, |place| place_of[place]);
         }
         Ok(Some(cut))
@@ -446,20 +446,16 @@ impl Cutter {
         node
     }
 
-    /// The place in the scene before that each touched cell of the scene after has, or that of which it is a copy.
-    fn places_before(&self, before: &Simulation, after: &Simulation) -> Vec<Option<usize>> {
+    /// The place in the body before that each touched cell of the body after has, or that of which it is a copy.
+    fn places_before(&self, before: &SceneBody, after: &SceneBody) -> Vec<Option<usize>> {
         let known = touched(before).map(|[node, place]| (node, place as usize));
         let known: HashMap<u32, usize> = known.collect();
         let place = |[node, _]: [u32; 2]| known.get(&self.before_copies(node)).copied();
         touched(after).map(place).collect()
     }
 
-    /// The scene on the body as it is, with a state to go on from.
-    pub(super) fn simulation(
-        &self,
-        before: &Simulation,
-        state: &State,
-    ) -> Result<Simulation, CuttingError> {
+    /// The body as it is after the cuts.
+    fn body_after(&self, before: &SceneBody) -> Result<SceneBody, CuttingError> {
         let (cut, model) = (self.cut.mesh(), self.cut.model());
         let from = CutFrom {
             uncut: Arc::clone(&self.uncut),
@@ -496,14 +492,10 @@ impl Cutter {
         let node_of = |origin: u32| first.get(&origin).copied();
         let probes = self.probes.iter();
         let probes = probes.map(|probe| probe.after_cut(cut, node_of, model));
-        Ok(Simulation {
+        Ok(SceneBody {
             scene: Arc::clone(&before.scene),
-            probes: probes.collect(),
             model: SceneModel::Body(Arc::new(body)),
-            initial: state.clone(),
-            dt: before.dt,
-            stable_step: OnceLock::new(),
-            cutting: before.cutting.clone(),
+            probes: probes.collect(),
         })
     }
 }
@@ -543,22 +535,22 @@ struct Before {
 }
 
 /// The nodes in the body of the cells that tools hold in a state.
-fn held_by_tools(simulation: &Simulation, state: &State) -> Vec<u32> {
-    let tools = simulation.model().tools().into_iter();
+fn held_by_tools(body: &SceneBody, state: &State) -> Vec<u32> {
+    let tools = body.model().tools().into_iter();
     let held = tools.flat_map(|tools| tools.held(&state.contact, state.t()));
     let held: Vec<usize> = held.collect();
     if held.is_empty() {
         return Vec::new();
     }
     let is_held = |place: u32| held.binary_search(&(place as usize)).is_ok();
-    let all = touched(simulation);
+    let all = touched(body);
     all.filter_map(|[node, place]| is_held(place).then_some(node))
         .collect()
 }
 
 /// The node in the body of each touched cell, and the cell's place among them.
-fn touched(simulation: &Simulation) -> impl Iterator<Item = [u32; 2]> + '_ {
-    let body = simulation.model.body();
+fn touched(body: &SceneBody) -> impl Iterator<Item = [u32; 2]> + '_ {
+    let body = body.model.body();
     let both = body.and_then(|body| Some((body, body.tools.as_ref()?)));
     both.into_iter().flat_map(|(body, tools)| {
         let cells = tools.touched_cells().iter();

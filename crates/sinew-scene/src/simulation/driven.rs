@@ -1,6 +1,6 @@
 //! Scenes that are driven from outside while they run.
 
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 
 use sinew_core::{
     Channel, Inputs, LinearModel, LinearSystem, Load, OperatorError, Ramp, RampError,
@@ -9,6 +9,7 @@ use sinew_fem::{FemError, Item};
 use sinew_tools::{Steering, ToolsError};
 
 use super::model::{BodyModel, SceneModel};
+use super::scene_body::SceneBody;
 use super::{Simulation, tool};
 use crate::scene::Subject;
 use crate::scene::keys::GRAVITY;
@@ -40,8 +41,9 @@ impl Simulation {
     /// [`ToolsError`] for tools that do not fit the surface.
     pub fn steer_tools(&mut self, inputs: &mut Inputs) -> Result<Vec<Steering>, ToolsError> {
         let duration = self.settings().duration;
+        let own = Arc::make_mut(&mut self.body);
         let (SceneModel::Body(body), Subject::Body(of_scene)) =
-            (&mut self.model, self.scene.subject())
+            (&mut own.model, own.scene.subject())
         else {
             return Ok(Vec::new());
         };
@@ -62,7 +64,9 @@ impl Simulation {
         )?);
         Ok(steering)
     }
+}
 
+impl SceneBody {
     /// The names by which its loads can be driven: those of the scene, `load 2` for the second if it has none,
     /// `gravity` if there is one; `force` for that of an oscillator.
     #[must_use]
@@ -80,12 +84,12 @@ impl Simulation {
 
     fn oscillator_loads(&self) -> &[Load] {
         match &self.model {
-            SceneModel::Oscillator(_) => self.loads(),
+            SceneModel::Oscillator(model) => model.operators().loads(),
             SceneModel::Body(_) => &[],
         }
     }
 
-    /// Adds a channel of factors for each of [`Simulation::load_names`], by which [`Simulation::with_driven_loads`]
+    /// Adds a channel of factors for each of [`SceneBody::load_names`], by which [`SceneBody::with_driven_loads`]
     /// drives them.
     ///
     /// # Errors
@@ -107,7 +111,7 @@ impl Simulation {
         Ok(channels.collect::<Result<_, _>>()?)
     }
 
-    /// The same scene, with loads that are multiplied by the factors of these channels, in addition to their own
+    /// The same body, with loads that are multiplied by the factors of these channels, in addition to their own
     /// courses over time. Its matrices are shared; no force changes until a factor is given.
     ///
     /// # Errors
@@ -135,7 +139,7 @@ impl Simulation {
                 SceneModel::Body(Arc::new(body))
             }
             SceneModel::Oscillator(model) => {
-                let mut loads = self.loads().to_vec();
+                let mut loads = model.operators().loads().to_vec();
                 for (place, load) in loads.iter_mut().enumerate() {
                     load.ramp = driven(place).unwrap_or_else(|| load.ramp.clone());
                 }
@@ -143,13 +147,8 @@ impl Simulation {
             }
         };
         Ok(Self {
-            scene: Arc::clone(&self.scene),
             model,
-            initial: self.initial.clone(),
-            probes: Arc::clone(&self.probes),
-            dt: self.dt,
-            stable_step: OnceLock::new(),
-            cutting: self.cutting.clone(),
+            ..self.clone()
         })
     }
 }

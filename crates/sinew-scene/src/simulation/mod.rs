@@ -18,6 +18,7 @@ mod probe;
 mod reaction;
 mod refined;
 mod rough_strokes;
+mod scene_body;
 mod selected;
 mod set_up;
 mod start;
@@ -31,7 +32,7 @@ mod warnings;
 
 use std::sync::{Arc, OnceLock};
 
-use sinew_core::{OptionError, Options, Run, StableStep, State, System};
+use sinew_core::{OptionError, Options, Run, StableStep, State, StepReport, System};
 use sinew_integrators::Stepper;
 
 pub use cut_from::CutFrom;
@@ -44,9 +45,10 @@ pub use meshed::MeshedScene;
 pub use model::{BodyModel, SceneModel};
 pub use motion_table::{MotionTableError, MotionTableFault};
 pub use probe::{NearestNode, Probe, ProbeNode};
-pub use reaction::{HeldPlace, Reaction, ReactionError, ReactionOf};
+pub use reaction::{HeldParts, HeldPlace, Reaction, ReactionError, ReactionOf};
 pub use refined::RefinementError;
 pub use rough_strokes::RoughStrokes;
+pub use scene_body::SceneBody;
 pub use selected::SelectedPart;
 pub use tool_fault::ToolFault;
 
@@ -55,13 +57,11 @@ pub use warnings::{Warning, WarningKind};
 use crate::error::{Fault, SceneError, StableStepError};
 use crate::scene::{RunSettings, Scene};
 
-/// A scene that is ready to run: files read, matrices assembled, step chosen.
+/// A scene that is ready to run: files read, matrices assembled, step chosen. It does not change while its body moves.
 #[derive(Clone, Debug)]
 pub struct Simulation {
-    scene: Arc<Scene>,
-    model: SceneModel,
+    body: Arc<SceneBody>,
     initial: State,
-    probes: Arc<[Probe]>,
     dt: f64,
     stable_step: OnceLock<Result<StableStep, StableStepError>>,
     /// The cutting of the body, if anything cuts it.
@@ -72,19 +72,25 @@ impl Simulation {
     /// The scene that it was built from.
     #[must_use]
     pub fn scene(&self) -> &Scene {
-        &self.scene
+        self.body.scene()
     }
 
-    /// The thing that moves, with its matrices.
+    /// The body at the beginning of the motion.
+    #[must_use]
+    pub fn body(&self) -> &Arc<SceneBody> {
+        &self.body
+    }
+
+    /// Mesh, matrices and tools of the body at the beginning.
     #[must_use]
     pub fn model(&self) -> &SceneModel {
-        &self.model
+        self.body.model()
     }
 
     /// The system to integrate.
     #[must_use]
     pub fn system(&self) -> &dyn System {
-        self.model.system()
+        self.body.system()
     }
 
     /// The state at t = 0.
@@ -96,7 +102,7 @@ impl Simulation {
     /// Duration, integrator and steps as the scene asks for them.
     #[must_use]
     pub fn settings(&self) -> &RunSettings {
-        self.scene.settings()
+        self.scene().settings()
     }
 
     /// The step (s): the given one, or the one found for dt = "auto".
@@ -116,7 +122,7 @@ impl Simulation {
             return Ok(());
         }
         let fault = Fault::LongStep { dt, duration };
-        Err(self.scene.places().run.value_fault("dt", fault))
+        Err(self.scene().places().run.value_fault("dt", fault))
     }
 
     /// Shortens all steps alike so that a whole number of them ends at the duration; the step (s) that it was before,
@@ -140,7 +146,7 @@ impl Simulation {
     /// Points whose motion is recorded; for an oscillator, its mass.
     #[must_use]
     pub fn probes(&self) -> &Arc<[Probe]> {
-        &self.probes
+        self.body.probes()
     }
 
     /// A fresh integrator with the scene's options.
@@ -182,28 +188,12 @@ impl Simulation {
         self.stable_step.get_or_init(found).clone()
     }
 
-    /// A sentence if the scene's step is longer than the stable one about a state of a body that is not linear. For a
-    /// linear body, whose stable step is the same in all states, its warnings say so.
-    #[must_use]
-    pub fn outrun(&self, integrator: &dyn Stepper, state: &State) -> Option<String> {
-        step::outrun(self.system(), self.dt, integrator, state)
-    }
-
-    /// Sentences about failures of contact with tools and between the faces of cuts, up to this state.
-    #[must_use]
-    pub fn left_by_tools(&self, state: &State) -> Vec<String> {
-        let size = self.system().extent().unwrap_or(0.0);
-        let tools = self.model().contact();
-        let cuts = |tool: usize| self.scene().is_cut_by(tool);
-        let mut said = tools.map_or_else(Vec::new, |tools| {
-            tool_end::sentences(tools, size, state, cuts)
-        });
-        said.extend(
-            self.model()
-                .body()
-                .and_then(|body| tool_end::of_lips(body, state)),
-        );
-        said
+    /// Sets the scene's integrator up for its body and step.
+    ///
+    /// # Errors
+    /// [`SceneError`] at the key for which it is refused.
+    pub fn set_up(&self, integrator: &mut dyn Stepper) -> Result<StepReport, SceneError> {
+        self.body.set_up(integrator, self.dt)
     }
 
     /// The steps that cover the duration, up to [`Simulation::divergence_limit`].

@@ -1,11 +1,14 @@
 //! The forces of a scene's supports and motions.
 
 use std::fmt;
+use std::sync::Arc;
 
-use sinew_core::{LoadTime, State};
+use sinew_core::{Inputs, LoadTime, State};
 use sinew_fem::{FieldError, On};
+use sinew_tools::vector::{add, cross, sub};
 
-use super::Simulation;
+use super::model::BodyModel;
+use super::scene_body::SceneBody;
 use crate::scene::Subject;
 
 /// The force that holds or moves a part of the body.
@@ -17,6 +20,8 @@ pub struct Reaction {
     pub on: On,
     /// The force (N) on the body at the nodes of the part, of components that no part before it holds or moves.
     pub force: [f64; 3],
+    /// The moment (N m) of these forces about the mean of the part's nodes at rest.
+    pub moment: [f64; 3],
 }
 
 /// A part of the body that a table of the scene holds or moves.
@@ -60,7 +65,7 @@ pub enum ReactionError {
     Field(#[from] FieldError),
 }
 
-impl Simulation {
+impl SceneBody {
     /// The parts of the body that are held or moved, in the order of the scene; none for an oscillator.
     ///
     /// # Errors
@@ -113,27 +118,96 @@ impl Simulation {
     /// included as a mean over the steps on both sides.
     ///
     /// # Errors
-    /// [`ReactionError`] when the state is that of another system.
-    pub fn reactions(&self, state: &State) -> Result<Vec<Reaction>, ReactionError> {
-        let Some(built) = self.model().body() else {
+    /// [`ReactionError`] when the state is that of another system, and where a load follows inputs that are not given.
+    pub fn reactions(
+        &self,
+        state: &State,
+        inputs: &Inputs,
+    ) -> Result<Vec<Reaction>, ReactionError> {
+        let Some(mut held) = HeldParts::of(self)? else {
             return Ok(Vec::new());
         };
-        let mut forces = vec![[0.0; 3]; built.mesh.points.len()];
         let (t, dt) = (state.t(), state.clock.last_step().unwrap_or(0.0));
-        let when = LoadTime::around(t, dt.min(t), dt);
-        built.model.reactions_in(when, state, &mut forces)?;
-        built.subtract_contact(state, &mut forces);
-        let parts = self.held_parts()?.into_iter();
+        let when = LoadTime::around(t, dt.min(t), dt).under(inputs);
+        held.take(when, state)?;
+        let parts = held.parts.iter();
         Ok(parts
-            .map(|HeldPlace { by, on, nodes, .. }| {
-                let mut force = [0.0; 3];
-                for (node, own) in nodes {
-                    for axis in (0..3).filter(|axis| own[*axis]) {
-                        force[axis] += forces[node as usize][axis];
-                    }
+            .map(|part| {
+                let [force, moment] = held.force_and_moment(part);
+                let (by, on) = (part.by, part.on.clone());
+                Reaction {
+                    by,
+                    on,
+                    force,
+                    moment,
                 }
-                Reaction { by, on, force }
             })
             .collect())
+    }
+}
+
+/// The parts of a body that are held or moved, with the forces on all nodes at one instant. It keeps its buffers.
+#[derive(Debug)]
+pub struct HeldParts {
+    body: Arc<BodyModel>,
+    parts: Vec<HeldPlace>,
+    /// The force (N) of supports on each node.
+    forces: Vec<[f64; 3]>,
+    /// The displacement (m) of each node.
+    u: Vec<[f64; 3]>,
+}
+
+impl HeldParts {
+    /// Those of a body; `None` where nothing is held or moved.
+    ///
+    /// # Errors
+    /// [`ReactionError`] as [`SceneBody::held_parts`].
+    pub fn of(body: &SceneBody) -> Result<Option<Self>, ReactionError> {
+        let parts = body.held_parts()?;
+        let Some(body) = body.model().body().filter(|_| !parts.is_empty()) else {
+            return Ok(None);
+        };
+        let nodes = vec![[0.0; 3]; body.mesh.points.len()];
+        Ok(Some(Self {
+            body: Arc::clone(body),
+            parts,
+            forces: nodes.clone(),
+            u: nodes,
+        }))
+    }
+
+    /// The parts, in the order of the scene.
+    #[must_use]
+    pub fn parts(&self) -> &[HeldPlace] {
+        &self.parts
+    }
+
+    /// Computes the forces in a state, with the times (s) over which the impulse of a jump of speed is spread.
+    ///
+    /// # Errors
+    /// [`ReactionError`] as [`SceneBody::reactions`].
+    pub fn take(&mut self, when: LoadTime<'_>, state: &State) -> Result<(), ReactionError> {
+        let model = &self.body.model;
+        model.reactions_in(when, state, &mut self.forces)?;
+        self.body.subtract_contact(state, &mut self.forces);
+        model.displacements_at(when, &state.u, &mut self.u)?;
+        Ok(())
+    }
+
+    /// The force (N) on the body at the nodes of one of its parts, and its moment (N m) about the part's centre.
+    #[must_use]
+    pub fn force_and_moment(&self, part: &HeldPlace) -> [[f64; 3]; 2] {
+        let (mut force, mut moment) = ([0.0; 3], [0.0; 3]);
+        for (node, own) in &part.nodes {
+            let node = *node as usize;
+            let own = [0, 1, 2].map(|axis| match own[axis] {
+                true => self.forces[node][axis],
+                false => 0.0,
+            });
+            let arm = sub(add(self.body.mesh.points[node], self.u[node]), part.centre);
+            force = add(force, own);
+            moment = add(moment, cross(arm, own));
+        }
+        [force, moment]
     }
 }

@@ -1,30 +1,30 @@
 //! Methods that cannot be set up for a scene, told at the keys that are at fault.
 
-use sinew_core::{Options, SetupError, StepReport, System};
-use sinew_integrators::Stepper;
+use sinew_core::{Options, SetupError, System};
 
-use super::Simulation;
 use crate::decode::Place;
 use crate::error::{Fault, SceneError};
-use crate::scene::RunSettings;
+use crate::scene::{RunSettings, Scene};
 
-impl Simulation {
-    /// Sets the scene's integrator up for its body and step.
-    ///
-    /// # Errors
-    /// [`SceneError`] at the key for which it is refused.
-    pub fn set_up(&self, integrator: &mut dyn Stepper) -> Result<StepReport, SceneError> {
-        let prepared = integrator.prepare(self.system(), self.dt);
-        prepared.map_err(|refused| {
-            // The matrix of a step is not factorised once more to find a key.
-            let refuses = |options: &Options| match refused {
-                SetupError::Factorization { .. } => None,
-                _ => refusal(self.settings(), options, self.system(), self.dt),
-            };
-            let place = &self.scene.places().run;
-            at_key(place, &self.settings().options, refuses, refused.clone())
-        })
-    }
+/// The error of a scene whose integrator was refused for a system and a step (s).
+pub(super) fn refused(
+    scene: &Scene,
+    refused: SetupError,
+    system: &dyn System,
+    dt: f64,
+) -> SceneError {
+    let settings = scene.settings();
+    // The matrix of a step is not factorised once more to find a key.
+    let refuses = |options: &Options| match refused {
+        SetupError::Factorization { .. } => None,
+        _ => refusal(settings, options, system, dt),
+    };
+    at_key(
+        &scene.places().run,
+        &settings.options,
+        refuses,
+        refused.clone(),
+    )
 }
 
 /// The refusal of a system by an integrator of these settings, with other options.

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use crate::common::{build, numbers};
-use sinew_core::{LinearSystem, State};
+use sinew_core::{Inputs, LinearSystem, State};
 use sinew_scene::{ReactionOf, Scene, Simulation};
 
 fn scene(moves: &str, damping: &str, run: &str) -> String {
@@ -110,7 +110,7 @@ fn reactions_name_their_tables_and_bear_the_pull() {
     let text = scene(PRESS, "mass = 60.0\nstiffness = 0.01", NEWMARK);
     let simulation = build(&text.replace("duration = 1.0", "duration = 4.0"));
     let (state, _) = run(&simulation, folder.path());
-    let reactions = simulation.reactions(&state).unwrap();
+    let reactions = simulation.body().reactions(&state, Inputs::none()).unwrap();
     let [fixed, moved] = &reactions[..] else {
         panic!("{reactions:?}");
     };

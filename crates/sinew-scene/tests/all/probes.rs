@@ -21,7 +21,7 @@ fn run(text: &str) -> BTreeMap<String, Vec<f64>> {
     let output = Destination::new(&path, &[]).unwrap().open().unwrap();
     let mut csv = ProbeCsv::new(
         output,
-        ProbeRows::new(&simulation),
+        ProbeRows::new(simulation.body()),
         sinew_scene::Schedule::at_most(usize::MAX, simulation.run().steps),
     )
     .unwrap();

@@ -47,7 +47,7 @@ fn probe(simulation: &Simulation, state: &State, index: usize) -> [f64; 3] {
 
 /// The reaction (N) of the support or motion at a place in the list of all.
 fn reaction(simulation: &Simulation, state: &State, index: usize) -> [f64; 3] {
-    simulation.reactions(state).unwrap()[index].force
+    simulation.body().reactions(state, Inputs::none()).unwrap()[index].force
 }
 
 fn weight(simulation: &Simulation) -> f64 {

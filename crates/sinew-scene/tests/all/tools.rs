@@ -175,7 +175,7 @@ fn supports_bear_what_tools_push_into_held_directions() {
         force[0].abs() > 0.1 * force[2].abs() && force[2] > 0.01,
         "{force:?}"
     );
-    let reactions = simulation.reactions(&state).unwrap();
+    let reactions = simulation.body().reactions(&state, Inputs::none()).unwrap();
     for axis in [0, 2] {
         let supports: f64 = reactions.iter().map(|part| part.force[axis]).sum();
         assert!(
@@ -203,7 +203,7 @@ fn a_tool_that_leaves_nodes_in_it_is_told() {
     let simulation = build(&scene(plate));
     let folder = tempfile::tempdir().unwrap();
     let (state, ..) = crate::common::run(&simulation, folder.path());
-    insta::assert_snapshot!(simulation.left_by_tools(&state).join("\n"), @"tool `plate` left a node up to 0.004 m in it: one that is held in that direction, or has no room between its surfaces");
+    insta::assert_snapshot!(simulation.body().left_by_tools(&state).join("\n"), @"tool `plate` left a node up to 0.004 m in it: one that is held in that direction, or has no room between its surfaces");
     assert_eq!(
         simulation.model().tools().unwrap().report(&state, 0).force,
         [0.0; 3]
@@ -211,7 +211,7 @@ fn a_tool_that_leaves_nodes_in_it_is_told() {
     let free = plate.replacen("axes = \"z\"", "axes = \"x\"", 1);
     let simulation = build(&scene(&free));
     let (state, ..) = crate::common::run(&simulation, folder.path());
-    assert!(simulation.left_by_tools(&state).is_empty());
+    assert!(simulation.body().left_by_tools(&state).is_empty());
 }
 
 /// Otherwise a grasp that closes beside the tissue, or two jaws on one node, would be silence.
@@ -227,7 +227,7 @@ fn a_grasp_that_seizes_nothing_and_one_that_comes_second_are_told() {
         let simulation = build(&scene(tools));
         let folder = tempfile::tempdir().unwrap();
         let (state, ..) = crate::common::run(&simulation, folder.path());
-        simulation.left_by_tools(&state).join("\n")
+        simulation.body().left_by_tools(&state).join("\n")
     };
     insta::assert_snapshot!(told(&jaw("far", 0.4, 0.02, 0.05)), @"tool `far` seized nothing from 0.05 s to 0.9 s: it pushed no node");
     let two = jaw("first", 0.18, 0.02, 0.05) + &jaw("second", 0.1812, 0.04, 0.07);
@@ -258,7 +258,7 @@ fn a_tool_that_is_a_body_says_so_and_gives_way() {
     let height = tools.pose(&state, Inputs::none(), 0).position()[2];
     assert!(report.contacts > 0 && report.force[2] > 0.0);
     assert!(height > 0.176, "it is above the end of its path: {height}");
-    assert!(simulation.left_by_tools(&state).is_empty());
+    assert!(simulation.body().left_by_tools(&state).is_empty());
 }
 
 /// A tip of a tenth of an edge between nodes: its triangles are found, and it does not pass.

@@ -124,14 +124,14 @@ impl Reading {
         let word = words.word();
         let command = match word {
             "pose" => Command::Pose {
-                tool: words.quoted("the name of a tool in quotes")?,
+                tool: words.quoted("the name of a tool in quotes")?.into(),
                 position: words
                     .vector("six finite numbers, position (m) and rotation vector (rad)")?,
                 rotation_vector: words
                     .vector("six finite numbers, position (m) and rotation vector (rad)")?,
             },
             "factor" => Command::LoadFactor {
-                load: words.quoted("the name of a load in quotes")?,
+                load: words.quoted("the name of a load in quotes")?.into(),
                 factor: words.number("a finite factor")?,
             },
             "integrator" => Command::Integrator {

@@ -4,7 +4,7 @@ use std::cell::OnceCell;
 use std::sync::Arc;
 
 use sinew_core::{Batch, Outcome, RecordedSteps, Run, SimulateError, StepReport};
-use sinew_scene::Simulation;
+use sinew_scene::SceneBody;
 use sinew_tools::Pose;
 
 use super::{Ended, World};
@@ -20,7 +20,7 @@ impl World {
     pub fn step(&mut self) -> Result<StepReport, WorldStepError> {
         self.guarded(|world| {
             world.begin_step()?;
-            let system = world.simulation.system();
+            let system = world.body.system();
             let mut batch = Batch::new(system, &world.inputs, world.method.dt, 1);
             batch = batch.with_divergence_limit(world.limit);
             let taken = batch.take(&mut *world.method.integrator, &mut world.state);
@@ -64,7 +64,7 @@ impl World {
     pub fn show<'r, R: Recorder + ?Sized>(&self, recorder: &'r mut R) -> Shown<'r, R> {
         Shown {
             steps: RecordedSteps::new(recorder),
-            simulation: Arc::clone(&self.simulation),
+            body: Arc::clone(&self.body),
         }
     }
 
@@ -76,7 +76,7 @@ impl World {
     ) -> Shown<'r, R> {
         Shown {
             steps: RecordedSteps::resumed(recorder, steps),
-            simulation: Arc::clone(&self.simulation),
+            body: Arc::clone(&self.body),
         }
     }
 
@@ -99,7 +99,7 @@ impl World {
         }
         loop {
             let span = self.guarded(Self::begin_step)?;
-            shown.follow(&self.simulation, &self.inputs, self.change.as_ref())?;
+            shown.follow(&self.body, &self.inputs, self.change.as_ref())?;
             let ended = self.take(span.min(end - shown.steps()), shown)?;
             if ended != Ended::Finished || shown.steps() >= end {
                 return Ok(ended);
@@ -113,14 +113,14 @@ impl World {
         steps: usize,
         shown: &mut Shown<'_, R>,
     ) -> Result<Ended, AdvanceError> {
-        shown.follow(&self.simulation, &self.inputs, None)?;
+        shown.follow(&self.body, &self.inputs, None)?;
         let run = Run {
             dt: self.method.dt,
             steps,
             divergence_limit: self.limit,
         };
         let before = shown.steps();
-        let system = (self.simulation.system(), &self.inputs);
+        let system = (self.body.system(), &self.inputs);
         let taken = shown
             .steps
             .take(system, &mut *self.method.integrator, &mut self.state, &run);
@@ -170,7 +170,7 @@ impl World {
     fn diverged(&self, dof: usize) -> WorldStepError {
         WorldStepError::Diverged {
             t: self.state.t(),
-            place: self.simulation.system().cell_name(dof),
+            place: self.body.system().cell_name(dof),
         }
     }
 
@@ -183,7 +183,7 @@ impl World {
         if end <= t {
             return Err(WorldStepError::Time { t, dt });
         }
-        self.steer(t, end)?;
+        self.move_tools(t, end)?;
         for load in &mut self.loads {
             if let Some(factor) = load.next.take() {
                 self.inputs.set(load.channel, t, factor)?;
@@ -216,15 +216,15 @@ impl World {
         self.trial.clone_from(&self.state);
         let (state, inputs) = (&mut self.state, &self.inputs);
         let mut all_acts = || {
-            let mut changed: Option<Simulation> = None;
+            let mut changed: Option<SceneBody> = None;
             for sheet in self.sheets.drain(..) {
                 if self.blade.replace(sheet[1]) != Some(sheet[0]) {
                     cutter.lift();
                 }
-                let now = changed.as_ref().unwrap_or(&self.body);
+                let now = changed.as_ref().unwrap_or(&self.undriven);
                 changed = cutter.cut(sheet, now, state, inputs)?.or(changed);
             }
-            let now = changed.as_ref().unwrap_or(&self.body);
+            let now = changed.as_ref().unwrap_or(&self.undriven);
             Ok(cutter.follow(now, state, inputs, end)?.or(changed))
         };
         let changed = match all_acts() {
@@ -241,19 +241,19 @@ impl World {
             after: self.state.clone(),
             energy: cutter.totals().energy() - energy,
         });
-        self.body = Arc::new(changed);
-        self.simulation = Arc::clone(&self.body);
+        self.undriven = Arc::new(changed);
+        self.topology_epoch += 1;
+        self.body = Arc::clone(&self.undriven);
         if drives_loads {
             let driven = self.driven();
-            let driven = driven.map_err(|error| WorldStepError::Driven(error.to_string()))?;
-            self.simulation = Arc::new(driven);
+            self.body = driven.map_err(|error| WorldStepError::Driven(error.to_string()))?;
         }
         self.method.stable_step = OnceCell::new();
         Ok(())
     }
 
     /// Gives the channels of all tools in hand their poses at the end (s) of a step that begins at `t` (s).
-    fn steer(&mut self, t: f64, end: f64) -> Result<(), WorldStepError> {
+    fn move_tools(&mut self, t: f64, end: f64) -> Result<(), WorldStepError> {
         let last = self.state.clock.last_step().unwrap_or(0.0);
         for (index, hand) in self.tools.iter_mut().enumerate() {
             let Some((position, rotation_vector)) = hand.target else {
@@ -261,7 +261,7 @@ impl World {
             };
             if !hand.is_steered {
                 // Of a tool that is a body of its own it is the hand that is steered.
-                let own = self.simulation.model().tools();
+                let own = self.body.model().tools();
                 let own = own.and_then(|tools| tools.tools().get(index));
                 let own = own.map_or(Pose::identity(), |tool| tool.motion.at(t, &self.inputs));
                 hand.steering

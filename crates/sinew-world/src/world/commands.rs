@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
-use sinew_scene::Simulation;
+use sinew_scene::SceneBody;
 
 use super::{Method, World, try_step};
-use crate::command::{Command, CommandError};
+use crate::command::{Command, CommandError, LoadId, ToolId};
 use crate::log::Entry;
 
 /// Largest number of a pose (m or rad): far beyond any body, and far from overflow.
@@ -31,26 +31,27 @@ impl World {
                 position,
                 rotation_vector,
             } => {
-                let tool = self.tool(tool)?;
+                let ToolId(tool) = self.tool(tool)?;
                 self.tools[tool].target = Some((*position, *rotation_vector));
             }
             Command::LoadFactor { load, factor } => self.turn(load, *factor)?,
             Command::Integrator { id, options } => {
-                let method = Method::new(&self.simulation, id, options, self.method.dt)?;
+                let method = Method::new(&self.scene, id, options, self.method.dt)?;
                 self.switch(method)?;
             }
             Command::Dt(dt) => {
                 let (id, options) = &self.method.asked;
-                let method = Method::new(&self.simulation, id, options, *dt)?;
+                let method = Method::new(&self.scene, id, options, *dt)?;
                 self.switch(method)?;
             }
             Command::Reset => {
                 self.cutter = self.scene.cutter()?;
                 self.sheets.clear();
                 (self.blade, self.change) = (None, None);
-                self.body = Arc::clone(&self.scene);
-                self.simulation = Arc::clone(&self.scene);
-                self.method = Method::of_scene(&self.simulation)?;
+                self.body = Arc::clone(self.scene.body());
+                self.undriven = Arc::clone(self.scene.body());
+                self.topology_epoch += 1;
+                self.method = Method::of_scene(&self.scene)?;
                 self.inputs.clone_from(&self.fresh);
                 for load in &mut self.loads {
                     load.next = None;
@@ -58,7 +59,7 @@ impl World {
                 for tool in &mut self.tools {
                     (tool.target, tool.is_steered) = (None, false);
                 }
-                self.state.clone_from(self.simulation.initial_state());
+                self.state.clone_from(self.scene.initial_state());
                 self.reached = self.state.t();
                 self.failure = None;
             }
@@ -147,12 +148,43 @@ impl World {
         }
     }
 
-    /// The number of a tool by its name.
+    /// Moves a tool to a pose at the end of the next step: see [`Command::Pose`]. It allocates nothing but the entry of
+    /// the log.
+    ///
+    /// # Errors
+    /// [`CommandError`]; the session continues as before.
+    pub fn steer(
+        &mut self,
+        tool: ToolId,
+        position: [f64; 3],
+        rotation_vector: [f64; 3],
+    ) -> Result<(), CommandError> {
+        let tool = self.tools.get(tool.0).map(|tool| Arc::clone(&tool.name));
+        self.command(Command::Pose {
+            tool: tool.ok_or(CommandError::Follows)?,
+            position,
+            rotation_vector,
+        })
+    }
+
+    /// Multiplies a load by a factor from the next step on: see [`Command::LoadFactor`].
+    ///
+    /// # Errors
+    /// [`CommandError`]; the session continues as before.
+    pub fn scale_load(&mut self, load: LoadId, factor: f64) -> Result<(), CommandError> {
+        let load = self.loads.get(load.0).map(|load| Arc::clone(&load.name));
+        self.command(Command::LoadFactor {
+            load: load.ok_or(CommandError::Follows)?,
+            factor,
+        })
+    }
+
+    /// The tool of a name.
     ///
     /// # Errors
     /// [`CommandError::NoTool`].
-    pub fn tool(&self, name: &str) -> Result<usize, CommandError> {
-        let tools = self.simulation.model().tools();
+    pub fn tool(&self, name: &str) -> Result<ToolId, CommandError> {
+        let tools = self.body.model().tools();
         let names = || {
             tools
                 .iter()
@@ -160,25 +192,28 @@ impl World {
                 .map(|tool| &tool.name)
         };
         let place = names().position(|known| known == name);
-        place.ok_or_else(|| CommandError::NoTool {
+        place.map(ToolId).ok_or_else(|| CommandError::NoTool {
             name: name.to_owned(),
             known: names().cloned().collect(),
         })
     }
 
-    /// The place of a load by its name.
-    fn load(&self, name: &str) -> Result<usize, CommandError> {
-        let place = self.loads.iter().position(|load| load.name == name);
-        place.ok_or_else(|| CommandError::NoLoad {
+    /// The load of a name: that of the scene, `load 2` for the second if it has none, or `gravity`.
+    ///
+    /// # Errors
+    /// [`CommandError::NoLoad`].
+    pub fn load(&self, name: &str) -> Result<LoadId, CommandError> {
+        let place = self.loads.iter().position(|load| &*load.name == name);
+        place.map(LoadId).ok_or_else(|| CommandError::NoLoad {
             name: name.to_owned(),
-            known: self.loads.iter().map(|load| load.name.clone()).collect(),
+            known: (self.loads.iter().map(|load| load.name.to_string())).collect(),
         })
     }
 
     fn turn(&mut self, name: &str, factor: f64) -> Result<(), CommandError> {
-        let place = self.load(name)?;
+        let LoadId(place) = self.load(name)?;
         if !self.drives_loads() {
-            (self.simulation, self.method) = self.driven_method()?;
+            (self.body, self.method) = self.driven_method()?;
             // These loads give the forces that led to the state.
             self.state.loads = None;
         }
@@ -188,14 +223,14 @@ impl World {
 
     /// True if loads follow inputs.
     pub(super) fn drives_loads(&self) -> bool {
-        !Arc::ptr_eq(&self.simulation, &self.body)
+        !Arc::ptr_eq(&self.body, &self.undriven)
     }
 
-    /// The scene with loads that follow inputs, and the method, after a check that it can take a step.
-    fn driven_method(&self) -> Result<(Arc<Simulation>, Method), CommandError> {
-        let driven = Arc::new(self.driven()?);
+    /// The body with loads that follow inputs, and the method, after a check that it can take a step.
+    fn driven_method(&self) -> Result<(Arc<SceneBody>, Method), CommandError> {
+        let driven = self.driven()?;
         let (id, options) = &self.method.asked;
-        let mut method = Method::new(&driven, id, options, self.method.dt)?;
+        let mut method = Method::new(&self.scene, id, options, self.method.dt)?;
         let mut state = self.state.clone();
         state.loads = None;
         let mut trial = state.clone();
@@ -212,13 +247,13 @@ impl World {
     /// Goes on with another method, if a step can be taken with it.
     fn switch(&mut self, mut method: Method) -> Result<(), CommandError> {
         let Self {
-            simulation,
+            body,
             inputs,
             state,
             trial,
             ..
         } = self;
-        try_step(simulation.system(), inputs, state, trial, &mut method)?;
+        try_step(body.system(), inputs, state, trial, &mut method)?;
         self.method = method;
         Ok(())
     }

@@ -74,13 +74,14 @@ impl World {
         if saved.commanded.is_some() == self.follows {
             return Err(RestoreError::OtherWorld);
         }
-        self.body = Arc::clone(&self.scene);
+        self.undriven = Arc::clone(self.scene.body());
+        self.topology_epoch += 1;
         if let Some(cutter) = &mut self.cutter
-            && let Some(cut) = cutter.restore(&saved.cuts, &self.scene)?
+            && let Some(cut) = cutter.restore(&saved.cuts, self.scene.body())?
         {
-            self.body = Arc::new(cut);
+            self.undriven = Arc::new(cut);
         }
-        self.simulation = Arc::clone(&self.body);
+        self.body = Arc::clone(&self.undriven);
         let state = State::from_bytes(&saved.state, self.body.system())?;
         if let Some(commanded) = &saved.commanded {
             self.restore_commanded(commanded)?;
@@ -95,10 +96,10 @@ impl World {
     fn restore_commanded(&mut self, commanded: &Commanded) -> Result<(), RestoreError> {
         self.inputs = Inputs::from_bytes(&commanded.inputs)?;
         if commanded.drives_loads {
-            self.simulation = Arc::new(self.driven()?);
+            self.body = self.driven()?;
         }
         let (id, options) = &commanded.method;
-        self.method = Method::new(&self.simulation, id, options, commanded.dt)?;
+        self.method = Method::new(&self.scene, id, options, commanded.dt)?;
         for (hand, (target, is_steered)) in self.tools.iter_mut().zip(&commanded.tools) {
             (hand.target, hand.is_steered) = (*target, *is_steered);
         }

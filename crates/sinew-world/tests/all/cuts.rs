@@ -8,7 +8,7 @@ use sinew_world::World;
 
 use crate::common::{advance, build, end_of, following};
 use sinew_core::{Inputs, State};
-use sinew_scene::{CutTotals, Cutter, Scene, Simulation};
+use sinew_scene::{CutTotals, Cutter, Scene, SceneBody, Simulation};
 
 const STROKES: &str = "stroke,t_s,ax_m,ay_m,az_m,bx_m,by_m,bz_m\n";
 
@@ -39,7 +39,7 @@ fn load(folder: &Path, text: &str, strokes: &str) -> Simulation {
 
 /// A run to its end: the scene on the body that is left, its state, and what was cut.
 struct Ended {
-    simulation: Arc<Simulation>,
+    body: Arc<SceneBody>,
     state: State,
     totals: CutTotals,
     mass: [f64; 2],
@@ -58,7 +58,7 @@ fn run_in_parts(simulation: Simulation, steps: usize) -> Ended {
     }
     let cutter = run.cutter().unwrap();
     Ended {
-        simulation: Arc::clone(run.simulation()),
+        body: Arc::clone(run.body()),
         state: run.state().clone(),
         totals: *cutter.totals(),
         mass: [mass, cutter.mass()],
@@ -72,7 +72,7 @@ fn run(simulation: Simulation) -> Ended {
 
 /// Places of the centre of mass (m) of the nodes that this picks by their place at rest.
 fn centre(ended: &Ended, picks: impl Fn([f64; 3]) -> bool) -> [f64; 3] {
-    let body = ended.simulation.model().body().unwrap();
+    let body = ended.body.model().body().unwrap();
     let mut u = vec![[0.0; 3]; body.mesh.points.len()];
     body.model
         .displacements_at(ended.state.t(), &ended.state.u, &mut u)
@@ -116,7 +116,7 @@ fn a_piece_that_is_cut_off_falls_as_galileo_says() {
     assert_eq!(ended.totals.report.new_nodes, 9);
     assert!((ended.mass[1] / ended.mass[0] - 1.0).abs() < 1e-14);
     // Copies follow all nodes that there were; the upper half lies above the cut, or is one of them or not.
-    let body = ended.simulation.model().body().unwrap();
+    let body = ended.body.model().body().unwrap();
     let tets = body.mesh.tets.iter();
     let upper: Vec<u32> = tets
         .filter(|nodes| {
@@ -159,7 +159,7 @@ fn a_body_goes_on_after_its_cut_as_one_that_is_built_on_the_mesh_that_is_left() 
     let mut cutter = simulation.cutter().unwrap().unwrap();
     let mut integrator = simulation.integrator().unwrap();
     let mut state = simulation.initial_state().clone();
-    let mut now = simulation;
+    let mut now = Arc::clone(simulation.body());
     let (mut last, mut steps) = (None, 0);
     while state.t() < 0.05 - 1e-9 {
         let end = state.t() + 2e-4;
@@ -167,7 +167,7 @@ fn a_body_goes_on_after_its_cut_as_one_that_is_built_on_the_mesh_that_is_left() 
             .follow(&now, &mut state, Inputs::none(), end)
             .unwrap()
         {
-            now = next;
+            now = Arc::new(next);
             last = Some((state.clone(), steps));
         }
         integrator.step(now.system(), &mut state, 2e-4).unwrap();
@@ -233,14 +233,14 @@ fn one_way_of_a_blade_makes_one_cut_whoever_leads_it() {
     let by_tool = run(load(folder.path(), &bar(tool, EXPLICIT), ""));
     assert_eq!(by_tool.totals.report.faces, table.totals.report.faces);
     assert_eq!((by_tool.pieces, table.pieces), (2, 2));
-    let mesh = |ended: &Ended| ended.simulation.model().body().unwrap().mesh.tets.clone();
+    let mesh = |ended: &Ended| ended.body.model().body().unwrap().mesh.tets.clone();
     assert_eq!(mesh(&by_tool), mesh(&table));
     let simulation = load(folder.path(), &bar("[cutting]\n", EXPLICIT), "");
     let mut cutter = simulation.cutter().unwrap().unwrap();
     let mut state = simulation.initial_state().clone();
     let blade = |x: f64| [[x, -0.01, 0.03], [x, 0.03, 0.03]];
     let sheet = [blade(-0.001), blade(0.021)];
-    let cut = cutter.cut(sheet, &simulation, &mut state, Inputs::none());
+    let cut = cutter.cut(sheet, simulation.body(), &mut state, Inputs::none());
     let cut = cut.unwrap().unwrap();
     assert_eq!(cut.model().body().unwrap().mesh.tets, mesh(&table));
 }
@@ -259,7 +259,7 @@ fn what_is_inside_a_burner_goes_with_its_mass_and_its_probes() {
     assert!(
         (ended.mass[1] + report.removed_mass - ended.mass[0]).abs() < 1e-15 * ended.mass[0] * 4.0
     );
-    let probe = &ended.simulation.probes()[0];
+    let probe = &ended.body.probes()[0];
     assert!(probe.is_gone);
     assert!(probe.displacement(0.05, &ended.state.u).all(f64::is_nan));
     assert!(
@@ -331,7 +331,7 @@ fn a_frozen_piece_stays_where_it_came_off_and_keeps_its_mass() {
     assert_eq!((frozen.pieces, frozen.totals.report.frozen_tets), (2, 72));
     assert!((frozen.mass[1] / frozen.mass[0] - 1.0).abs() < 1e-14);
     let tip = |ended: &Ended| -> Vec<f64> {
-        let probe = &ended.simulation.probes()[0];
+        let probe = &ended.body.probes()[0];
         probe.displacement(0.0, &ended.state.u).collect()
     };
     assert!(tip(&frozen)[2] > 1e-4);
@@ -377,7 +377,7 @@ fn the_share_of_a_force_on_each_node_stays_as_pieces_come_off() {
             &bar(cutting, EXPLICIT),
             &across(0.0, 2e-4),
         ));
-        let linear = ended.simulation.system().as_linear().unwrap();
+        let linear = ended.body.system().as_linear().unwrap();
         let [on_side, ..] = linear.operators().loads() else {
             panic!("the load and gravity");
         };
@@ -459,7 +459,7 @@ fn a_grasp_outlives_a_cut() {
         let cut = format!("{jaw}[cutting]\ntable = \"strokes.csv\"\n");
         let ended = run(load(folder.path(), &bar(&cut, EXPLICIT), &strokes));
         assert!(ended.totals.report.new_nodes > 0);
-        let body = ended.simulation.model().body().unwrap();
+        let body = ended.body.model().body().unwrap();
         let (tools, state) = (body.tools.as_ref().unwrap(), &ended.state);
         let report = tools.report(state, 0);
         // All 9 nodes of the top and the copies of those in the cut are still at the jaw.
@@ -472,7 +472,7 @@ fn a_grasp_outlives_a_cut() {
         let other = end_of(whole);
         let theirs = tools.report(&other, 0);
         assert!((report.work / theirs.work - 1.0).abs() < 0.5);
-        let probe = ended.simulation.probes()[0].displacement(state.t(), &state.u);
+        let probe = ended.body.probes()[0].displacement(state.t(), &state.u);
         assert!((probe.last().unwrap() - 0.003).abs() < 1.1e-3);
     }
 }
@@ -505,10 +505,12 @@ fn a_tool_cuts_in_any_steps_what_a_table_cuts() {
     while now.is_none() {
         end += 2e-4;
         now = cutter
-            .follow(&simulation, &mut state, Inputs::none(), end)
+            .follow(simulation.body(), &mut state, Inputs::none(), end)
             .unwrap();
         let mut taken_over = simulation.cutter().unwrap().unwrap();
-        taken_over.restore(&cutter.to_bytes(), &simulation).unwrap();
+        taken_over
+            .restore(&cutter.to_bytes(), simulation.body())
+            .unwrap();
         assert_eq!(taken_over.to_bytes(), cutter.to_bytes());
         cutter = taken_over;
     }
@@ -524,13 +526,13 @@ fn a_blade_in_the_air_leaves_the_cut_of_a_hand_alone() {
         let mut cutter = simulation.cutter().unwrap().unwrap();
         let mut state = simulation.initial_state().clone();
         let blade = |x: f64| [[x, -0.01, 0.032], [x, 0.03, 0.032]];
-        let mut now: Option<Simulation> = None;
+        let mut now: Option<SceneBody> = None;
         for n in 0..60 {
             let [from, to] = [n, n + 1].map(|n| blade(-0.001 + 4e-4 * f64::from(n)));
-            let before = now.as_ref().unwrap_or(&simulation);
+            let before = now.as_ref().unwrap_or(simulation.body());
             let cut = cutter.cut([from, to], before, &mut state, Inputs::none());
             now = cut.unwrap().or(now);
-            let before = now.as_ref().unwrap_or(&simulation);
+            let before = now.as_ref().unwrap_or(simulation.body());
             let end = 1e-4 * f64::from(n + 1);
             let cut = cutter.follow(before, &mut state, Inputs::none(), end);
             assert!(cut.unwrap().is_none());
@@ -557,7 +559,7 @@ fn what_a_jaw_holds_is_not_snapped() {
                   [cutting]\ntable = \"strokes.csv\"\nsnap = 0.3\n";
     let ended = run(load(folder.path(), &bar(tables, EXPLICIT), &strokes));
     assert!(ended.totals.report.moved_nodes > 0);
-    let body = ended.simulation.model().body().unwrap();
+    let body = ended.body.model().body().unwrap();
     let top = body.mesh.points.iter().filter(|place| place[2] > 0.0599);
     let top: Vec<_> = top.collect();
     assert!(top.len() > 9);
@@ -669,7 +671,7 @@ fn a_cut_that_leaves_nothing_ends_the_run_in_words() {
     let simulation = load(folder.path(), &bar(tool, EXPLICIT), "");
     let mut cutter: Cutter = simulation.cutter().unwrap().unwrap();
     let mut state = simulation.initial_state().clone();
-    let ended = cutter.follow(&simulation, &mut state, Inputs::none(), 2e-4);
+    let ended = cutter.follow(simulation.body(), &mut state, Inputs::none(), 2e-4);
     let said = ended.err().unwrap().to_string();
     assert_eq!(said, "nothing that moves is left of the body");
 }
@@ -716,7 +718,7 @@ fn the_strip_is_pulled_as_its_law_says_and_its_slit_opens() {
     advance(&mut run, steps / 2);
     let (stretch, mu) = (1.1, 3500.0 / 2.0);
     let pull = mu * (stretch - 1.0 / stretch) * 0.04 * 0.01;
-    let force = |run: &World| run.simulation().reactions(run.state()).unwrap()[3].force[0];
+    let force = |run: &World| run.reactions().unwrap()[3].force[0];
     is_near(force(&run), pull, 1e-3);
     assert_eq!(run.cutter().unwrap().totals().changes, 0);
     advance(&mut run, steps - steps / 2);
@@ -733,12 +735,12 @@ fn the_strip_is_pulled_as_its_law_says_and_its_slit_opens() {
     is_near(totals.blade_work, 50.0 * totals.report.area, 1e-12);
     is_near(run.cutter().unwrap().mass(), mass, 1e-12);
     // Both lips at the edge, of which one has the probe, are apart by more than half of what the ends are pulled.
-    let cut = run.simulation().model().body().unwrap();
+    let cut = run.body().model().body().unwrap();
     let mut places = vec![[0.0; 3]; cut.mesh.points.len()];
     let (t, u) = (run.state().t(), &run.state().u);
     cut.model.positions(t, u, &mut places).unwrap();
     let from = cut.cut.as_ref().unwrap();
-    let own = run.simulation().probes()[0].nodes[0].index;
+    let own = run.body().probes()[0].nodes[0].index;
     let origin = from.cut.origins[own as usize];
     let copies = (0..)
         .zip(&from.cut.origins)

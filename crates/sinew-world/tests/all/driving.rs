@@ -13,7 +13,7 @@ fn steps(session: &mut World, count: usize) {
 
 fn pose(tool: &str, position: [f64; 3]) -> Command {
     Command::Pose {
-        tool: tool.to_owned(),
+        tool: tool.into(),
         position,
         rotation_vector: [0.0; 3],
     }
@@ -54,16 +54,17 @@ fn a_tool_goes_where_it_is_told_and_stays() {
     steps(&mut session, 10);
     let place = [0.04, 0.02, 0.066];
     session.command(pose("ball", place)).unwrap();
-    let (t, before) = (session.t(), session.tool_pose(0));
+    let ball = session.tool("ball").unwrap();
+    let (t, before) = (session.t(), session.tool_pose(ball));
     steps(&mut session, 1);
-    assert_eq!(session.tool_pose(0).position(), place);
+    assert_eq!(session.tool_pose(ball).position(), place);
     steps(&mut session, 500);
-    assert_eq!(session.tool_pose(0).position(), place);
-    let tools = session.simulation().model().tools().unwrap();
+    assert_eq!(session.tool_pose(ball).position(), place);
     assert!(
-        tools.report(session.state(), 0).force[2] > 0.01,
+        session.tool_report(ball).unwrap().force[2] > 0.01,
         "it presses"
     );
+    let tools = session.body().model().tools().unwrap();
     let own = &tools.tools()[0].motion;
     let still_there = own.at(t, session.inputs()).position()[2];
     assert!((still_there - before.position()[2]).abs() < 1e-15);
@@ -81,8 +82,8 @@ fn a_tip_that_is_led_between_nodes_far_from_its_path_does_not_pass_through() {
         session.command(pose("ball", [0.034, 0.03, z])).unwrap();
         steps(&mut session, 1);
     }
-    let tools = session.simulation().model().tools().unwrap();
-    let report = tools.report(session.state(), 0);
+    let ball = session.tool("ball").unwrap();
+    let report = session.tool_report(ball).unwrap();
     assert!(report.contacts > 0 && report.force[2] > 0.0, "{report:?}");
 }
 
@@ -140,7 +141,7 @@ fn a_reset_begins_again_and_counts_on() {
 
 fn factor(load: &str, factor: f64) -> Command {
     Command::LoadFactor {
-        load: load.to_owned(),
+        load: load.into(),
         factor,
     }
 }
@@ -201,7 +202,7 @@ fn a_factor_is_a_load_that_jumps() {
 #[test]
 fn gravity_and_loads_without_a_name_are_driven() {
     let mut session = session(CUBE);
-    let names = session.simulation().load_names();
+    let names = session.body().load_names();
     assert_eq!(names, ["pull", "load 2", "gravity"]);
     session.command(Command::Dt(0.001)).unwrap();
     for name in names {
@@ -358,7 +359,7 @@ fn a_cut_that_leaves_nothing_fails_by_name_and_leaves_the_body_before_it() {
     assert!(matches!(failed, WorldStepError::Cutting(_)), "{failed}");
     assert_eq!(failed.to_string(), "nothing that moves is left of the body");
     assert!(*session.state() == before);
-    assert_eq!(session.simulation().system().dofs(), before.u.len());
+    assert_eq!(session.body().system().dofs(), before.u.len());
     session.command(Command::Reset).unwrap();
     steps(&mut session, 3);
     assert!(session.state().u == before.u);

@@ -43,7 +43,7 @@ const TIP: &str = "[[probe]]\nname = \"tip\"\npoint = [0.02, 0.02, 0.06]\n";
 
 /// Overlap of surfaces at the end of a run.
 fn overlap(run: &World) -> Option<Overlap> {
-    let mut watch = OverlapWatch::new(run.simulation().model().body().unwrap());
+    let mut watch = OverlapWatch::new(run.body().model().body().unwrap());
     watch.look_at_state(run.state()).unwrap();
     watch.into_deepest()
 }
@@ -53,7 +53,7 @@ fn sunk(scene: Simulation) -> (f64, World) {
     let steps = scene.run().steps;
     let mut run = following(scene);
     advance(&mut run, steps);
-    let body = run.simulation().model().body().unwrap();
+    let body = run.body().model().body().unwrap();
     let mut u = vec![[0.0; 3]; body.mesh.points.len()];
     let (t, state) = (run.state().t(), run.state());
     body.model.displacements_at(t, &state.u, &mut u).unwrap();
@@ -83,7 +83,7 @@ fn a_cut_bar_bears_what_rests_on_it_as_a_whole_one() {
     assert_eq!(run.cutter().unwrap().pieces(), 2);
     // Lips slide: only what the unequal loads of corners shear across the cut is lost.
     assert!((met / whole - 1.0).abs() < 0.01, "{met} {whole}");
-    let contact = run.simulation().model().contact().unwrap();
+    let contact = run.body().model().contact().unwrap();
     let report = contact.lips_report(run.state());
     assert_eq!((contact.lip_pairs(), report.contacts), (9, 9));
     let (free, _) = of(0.03, "lips = \"free\"");
@@ -105,10 +105,10 @@ fn a_plate_on_a_cut_bar_presses_with_e_a_d_over_l() {
         let strokes = across([0.03; 2]) + crossing;
         let scene = bar_of_strokes(folder.path(), &strokes, plate, lips, EXPLICIT);
         let (top, run) = sunk(scene);
-        let contact = run.simulation().model().contact().unwrap();
+        let contact = run.body().model().contact().unwrap();
         let force = contact.report(run.state(), 0).force[2];
         let residual = contact.lips_report(run.state()).largest_residual;
-        let said = run.simulation().left_by_tools(run.state()).join("\n");
+        let said = run.body().left_by_tools(run.state()).join("\n");
         let depth = overlap(&run).map(|overlap| overlap.depth);
         (
             force,
@@ -160,7 +160,7 @@ impl Energy {
 
     /// Energy after one more step of `dt` (s), which must not be higher.
     fn that_fell(self, run: &World, dt: f64) -> Self {
-        let body = run.simulation().model().body().unwrap();
+        let body = run.body().model().body().unwrap();
         let (model, State { u, v, .. }) = (&body.model, run.state());
         let quadratic = |x: &[f64]| {
             let mut out = vec![0.0; x.len()];
@@ -202,7 +202,7 @@ fn lips_that_bounce_on_each_other_bring_in_no_energy() {
             if heights[0] == heights[1] && step % 100 == 0 {
                 assert_eq!(overlap(&run), None);
             }
-            let contact = run.simulation().model().contact().unwrap();
+            let contact = run.body().model().contact().unwrap();
             met += contact.lips_report(run.state()).contacts;
         }
         assert!(met > 1000, "{met}");
@@ -227,7 +227,7 @@ fn lips_that_overlap_as_a_blade_cuts_on_bring_in_no_energy() {
     let (mut energy, mut met_before_cuts) = (Energy::NONE, 0);
     for _ in 0..300 {
         let (changes, contact) = (run.cutter().unwrap().totals().changes, &run.state().contact);
-        let pushed = run.simulation().model().contact();
+        let pushed = run.body().model().contact();
         let pushed = pushed.filter(|_| !contact.is_empty());
         let met = pushed.map_or(0, |tools| tools.lips_report(run.state()).contacts);
         advance(&mut run, 1);

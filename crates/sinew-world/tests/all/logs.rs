@@ -18,12 +18,12 @@ fn log() -> String {
     let block = ("kind".to_owned(), OptionValue::Text("block".to_owned()));
     for command in [
         Command::Pose {
-            tool: "ball".to_owned(),
+            tool: "ball".into(),
             position: [0.04, 0.1 + 0.2, -0.0],
             rotation_vector: [1e-300, 0.5, -1.0 / 3.0],
         },
         Command::LoadFactor {
-            load: "load 2".to_owned(),
+            load: "load 2".into(),
             factor: 0.25,
         },
         Command::Integrator {
@@ -150,7 +150,7 @@ fn a_journal_holds_what_no_later_pose_can_replace_and_in_the_end_all() {
     let mut journal = Journal::create(path.clone()).unwrap();
     let text = || fs::read_to_string(&path).unwrap();
     let pose = |z: f64| Command::Pose {
-        tool: "ball".to_owned(),
+        tool: "ball".into(),
         position: [0.04, 0.04, z],
         rotation_vector: [0.0; 3],
     };

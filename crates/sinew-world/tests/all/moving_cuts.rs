@@ -19,7 +19,7 @@ fn cut(text: &str, strokes: &str) -> (usize, Vec<String>) {
     .unwrap();
     fs::write(&path, text).unwrap();
     let mut run = following(Scene::load(path).and_then(Scene::build).unwrap());
-    let steps = run.simulation().run().steps;
+    let steps = run.scene().run().steps;
     advance(&mut run, steps);
     let cutter = run.cutter().unwrap();
     (cutter.pieces(), cutter.left_by_strokes())
@@ -76,7 +76,7 @@ fn a_cube_that_flies_through_a_resting_blade_is_parted() {
         "duration = 0.07\nintegrator = \"central-difference\"\ndt = 5e-4\n",
     );
     let mut run = following(build(&scene));
-    let steps = run.simulation().run().steps;
+    let steps = run.scene().run().steps;
     advance(&mut run, steps);
     let cutter = run.cutter().unwrap();
     assert_eq!((cutter.pieces(), cutter.left_by_strokes()), (2, Vec::new()));
@@ -95,7 +95,7 @@ fn what_a_hand_leaps_over_is_told_with_its_area_and_place() {
     let blade = |z: f64| [[0.05, -0.01, z], [0.05, 0.11, z]];
     let cut = cutter.cut(
         [blade(0.12), blade(0.07)],
-        &simulation,
+        simulation.body(),
         &mut state,
         Inputs::none(),
     );
@@ -118,7 +118,9 @@ fn what_a_hand_leaps_over_is_told_with_its_area_and_place() {
     cutter.lift();
     assert_eq!(cutter.left_by_strokes(), [said]);
     let mut restored = simulation.cutter().unwrap().unwrap();
-    restored.restore(&cutter.to_bytes(), &simulation).unwrap();
+    restored
+        .restore(&cutter.to_bytes(), simulation.body())
+        .unwrap();
     assert_eq!(restored.left_by_strokes(), [said]);
 }
 

@@ -55,7 +55,7 @@ impl sinew_core::Recorder for Wishes {
 
 impl Recorder for Wishes {
     fn body_changed(&mut self, change: &BodyChange<'_>) -> Result<(), RecordError> {
-        let dofs = change.simulation.system().dofs();
+        let dofs = change.body.system().dofs();
         self.watches
             .iter_mut()
             .for_each(|dof| *dof = dofs as u32 - 1);
@@ -136,13 +136,13 @@ fn a_recorder_follows_the_body_through_its_cuts() {
                 rotation = [1.5707963267948966, 0.0, 0.0]\nvelocity = [1.0, 0.0, 0.0]\n[cutting]\ntool = \"knife\"\n\
                 [run]\nduration = 0.03\nintegrator = \"central-difference\"\ndt = 2e-4\n";
     let mut world = following(build(text));
-    let before = world.simulation().system().dofs();
+    let before = world.body().system().dofs();
     let mut wishes = Wishes::new(1, &[0]);
     assert_eq!(
         world.advance_to(0.03, &mut wishes).unwrap(),
         Ended::Finished
     );
-    let dofs = world.simulation().system().dofs();
+    let dofs = world.body().system().dofs();
     assert!(dofs > before);
     assert_eq!(wishes.changes.last().unwrap().1, dofs);
     assert!(

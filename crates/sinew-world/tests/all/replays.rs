@@ -33,7 +33,7 @@ impl Dice {
 fn command(dice: &mut Dice) -> Command {
     match dice.0.next_u32() % 20 {
         0..=9 => Command::Pose {
-            tool: dice.of(&["ball", "ball", "plate", "needle"]).to_owned(),
+            tool: dice.of(&["ball", "ball", "plate", "needle"]).into(),
             position: [
                 dice.between(0.0, 0.06),
                 dice.between(0.0, 0.06),
@@ -42,7 +42,7 @@ fn command(dice: &mut Dice) -> Command {
             rotation_vector: [0; 3].map(|_| dice.between(-4.0, 4.0)),
         },
         10..=13 => Command::LoadFactor {
-            load: dice.of(&["pull", "load 2", "gravity", "push"]).to_owned(),
+            load: dice.of(&["pull", "load 2", "gravity", "push"]).into(),
             factor: dice.between(-1.0, 2.0),
         },
         14 | 15 => Command::Integrator {
@@ -72,7 +72,7 @@ fn command(dice: &mut Dice) -> Command {
 fn bytes(session: &World) -> Vec<u8> {
     let mut state = session.state().clone();
     state.loads = None;
-    state.to_bytes(session.simulation().system())
+    state.to_bytes(session.body().system())
 }
 
 #[test]

@@ -15,12 +15,12 @@ fn drive(world: &mut World, steps: std::ops::Range<usize>) {
     for step in steps {
         let command = match step {
             5 | 70 => Some(Command::Pose {
-                tool: "ball".to_owned(),
+                tool: "ball".into(),
                 position: [0.03, 0.03, 0.071 + 1e-4 * step as f64],
                 rotation_vector: [0.0; 3],
             }),
             12 | 62 => Some(Command::LoadFactor {
-                load: "pull".to_owned(),
+                load: "pull".into(),
                 factor: 0.1 * step as f64,
             }),
             20 => Some(Command::Cut {
@@ -49,7 +49,7 @@ fn a_driven_and_cut_world_continues_bit_for_bit_here_and_in_another_world() {
     // A command that waits for the next step is kept too.
     world
         .command(Command::LoadFactor {
-            load: "load 2".to_owned(),
+            load: "load 2".into(),
             factor: 0.5,
         })
         .unwrap();

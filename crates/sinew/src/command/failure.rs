@@ -13,10 +13,10 @@ use sinew_mesh::vtu::WriteVtuError;
 use sinew_mesh::{CellType, LabelError, MeshFileError, RefineError, TetMeshError, WriteMshError};
 use sinew_record::{CompareError, Ended, RecordRunError};
 use sinew_scene::output::{OutputError, complain};
-use sinew_scene::{CuttingError, ReactionError, RefusedLoad, SceneError, Simulation, Warning};
+use sinew_scene::{CuttingError, RefusedLoad, SceneError, Simulation, Warning};
 #[cfg(feature = "live")]
 use sinew_world::JournalError;
-use sinew_world::{AdvanceError, LogError, ReplayError, WorldStepError};
+use sinew_world::{AdvanceError, LogError, ReplayError, ReportError, WorldStepError};
 
 /// Exit code for input that cannot be used.
 const REFUSED: u8 = 2;
@@ -195,7 +195,7 @@ pub(crate) enum Failure {
     Run(#[from] SimulateError),
     /// Reactions that cannot be found.
     #[error("no reactions: {0}")]
-    Reactions(#[from] ReactionError),
+    Reactions(#[from] ReportError),
     /// A run that diverged.
     #[error("the run diverged at t = {t:.6} s, first at {place}{remedy}")]
     Diverged {

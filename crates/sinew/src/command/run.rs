@@ -89,7 +89,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
                 values: arguments.values.assignments(),
                 again: arguments.again,
             };
-            let folder = RunFolder::create(path, world.simulation(), &request)?;
+            let folder = RunFolder::create(path, world.scene(), &request)?;
             in_folder(path, &folder, &mut world, interruption)
         }
         (Some(destination), _) => {
@@ -127,14 +127,14 @@ pub(crate) fn in_folder(
     world: &mut World,
     interruption: Interruption,
 ) -> Result<(), Failure> {
-    let mut onlooker = onlooker(world.simulation(), interruption);
+    let mut onlooker = onlooker(world.scene(), interruption);
     let end = folder.run(world, &mut onlooker);
     onlooker.finish();
     let end = end?;
-    for line in summary_of(world.simulation(), &end, path) {
+    for line in summary_of(world.scene(), &end, path) {
         complain(&line);
     }
-    Failure::of_end(end.ended, world.simulation(), || {
+    Failure::of_end(end.ended, world.scene(), || {
         format!("; `sinew resume {}` goes on", path.display())
     })
 }
@@ -164,11 +164,11 @@ pub(crate) fn run_for_comparison(
     let integrator = integrator(&simulation, None)?;
     let mut world = World::following(simulation, integrator)?;
     world.set_up()?;
-    let folder = RunFolder::create(folder, world.simulation(), &Request::default())?;
-    let mut onlooker = onlooker(world.simulation(), interruption);
+    let folder = RunFolder::create(folder, world.scene(), &Request::default())?;
+    let mut onlooker = onlooker(world.scene(), interruption);
     let end = folder.run(&mut world, &mut onlooker);
     onlooker.finish();
-    Failure::of_end(end?.ended, world.simulation(), String::new)
+    Failure::of_end(end?.ended, world.scene(), String::new)
 }
 
 /// Runs a world and writes the motion of its probes alone.
@@ -179,8 +179,8 @@ fn probes_alone(
     interruption: Interruption,
 ) -> Result<(), Failure> {
     let voice = Voice::apart_from(&destination);
-    let scene = Arc::clone(world.simulation());
-    let rows = ProbeRows::new(&scene);
+    let scene = Arc::clone(world.scene());
+    let rows = ProbeRows::new(world.body());
     let steps = scene.run().steps;
     let schedule = words::schedule(&scene, &rows, (steps, scene.dt()), destination.is_kept())?;
     let mut csv = ProbeCsv::new(destination.open()?, rows, schedule)?;
@@ -200,9 +200,9 @@ fn probes_alone(
     let (taken, work) = (shown.steps(), shown.work());
     drop(recorders);
     onlooker.finish();
-    let (simulation, state) = (world.simulation(), world.state());
-    let outrun = simulation.outrun(world.integrator(), state);
-    let mut left = simulation.left_by_tools(state);
+    let (body, state) = (world.body(), world.state());
+    let outrun = body.outrun(world.integrator(), scene.dt(), state);
+    let mut left = body.left_by_tools(state);
     left.extend(
         world
             .cutter()
@@ -222,7 +222,7 @@ fn probes_alone(
     }
     let ended = ended.map_err(|error| Failure::of_advance(error, state.t()))?;
     if is_wanted {
-        voice.say(&summary(simulation, taken, work))?;
+        voice.say(&summary(&scene, body, taken, work))?;
         if let Some(cutter) = world.cutter() {
             let words = words_of_cuts(cutter.totals(), cutter.pieces());
             voice.say(&format!("cut: {words}"))?;
@@ -232,7 +232,7 @@ fn probes_alone(
             voice.say(remark)?;
         }
         let displaced = |probe: &&Probe| probe.quantity == Quantity::Displacement;
-        for probe in simulation.probes().iter().filter(displaced) {
+        for probe in body.probes().iter().filter(displaced) {
             let u: Vec<String> = probe
                 .displacement(state.t(), &state.u)
                 .map(|u| format!("{u:.6e}"))
@@ -247,9 +247,9 @@ fn probes_alone(
         // Where it diverged there is no motion to hold.
         let reactions = match ended {
             Ended::Diverged { .. } => Vec::new(),
-            _ => simulation.reactions(state)?,
+            _ => world.reactions()?,
         };
-        for Reaction { by, on, force } in reactions {
+        for Reaction { by, on, force, .. } in reactions {
             let force = force.map(|force| format!("{force:.6e}"));
             voice.say(&format!(
                 "{by} on {on}: reaction = ({}) N at t = {:.6} s",
@@ -265,7 +265,7 @@ fn probes_alone(
         Ended::Diverged { t, place } => Err(Failure::Diverged {
             t,
             place,
-            remedy: simulation.after_divergence(),
+            remedy: scene.after_divergence(),
         }),
         Ended::Stopped if onlooker.is_interrupted() => Err(Failure::Interrupted {
             t: state.t(),

@@ -25,7 +25,7 @@ pub(crate) fn run(simulation: &Simulation, folder: &Path) -> (State, String) {
     let output = Destination::new(&path, &[]).unwrap().open().unwrap();
     let mut csv = ProbeCsv::new(
         output,
-        ProbeRows::new(simulation),
+        ProbeRows::new(simulation.body()),
         sinew_scene::Schedule::at_most(usize::MAX, simulation.run().steps),
     )
     .unwrap();

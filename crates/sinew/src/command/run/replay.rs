@@ -44,12 +44,12 @@ pub(super) fn run(
             again: arguments.again,
         };
         let ended = in_folder(path, &mut replay, &request, interruption)?;
-        return Failure::of_end(ended, replay.world().simulation(), no_remedy);
+        return Failure::of_end(ended, replay.world().scene(), no_remedy);
     };
     let voice = Voice::apart_from(&destination);
-    let simulation = Arc::clone(replay.world().simulation());
+    let simulation = Arc::clone(replay.world().scene());
     let course = replay.course();
-    let rows = ProbeRows::new(&simulation);
+    let rows = ProbeRows::new(replay.world().body());
     let steps = (course.steps, course.dt);
     let schedule = schedule(&simulation, &rows, steps, destination.is_kept())?;
     let mut csv = ProbeCsv::new(destination.open()?, rows, schedule)?;
@@ -73,7 +73,7 @@ pub(super) fn run(
     };
     let (is_interrupted, looked) = (onlooker.is_interrupted(), looks.into_looked());
     let world = replay.world();
-    let simulation = world.simulation();
+    let simulation = world.scene();
     let left = world
         .cutter()
         .map_or_else(Vec::new, Cutter::left_by_strokes);
@@ -109,7 +109,7 @@ pub(super) fn run(
 
 /// Warnings before a session is replayed. Its folder shows the motion of all nodes, so that probes are not missed.
 pub(crate) fn warnings_of(replay: &Replay) -> Vec<String> {
-    let mut warnings = replay.world().simulation().warnings();
+    let mut warnings = replay.world().scene().warnings();
     warnings.retain(|warning| warning.kind != WarningKind::NoProbe);
     let warnings = warnings.iter().map(ToString::to_string);
     warnings.chain(replay.warnings()).collect()
@@ -126,7 +126,7 @@ pub(crate) fn in_folder(
     let end = RunFolder::replay(path, replay, request, &mut onlooker);
     onlooker.finish();
     let end = end?;
-    for line in summary_of(replay.world().simulation(), &end, path) {
+    for line in summary_of(replay.world().scene(), &end, path) {
         complain(&line);
     }
     Ok(end.ended)

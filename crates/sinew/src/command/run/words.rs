@@ -5,7 +5,7 @@ use std::path::Path;
 use sinew_core::StepReport;
 use sinew_record::{MOST_NUMBERS, RecordRunError, RunEnd, words_of_cuts};
 use sinew_scene::output::{Replaced, complain};
-use sinew_scene::{ProbeRows, Schedule, Simulation};
+use sinew_scene::{ProbeRows, SceneBody, Schedule, Simulation};
 
 /// Most rows of a table of probes, where the scene does not ask for more.
 const MOST_ROWS: usize = 100_000;
@@ -113,9 +113,14 @@ pub(super) fn summary_of(simulation: &Simulation, end: &RunEnd, path: &Path) -> 
 }
 
 /// Some lines about a run of which nothing is kept but the motion of probes.
-pub(super) fn summary(simulation: &Simulation, steps: usize, work: StepReport) -> String {
+pub(super) fn summary(
+    simulation: &Simulation,
+    body: &SceneBody,
+    steps: usize,
+    work: StepReport,
+) -> String {
     let settings = simulation.settings();
-    let pairs = steps as f64 * simulation.system().dofs() as f64;
+    let pairs = steps as f64 * body.system().dofs() as f64;
     let mut text = format!(
         "{}: {} steps of {} s by `{}`: {} sweeps, {} solves",
         simulation.scene().title_or_path(),

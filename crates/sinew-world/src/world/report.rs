@@ -1,0 +1,179 @@
+//! Fields and forces of a world at the time of its state.
+
+use std::sync::Arc;
+
+use sinew_core::{Contact, Energy, LoadTime};
+use sinew_mesh::BoundarySurface;
+use sinew_scene::{BodyModel, Overlap, OverlapWatch, Reaction};
+use sinew_tools::{Depth, Pose, ToolReport, Tools};
+
+use super::World;
+use crate::command::ToolId;
+use crate::error::ReportError;
+
+/// Values over the mesh are written into slices with one entry for each node or tetrahedron of the body as it is now.
+impl World {
+    /// Number of meshes that the body has had: surfaces, nodes and tetrahedra are others once it has grown, by a cut, a
+    /// reset or a restored state.
+    #[must_use]
+    pub fn topology_epoch(&self) -> u64 {
+        self.topology_epoch
+    }
+
+    /// The surface of the body at rest; `None` for an oscillator.
+    #[must_use]
+    pub fn surface(&self) -> Option<&Arc<BoundarySurface>> {
+        Some(self.body.model().body()?.surface())
+    }
+
+    /// Writes the displacement (m) of each node.
+    ///
+    /// # Errors
+    /// [`ReportError`].
+    pub fn displacements(&self, out: &mut [[f64; 3]]) -> Result<(), ReportError> {
+        let model = &self.mesh_body()?.model;
+        Ok(model.displacements_at(self.now(), &self.state.u, out)?)
+    }
+
+    /// Writes the position (m) of each node.
+    ///
+    /// # Errors
+    /// [`ReportError`].
+    pub fn positions(&self, out: &mut [[f64; 3]]) -> Result<(), ReportError> {
+        let model = &self.mesh_body()?.model;
+        Ok(model.positions(self.now(), &self.state.u, out)?)
+    }
+
+    /// Writes the velocity (m/s) of each node: also of a method whose velocities are those in the middle of steps.
+    ///
+    /// # Errors
+    /// [`ReportError`].
+    pub fn velocities(&mut self, out: &mut [[f64; 3]]) -> Result<(), ReportError> {
+        self.take_velocity()?;
+        let model = &self.mesh_body()?.model;
+        Ok(model.velocities_at(self.now(), &self.field, out)?)
+    }
+
+    /// Writes the strain of each tetrahedron, as [`sinew_fem::Model::strain`].
+    ///
+    /// # Errors
+    /// [`ReportError`].
+    pub fn strain(&self, out: &mut [[f64; 6]]) -> Result<(), ReportError> {
+        let model = &self.mesh_body()?.model;
+        Ok(model.strain(self.now(), &self.state.u, out)?)
+    }
+
+    /// Writes the stress (Pa) of each tetrahedron, with its memory, as [`sinew_fem::Model::stress`];
+    /// [`sinew_fem::stress::von_mises`] makes one number of each.
+    ///
+    /// # Errors
+    /// [`ReportError`], also for a body with a network of springs, which has no stress.
+    pub fn stress(&self, out: &mut [[f64; 6]]) -> Result<(), ReportError> {
+        let body = self.mesh_body()?.model.with_memory(&self.state.internal);
+        Ok(body.stress(self.now(), &self.state.u, out)?)
+    }
+
+    /// Writes the force (N) on each node by tools, and by the other face of a cut, in the last step.
+    ///
+    /// # Errors
+    /// [`ReportError`].
+    pub fn contact_forces(&mut self, out: &mut [[f64; 3]]) -> Result<(), ReportError> {
+        self.field.clear();
+        self.field.resize(self.state.u.len(), 0.0);
+        if let Some(contact) = self.body.system().contact() {
+            contact.add_forces(&self.state, true, &mut self.field);
+        }
+        let model = &self.mesh_body()?.model;
+        Ok(model.to_nodes(&self.field, out)?)
+    }
+
+    /// Kinetic and elastic energy (J); `None` where the model has none.
+    ///
+    /// # Errors
+    /// [`ReportError::State`].
+    pub fn energy(&mut self) -> Result<Option<Energy>, ReportError> {
+        self.take_velocity()?;
+        Ok(self.body.system().energy(&self.state.u, &self.field))
+    }
+
+    /// Work (J) of all tools on the body since the motion began.
+    #[must_use]
+    pub fn work_of_tools(&self) -> f64 {
+        let tools = self.body.model().tools();
+        tools.map_or(0.0, |tools| tools.work(&self.state))
+    }
+
+    /// The forces of supports and moved parts, in the order of the scene.
+    ///
+    /// # Errors
+    /// [`ReportError::Reaction`].
+    pub fn reactions(&self) -> Result<Vec<Reaction>, ReportError> {
+        Ok(self.body.reactions(&self.state, &self.inputs)?)
+    }
+
+    /// The tools of the scene.
+    pub fn tools(&self) -> impl ExactSizeIterator<Item = ToolId> + use<> {
+        let tools = self.body.model().tools();
+        (0..tools.map_or(0, |tools| tools.tools().len())).map(ToolId)
+    }
+
+    /// The pose of a tool. Ids of a world of another scene give the identity.
+    #[must_use]
+    pub fn tool_pose(&self, tool: ToolId) -> Pose {
+        let tools = self.tools_with(tool);
+        tools.map_or(Pose::identity(), |tools| {
+            tools.pose(&self.state, &self.inputs, tool.0)
+        })
+    }
+
+    /// Forces, impulses and contacts of a tool after the last step; `None` for an id of a world of another scene.
+    #[must_use]
+    pub fn tool_report(&self, tool: ToolId) -> Option<ToolReport> {
+        Some(self.tools_with(tool)?.report(&self.state, tool.0))
+    }
+
+    /// The distance (m) between a tool and the cell or triangle that is nearest to it, negative inside; `None` where it
+    /// may touch none.
+    #[must_use]
+    pub fn tool_gap(&self, tool: ToolId) -> Option<Depth> {
+        let pose = self.tool_pose(tool);
+        self.tools_with(tool)?.deepest(&self.state.u, &pose, tool.0)
+    }
+
+    /// Deepest overlap now of parts or surfaces of the body, between which there is no contact. A check costs some
+    /// microseconds per triangle of the surface: a session makes none automatically.
+    #[must_use]
+    pub fn overlap(&self) -> Option<Overlap> {
+        let mut watch = OverlapWatch::new(self.body.model().body()?);
+        watch.look_at_state(&self.state).ok()?;
+        watch.into_deepest()
+    }
+
+    fn now(&self) -> LoadTime<'_> {
+        LoadTime::at(self.state.t()).under(&self.inputs)
+    }
+
+    fn mesh_body(&self) -> Result<&BodyModel, ReportError> {
+        let body = self.body.model().body();
+        body.map(|body| &**body).ok_or(ReportError::NoMesh)
+    }
+
+    fn tools_with(&self, tool: ToolId) -> Option<&Tools> {
+        let tools = self.body.model().tools()?;
+        (tool.0 < tools.tools().len()).then_some(tools)
+    }
+
+    /// Computes the velocity (m/s) of the degrees of freedom at the time of the state.
+    fn take_velocity(&mut self) -> Result<(), ReportError> {
+        let Self {
+            body,
+            inputs,
+            state,
+            field,
+            ..
+        } = self;
+        field.clear();
+        field.resize(state.u.len(), 0.0);
+        Ok(state.velocity_at_t(body.system(), inputs, field)?)
+    }
+}
