@@ -39,9 +39,9 @@ pub struct Region {
     pub law: Law,
     /// Element; springs have none but [`Element::P1`].
     pub element: Element,
-    /// What it has beside an isotropic law.
+    /// Additions to an isotropic law: fibres and stress that relaxes.
     pub tissue: Tissue,
-    /// What differs from tetrahedron to tetrahedron.
+    /// Properties that differ from tetrahedron to tetrahedron.
     pub from_mesh: FromMesh,
 }
 

@@ -26,7 +26,7 @@ impl Model {
         Ok(out)
     }
 
-    /// [`Model::forces`] written over the content of `out`, which allocates nothing once `out` has room, unless
+    /// [`Model::forces`] written over the content of `out`, which allocates nothing once `out` has the capacity, unless
     /// many forces come in another order than that of their nodes.
     ///
     /// # Errors

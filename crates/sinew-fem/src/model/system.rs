@@ -36,7 +36,7 @@ impl System for Model {
         }
     }
 
-    /// What stress that relaxes remembers.
+    /// Number of history variables of stress that relaxes.
     fn internal_variables(&self) -> usize {
         self.large.as_ref().map_or(0, |large| large.variables())
     }
