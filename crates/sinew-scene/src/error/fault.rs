@@ -185,7 +185,7 @@ pub enum Fault {
     /// A method that cannot be set up for the scene.
     #[error(transparent)]
     SetUp(sinew_core::SetupError),
-    /// A step longer than the duration where steps go on beyond that.
+    /// A step longer than the duration where steps continue beyond that.
     #[error("dt = {dt} s is longer than the duration, {duration} s: expected a step within it")]
     LongStep {
         /// The step (s).

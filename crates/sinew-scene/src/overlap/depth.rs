@@ -109,8 +109,8 @@ impl Depths {
         self.layers[tet as usize]
     }
 
-    /// The distance (m) of a point in a tetrahedron from the surface, if it is larger than `least` (m): from all triangles of the surface that do not hold the point. None
-    /// after so many looks at tetrahedra.
+    /// The distance (m) of a point in a tetrahedron from the surface, if it is larger than `least` (m): from all
+    /// triangles of the surface that do not hold the point. `None` once `looks` checks of tetrahedra are used up.
     pub(super) fn beyond(
         &mut self,
         (mesh, places): (&TetMesh, &[Vector]),

@@ -43,7 +43,7 @@ pub(super) struct OverlapSearch {
     parts: usize,
     /// The largest extent (m) of the body at rest.
     size: f64,
-    /// Depth (m) up to which points may be in tetrahedra at the lips of cuts; none where lips are nothing of their own.
+    /// Tolerance for points in tetrahedra at cut faces; `None` if cut faces are treated as any other surface.
     lips: Option<Lips>,
     /// Made where a point was found inside.
     depths: Option<Depths>,
@@ -51,7 +51,7 @@ pub(super) struct OverlapSearch {
     grid: Grid,
 }
 
-/// Lips of cuts that keep each other apart, node by node.
+/// Cut faces that keep each other apart, node by node.
 pub(super) struct Lips {
     /// One flag per node: true if cuts duplicated it, so that other nodes have the same origin.
     pub(super) is_copied: Vec<bool>,
@@ -271,7 +271,7 @@ impl OverlapSearch {
         mut found: Vec<(u32, u32)>,
         touching: f64,
     ) -> Option<Inside> {
-        // What lies on the surface of the tetrahedron that it is in is no deeper than that; so do lips at rest.
+        // What lies on the surface of the tetrahedron that it is in is no deeper than that; so do cut faces at rest.
         found.retain(|(number, tet)| {
             let nodes = self.mesh.tets[*tet as usize];
             let at = points[*number as usize].at;
