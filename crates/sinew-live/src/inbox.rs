@@ -139,8 +139,8 @@ impl Inbox {
         self.wake(waiting);
     }
 
-    /// Moves what waits into `taken`, which keeps its room, after at most `patience` of waiting for anything. As long as orders are left there, others and the
-    /// poses behind them go on waiting here.
+    /// Moves what waits into `taken`, which keeps its capacity, after at most `patience` of waiting for anything. As
+    /// long as orders are left there, others and the poses behind them continue to wait here.
     pub(crate) fn take(&self, taken: &mut Waiting, patience: Duration) {
         let mut waiting = self.lock();
         if !waiting.woken && !patience.is_zero() {
