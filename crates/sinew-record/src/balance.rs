@@ -197,7 +197,7 @@ impl Balance {
             is_watched: false,
             has_rows_of_steps: rows.is_every_step(),
         };
-        // Beside steps that are sweeps a look at each of them costs too much where rows are rare for that reason.
+        // Beside steps that are sweeps, a check of each of them costs too much where rows are rare for that reason.
         balance.takes_energy = method.is_some_and(|method| takes_energy(method, simulation));
         balance.is_watched = balance.takes_energy
             && !balance.has_memory()

@@ -73,7 +73,7 @@ pub(crate) fn push(out: &mut String, value: f64) {
 pub(crate) struct HeldPart {
     /// The beginning of its columns' names.
     pub(crate) name: String,
-    /// The table that holds or moves it, in words.
+    /// Description of the table that holds or moves it.
     pub(crate) by: String,
     /// Its nodes, with the components that it holds and no part before it does.
     nodes: Vec<(u32, [bool; 3])>,

@@ -34,7 +34,7 @@ pub(super) fn probes(comparison: &mut Comparison, one: &str, other: &str) {
     }
 }
 
-/// A probe's name and its place in words.
+/// A probe's name and the description of its place.
 fn described(line: &str) -> Option<(&str, &str)> {
     line.strip_prefix("# ")?.split_once(':')
 }
