@@ -5,10 +5,10 @@ use sinew_sparse::vectors::{dot, weighted_dot};
 use crate::lanczos::{Lanczos, MAX_STEPS};
 use crate::operators::LinearOperators;
 
-/// Steps between two looks at the static response.
+/// Steps between two checks of the static response.
 const BETWEEN_LOOKS: usize = 10;
 
-/// Relative change of the squared static response between two looks at which it counts as known.
+/// Relative change of the squared static response between two checks below which it counts as known.
 const SETTLED: f64 = 1e-5;
 
 /// QL iterations for one eigenvalue; a handful is usual.

@@ -333,8 +333,8 @@ fn almost_free(ramp: Ramp) -> LinearModel {
     }
 }
 
-/// A mass that nothing holds gets the velocity that the impulse gives it, however short the load
-/// and wherever it falls between two steps; a method that cannot take the load refuses it.
+/// An unsupported mass gets the velocity that the impulse gives it, however short the load and wherever it falls
+/// between two steps; a method that cannot take the load refuses it.
 pub fn the_impulse_of_a_load_arrives_wherever_it_falls(make: &dyn Fn() -> Boxed) {
     let dt = 0.005;
     let (short, long) = (0.12 * dt, 3.4 * dt);

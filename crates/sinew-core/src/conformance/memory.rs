@@ -156,8 +156,8 @@ pub fn a_maxwell_element_relaxes_as_in_closed_form(make: &dyn Fn() -> Boxed) {
     in_every_way(make, &system, Inputs::none(), &start, dt, 23);
 }
 
-/// A linear system that counts, in internal variables, how often it is told of an accepted step,
-/// and adds up the steps' lengths. As a force law it also checks each trial.
+/// A linear system that counts, in internal variables, how often it is notified of an accepted step, and adds up the
+/// steps' lengths. As a force law it also checks each trial.
 struct Counting {
     inner: LinearModel,
     shows_matrices: bool,
