@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-/// Points per degree among which the largest value of a polynomial is looked for.
+/// Points per degree among which the largest value of a polynomial is sought.
 pub(super) const POINTS_PER_DEGREE: usize = 32;
 
 /// Share of the largest value that a peak has at one of these points: cos(pi/64), rounded down.
