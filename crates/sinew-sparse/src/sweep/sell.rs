@@ -71,8 +71,9 @@ impl<T: Real> Sell<T> {
         sell
     }
 
-    /// Takes the rows of some cells again; whether it can, for they must have room in its slices, and the numbering as many positions as that with which it was
-    /// made. Where digits are few, their neighbours' rows follow, so that the matrix stays symmetric.
+    /// Takes the rows of some cells again; returns false if they do not fit into its slices, or if the numbering has
+    /// another number of positions than that with which it was made. Where digits are few, their neighbours' rows
+    /// follow, so that the matrix stays symmetric.
     #[must_use]
     pub fn take_rows(
         &mut self,
