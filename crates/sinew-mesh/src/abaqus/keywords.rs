@@ -26,7 +26,7 @@ pub(super) struct Model {
     has_told_nodes: bool,
 }
 
-/// The keyword whose block a line stands in.
+/// The keyword whose block a line belongs to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Place {
     Outside,
@@ -61,7 +61,7 @@ pub(super) fn read(bytes: &[u8], remarks: &mut Remarks) -> Result<Model, Fault> 
     let mut place = Place::Outside;
     let mut block = Block::Skipped;
     let mut is_first = true;
-    // The element whose nodes go on with the next line.
+    // The element whose nodes continue on the next line.
     let mut open: Option<OpenElement> = None;
     while let Some(line) = reader.next()? {
         match line {

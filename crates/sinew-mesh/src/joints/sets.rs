@@ -7,7 +7,7 @@ pub(crate) struct Sets {
 }
 
 impl Sets {
-    /// One set for each of so many numbers.
+    /// One set for each of `count` numbers.
     pub(crate) fn new(count: usize) -> Self {
         Self {
             parent: (0u32..).take(count).collect(),

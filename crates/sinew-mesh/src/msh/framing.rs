@@ -5,7 +5,7 @@ use crate::reading::fault::Fault;
 use crate::reading::number;
 use crate::reading::remarks::Remarks;
 
-/// A count that stands on a line of its own, as text even in binary files.
+/// A count on a line of its own, as text even in binary files.
 pub(super) fn count_line(cursor: &mut Cursor<'_>, what: &str) -> Result<u64, Fault> {
     let count = number::unsigned(cursor.token(what)?, what)?;
     cursor.line_end(what)?;

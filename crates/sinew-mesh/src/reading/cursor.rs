@@ -183,7 +183,7 @@ impl<'a> Cursor<'a> {
     }
 }
 
-/// The digits that eight bytes start with, read as a number, and how many there are. All bytes are looked at together
+/// The digits that eight bytes start with, read as a number, and how many there are. All bytes are processed together
 /// (Lemire 2018, "Quickly parsing eight digits").
 #[inline]
 fn short_number(bytes: [u8; 8]) -> (u64, usize) {

@@ -34,7 +34,7 @@ impl TetMesh {
     ///
     /// # Errors
     ///
-    /// If there are none, and the error lists the names; or if there are several, such as time steps.
+    /// If absent, and the error lists the names; or if there are several, such as time steps.
     pub fn data(&self, name: &str) -> Result<&TetData, TetDataError> {
         let found: Vec<&TetData> = self.data.iter().filter(|data| data.name == name).collect();
         match found[..] {

@@ -100,7 +100,7 @@ impl Array {
         })
     }
 
-    /// The type of the numbers, in words.
+    /// Description of the type of the numbers.
     pub(super) fn type_in_words(&self) -> String {
         match self.type_name.as_str() {
             "" => "without a type".to_owned(),
