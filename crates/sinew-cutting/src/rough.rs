@@ -56,7 +56,7 @@ impl Missed {
 }
 
 impl CuttableBody {
-    /// The chips of the stroke at hand. Looks at every tetrahedron.
+    /// The chips of the stroke at hand. Checks every tetrahedron.
     #[must_use]
     pub fn chips(&self) -> Option<Chips> {
         if !self.has_cut() {

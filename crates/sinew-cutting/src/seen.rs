@@ -34,12 +34,12 @@ impl Flat {
     }
 }
 
-/// The nodes as the sheet at hand sees them: each is looked at once, for all tetrahedra at it.
+/// Positions of the nodes relative to the current sheet: each is computed once, for all tetrahedra at the node.
 #[derive(Default)]
 pub(crate) struct SeenNodes {
     distances: Vec<f64>,
     flats: Vec<Flat>,
-    /// The look in which each was seen.
+    /// The search in which each was seen.
     looks: Vec<u32>,
 }
 
@@ -52,7 +52,7 @@ impl SeenNodes {
         }
     }
 
-    /// Lets there be so many nodes.
+    /// Resizes the lists to `nodes` nodes.
     pub(crate) fn resize(&mut self, nodes: usize) {
         self.distances.resize(nodes, 0.0);
         self.flats.resize(nodes, Flat::default());

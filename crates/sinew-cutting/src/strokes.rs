@@ -98,7 +98,7 @@ pub struct Strokes(Vec<BladePose>);
 /// Action of a blade within a time.
 #[derive(Clone, Copy, Debug)]
 pub enum BladeAct {
-    /// It is lifted, or set on anew.
+    /// It is lifted, or set on again.
     Lift,
     /// It goes from one pose to another, each given by both ends (m), or rests.
     Sweep([[[f64; 3]; 2]; 2]),

@@ -187,8 +187,8 @@ impl CuttableBody {
         self.room.touched.sort_unstable_by_key(|(tet, _)| *tet);
     }
 
-    /// Finds the tetrahedra, increasing, that this look has not touched, one of whose nodes the blade has passed in it, and at which something may be left
-    /// to be cut, into `room.left`.
+    /// Finds the tetrahedra, increasing, that this search has not touched, one of whose nodes the blade has passed in
+    /// it, and at which something may be left to be cut, into `room.left`.
     pub(crate) fn find_left(
         &mut self,
         touched: &[(u32, Passed)],
