@@ -183,7 +183,8 @@ impl<'a> Eye<'a> {
         })
     }
 
-    /// Looks at the displacement `u` (m) of the degrees of freedom at a time (s), and at the impulses (N s) of tools until then, x, y, z of each.
+    /// Records the displacement `u` (m) of the degrees of freedom at a time (s), and the impulses (N s) of tools
+    /// until then, x, y, z of each.
     pub(super) fn look(
         &mut self,
         t: f64,

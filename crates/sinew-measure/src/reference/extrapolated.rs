@@ -206,8 +206,9 @@ fn converge<'a>(
         .ok_or(ReferenceError::NotConverged { method })
 }
 
-/// The motion in a whole number of equal steps between each two instants, halved so many times; `None` where it cannot be followed. Each halving has
-/// exactly twice as many steps everywhere, without which Richardson's rule would take away another error than there is.
+/// The motion in a whole number of equal steps between each two instants, halved a given number of times; `None` where
+/// it cannot be followed. Each halving has exactly twice as many steps everywhere, without which Richardson's rule
+/// would take away another error than there is.
 fn follow<'a>(
     method: &mut Falling,
     system: &dyn System,
