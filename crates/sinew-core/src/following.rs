@@ -5,7 +5,7 @@ use sinew_sparse::vectors::{noise, scale, weighted_dot};
 /// Products by which [`follow_largest_eigenvalue`] begins.
 pub const PRODUCTS_OF_BEGINNING: u64 = 16;
 
-/// Share of the estimate up to which eigenvalues count as too small to look for.
+/// Share of the estimate up to which eigenvalues count as too small to be sought.
 const TOO_SMALL: f64 = 0.9;
 
 /// Size of the noise that is added with each product, as a share of the field: one that has found its vector would have nothing of another that grows elsewhere.

@@ -19,7 +19,7 @@ const QL_ITERATIONS: usize = 60;
 pub struct SpectralWeight {
     /// lambda (1/s^2).
     pub eigenvalue: f64,
-    /// The sum of `(x' f)^2` (N^2/kg) over the modes x that it stands for, `x' M x = 1`.
+    /// The sum of `(x' f)^2` (N^2/kg) over the modes x that it represents, `x' M x = 1`.
     pub weight: f64,
 }
 

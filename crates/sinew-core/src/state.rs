@@ -146,8 +146,8 @@ pub struct DampedAt {
     /// Offset for cells, after the velocity's own time: more than 0 where a state keeps the acceleration of the last
     /// kick, and damping does not lag by a whole step.
     pub cells: f64,
-    /// Offset for moving supports, after the displacement's time: -1/2 stands for their displacement over the last
-    /// step, 1/2 for that over the next.
+    /// Offset for moving supports, after the displacement's time: -1/2 means their displacement over the last step, 1/2
+    /// that over the next.
     pub supports: f64,
 }
 

@@ -73,7 +73,7 @@ pub trait System: Send + Sync {
         true
     }
 
-    /// Positions of the cells at rest (m), where the system has them: machines look for rows that repeat.
+    /// Positions of the cells at rest (m), where the system has them: machines search for rows that repeat.
     fn cell_positions(&self) -> Option<Vec<[f64; 3]>> {
         None
     }

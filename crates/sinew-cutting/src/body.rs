@@ -15,7 +15,7 @@ use crate::tet::{EDGES, FACES};
 
 use crate::vector::{Vector, bounds_of, length, sub};
 
-/// Stands for no tetrahedron.
+/// Marks the absence of a tetrahedron.
 pub(crate) const NONE: u32 = u32::MAX;
 
 /// A body of tetrahedra whose faces can be split and whose tetrahedra can be taken away.
@@ -75,7 +75,7 @@ pub(crate) struct Room {
     pub(crate) corners: Vec<u32>,
     /// One flag per node: true if it is listed.
     pub(crate) is_listed: Vec<bool>,
-    /// Group of each tetrahedron at the node at hand.
+    /// Group of each tetrahedron at the current node.
     pub(crate) group_of: Vec<u32>,
 }
 

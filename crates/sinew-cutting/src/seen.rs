@@ -59,7 +59,7 @@ impl SeenNodes {
         self.looks.resize(nodes, 0);
     }
 
-    /// Distances from the plane of a tetrahedron's vertices, which this look has seen; 0 for those that lie on it.
+    /// Distances from the plane of a tetrahedron's vertices, which this search has seen; 0 for those that lie on it.
     pub(crate) fn distances(&self, nodes: [u32; 4]) -> [f64; 4] {
         nodes.map(|node| self.distances[node as usize])
     }

@@ -28,7 +28,7 @@ pub enum StrokesError {
         /// The number.
         found: f64,
     },
-    /// An end that is farther away than sheets are told apart.
+    /// An end that is farther away than the distance up to which sheets can be distinguished.
     #[error(
         "row {row}: an end of the blade at {found:e} m: expected at most {FARTHEST:e} m in size"
     )]

@@ -18,7 +18,7 @@ pub(crate) struct Parts<'a> {
     pub(crate) materials: &'a [Material],
 }
 
-/// A part, as its number stands for it.
+/// A part, as its number encodes it.
 #[derive(Clone, Copy)]
 enum Part {
     Tet(usize),

@@ -31,7 +31,7 @@ impl Problem {
 /// A part of the body made of one material.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Region {
-    /// A group of tetrahedra; `None` stands for the whole mesh.
+    /// A group of tetrahedra; `None` means the whole mesh.
     pub group: Option<String>,
     /// Mass density (kg/m^3).
     pub density: f64,

@@ -63,7 +63,7 @@ impl ToolSimulation {
     }
 
     /// Takes this many iterations for the local stiffness in each step from now on, 2 at first; with 0 it is that of a
-    /// tissue of which only the touched nodes give way.
+    /// tissue of which only the touched nodes yield.
     pub fn set_iterations(&mut self, iterations: usize) {
         self.iterations = iterations;
     }

@@ -1,4 +1,4 @@
-//! The pages that look on.
+//! The connected pages.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};

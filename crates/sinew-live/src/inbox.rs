@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use crate::protocol::Order;
 
-/// Most orders that wait: more come from no hand.
+/// Most orders that wait: a user does not give more.
 const MOST_ORDERS: usize = 256;
 
 /// A request of a client, by the number that the client gave it.
@@ -114,7 +114,7 @@ impl Inbox {
         has_room
     }
 
-    /// Tells of a new client.
+    /// Reports a new client.
     pub(crate) fn enter(&self, client: u32) {
         let mut waiting = self.lock();
         waiting.entered.push(client);

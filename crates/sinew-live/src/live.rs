@@ -203,7 +203,7 @@ impl Live {
                 while !ends() && !simulated.is_finished() {
                     look.tick().await;
                 }
-                // Pages are told that the connection closes.
+                // Pages are notified that the connection closes.
                 shared.clients.dismiss();
                 tokio::time::sleep(LOOK).await;
             });

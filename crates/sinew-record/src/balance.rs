@@ -20,7 +20,7 @@ use crate::error::RecordRunError;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Energies {
     pub(crate) t: f64,
-    /// Time (s) since the last look.
+    /// Time (s) since the last check.
     pub(crate) span: f64,
     pub(crate) kinetic: f64,
     pub(crate) elastic: f64,

@@ -109,7 +109,7 @@ fn difference(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
     [a[0] - b[0], a[1] - b[1]]
 }
 
-/// A ramp with the motion of the chain that it leads to, from rest.
+/// A ramp with the motion of the chain that it causes, from rest.
 struct Motion {
     ramp: Ramp,
     exact: Box<dyn Fn(f64) -> [f64; 2]>,

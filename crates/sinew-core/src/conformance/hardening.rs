@@ -53,7 +53,7 @@ impl Hardening {
         ForceModel::new(law, &[MASS; 2], Layers::One)
     }
 
-    /// The same forces, of which only their values are told.
+    /// The same forces, of which only their values are available.
     fn without_tangent() -> ForceModel<Self> {
         let law = Self {
             tells_tangent: false,

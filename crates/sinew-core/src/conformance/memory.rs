@@ -242,9 +242,9 @@ impl ForceLaw for Counting {
     }
 }
 
-/// A system is told once of each accepted step, or part of one, one by one and in batches; nothing
-/// but its own [`System::accept`] changes the internal variables, and each trial has those of the last
-/// accepted state and says how long ago that was.
+/// A system is notified once of each accepted step, or substep, one by one and in batches; nothing but its own
+/// [`System::accept`] changes the internal variables, and each trial has those of the last accepted state and says how
+/// long ago that was.
 pub fn each_step_is_accepted_once(make: &dyn Fn() -> Boxed) {
     let needs = make().properties().needs;
     for shows_matrices in [true, false] {

@@ -1,4 +1,4 @@
-//! Errors of looking up laws by their ids.
+//! Errors of the lookup of laws by their ids.
 
 use super::parameters::ParameterError;
 

@@ -75,7 +75,7 @@ impl Model {
     }
 }
 
-/// Adds up the values of each place, in the order in which they stand, into one; places increasing.
+/// Adds up the values of each place, in their order, into one; places increasing.
 fn add_up<T: Copy>(values: &mut Vec<(u32, T)>, add: impl Fn(&mut T, T)) {
     let place = |(place, _): &(u32, T)| *place;
     if !values.is_sorted_by_key(place) {

@@ -263,7 +263,7 @@ mod tests {
         for light in 0..3 {
             has_words(light, Light::GREY, "not measured");
         }
-        // The error is told by its number, whatever the colour.
+        // The error is reported by its number, whatever the colour.
         let largest = error_light(1.0).reason as usize;
         assert_eq!(words_of(2).len(), largest + 1);
     }

@@ -204,7 +204,7 @@ impl Engine {
         self.keep_up()
     }
 
-    /// Simulates until it is told to end.
+    /// Simulates until it is asked to end.
     pub(crate) fn run(mut self, shared: &Arc<Shared>, mut survey: Survey) -> Ended {
         let (mut waiting, mut is_done) = (Waiting::default(), true);
         self.pace = Pace::new(self.t());
@@ -526,7 +526,7 @@ impl Engine {
         };
     }
 
-    /// Leads a tool to a pose.
+    /// Steers a tool to a pose.
     fn lead(&mut self, client: u32, id: u32, place: Place) -> Result<(), String> {
         let Place { tool, pose } = place;
         let [x, y, z, a, b, c] = pose;

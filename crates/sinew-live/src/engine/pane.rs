@@ -533,7 +533,8 @@ impl Pane {
         Some((body(&self.session)?, &self.shown.as_ref()?.surface))
     }
 
-    /// Writes it into a picture, with the depth of tools in the body at rest before all cuts, and where their hands are.
+    /// Writes it into a picture, with the depth of tools in the body at rest before all cuts, and the user's tool
+    /// poses.
     pub(crate) fn write(
         &mut self,
         frame: &mut FrameWriter,

@@ -39,7 +39,7 @@ pub(crate) struct SurfaceShape<'a> {
     pub(crate) twins: &'a [u32],
 }
 
-/// Stands for a node or a point that another body or surface does not have.
+/// Marks a node or a point that another body or surface does not have.
 pub(crate) const NONE: u32 = u32::MAX;
 
 /// The surfaces of all panes, which hold for the pictures of this epoch.

@@ -114,7 +114,7 @@ impl Drop for Seat {
     }
 }
 
-/// The standing of a connection: a stranger, one that has named the secret, a page, or one that is to go.
+/// The status of a connection: a stranger, one that has named the secret, a page, or one that is to go.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Standing(Arc<Inner>);
 

@@ -1,6 +1,6 @@
 //! Rule that decides if sweeps are shared with other threads.
 
-/// Kinds of sweeps whose times are told apart; further ones share these.
+/// Kinds of sweeps whose times are distinguished; further ones share these.
 const KINDS: usize = 8;
 
 /// Sweeps that are made alone to learn how long they take.

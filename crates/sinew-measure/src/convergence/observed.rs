@@ -144,7 +144,7 @@ pub(super) struct Eye<'a> {
     probes: Vec<Vec<(u32, f64)>>,
     /// Displacement of all nodes (m).
     all: Vec<[f64; 3]>,
-    /// The instant (s) of the last look, and the impulses (N s) of tools until then.
+    /// The instant (s) of the last observation, and the impulses (N s) of tools until then.
     last: (f64, Vec<f64>),
     pub(super) seen: Observed,
 }

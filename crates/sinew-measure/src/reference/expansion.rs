@@ -196,7 +196,7 @@ impl<'a> Expansion<'a> {
         }
     }
 
-    /// `force = f F - K u - D v` of the polynomial at hand.
+    /// `force = f F - K u - D v` of the current polynomial.
     fn net_force(&mut self) {
         self.force.fill(0.0);
         for (load, factors) in self.operators.loads().iter().zip(&self.factors[0]) {

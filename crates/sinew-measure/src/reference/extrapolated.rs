@@ -13,7 +13,7 @@ use crate::cpu_time::thread_cpu_time;
 /// Largest difference from the second solution with which a reference is still called one.
 const ALLOWED: f64 = 1e-2;
 
-/// Steps by which the cost of a solution is told.
+/// Steps by which the cost of a solution is predicted.
 const TRIAL_STEPS: u32 = 2;
 
 /// A method whose error falls as a power of the step, and how far its steps are halved.

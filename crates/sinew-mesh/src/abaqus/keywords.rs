@@ -519,7 +519,7 @@ fn members(data: Data<'_>, is_range: bool) -> Result<Vec<Member>, Fault> {
     }
 }
 
-/// A label or the name of a set; what stands before a point is the name of the instance.
+/// A label or the name of a set; the text before a point is the name of the instance.
 fn member(field: Token<'_>) -> Result<Member, Fault> {
     let is_label = |text: &[u8]| !text.is_empty() && text.iter().all(u8::is_ascii_digit);
     let behind_point = field

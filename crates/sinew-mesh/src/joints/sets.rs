@@ -14,7 +14,7 @@ impl Sets {
         }
     }
 
-    /// The number that stands for the set of another: the least of it.
+    /// The number that represents the set of another: the least of it.
     pub(crate) fn root(&mut self, mut of: u32) -> u32 {
         while self.parent[of as usize] != of {
             let above = self.parent[of as usize];

@@ -161,7 +161,7 @@ impl<'a> Cursor<'a> {
         rest.get(..length).unwrap_or_default().trim_ascii()
     }
 
-    /// Moves past the end of this line, on which only blanks may stand before it.
+    /// Moves past the end of this line, on which only blanks may come before it.
     pub(crate) fn line_end(&mut self, after: &str) -> Result<(), Fault> {
         let offset = self.offset;
         match self.line() {

@@ -2,7 +2,7 @@
 
 use super::{Group, GroupMembers, TetMesh};
 
-/// A name leads to no group, or to several.
+/// A name that matches no group, or several.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum FindGroupError {

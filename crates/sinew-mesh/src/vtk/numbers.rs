@@ -69,7 +69,7 @@ impl Numbers {
                 let is_single = kind == ValueType::Number(Scalar::F32);
                 words(cursor, count, |token, what| {
                     let value = number::double(token, what)?;
-                    // The number that the text stands for has single precision.
+                    // The number that the text represents has single precision.
                     Ok(if is_single {
                         f64::from(value as f32)
                     } else {

@@ -61,7 +61,7 @@ pub struct Array<'a> {
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub enum Values<'a> {
-    /// Floating-point numbers; NaN stands for a missing value.
+    /// Floating-point numbers; NaN means a missing value.
     F64(Cow<'a, [f64]>),
     /// Floating-point numbers in single precision.
     F32(Cow<'a, [f32]>),

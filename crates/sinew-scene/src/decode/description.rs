@@ -66,7 +66,7 @@ pub(crate) trait Described: Sync {
     /// All that there is to say about it.
     fn describe(&self) -> KeyDescription;
 
-    /// The keys in whose place it stands; `None` for a key of its own.
+    /// The keys that it replaces; `None` for a key of its own.
     fn parts(&self) -> Option<Parts> {
         None
     }

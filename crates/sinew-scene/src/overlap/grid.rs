@@ -87,7 +87,7 @@ impl Grid {
                 *start += 1;
             });
         }
-        // Each start stands where the next bucket begins.
+        // Each start points to the beginning of the next bucket.
         self.starts.rotate_right(1);
         self.starts[0] = 0;
     }

@@ -16,7 +16,7 @@ const TOUCHES: f64 = 1e-6;
 /// Comparisons for each edge of the surface after which a state is given up: one in which everything is near everything is no longer a body.
 const COMPARISONS: usize = 1000;
 
-/// Tetrahedra that the measuring of depths may look at, as a multiple of their number, or of 1000.
+/// Most tetrahedra that are checked to measure depths, as a multiple of their number, or of 1000.
 const LOOKS: usize = 20;
 
 /// A point of the surface that is in a tetrahedron which does not hold it.
@@ -287,7 +287,7 @@ impl OverlapSearch {
         let mesh = &*self.mesh;
         let depths = self.depths.get_or_insert_with(|| Depths::new(mesh));
         let mut looks = LOOKS * mesh.tets.len().max(1000);
-        // Once the deepest is known, others are soon told from it.
+        // Once the deepest is known, others are soon ruled out.
         found.sort_by_key(|(point, tet)| (std::cmp::Reverse(depths.layer(*tet)), *point, *tet));
         let mut deepest: Option<Inside> = None;
         for (number, tet) in found {

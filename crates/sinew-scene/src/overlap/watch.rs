@@ -56,7 +56,7 @@ pub struct OverlapWatch {
     body: Arc<BodyModel>,
     /// Made at the first check.
     search: Option<OverlapSearch>,
-    /// Buffers for the state at hand.
+    /// Buffers for the current state.
     displacements: Vec<Vector>,
     places: Vec<Vector>,
     deepest: Option<Overlap>,

@@ -46,7 +46,7 @@ impl Units {
     }
 }
 
-/// Rounds a row of blocks, each to its unit, and keeps its sum: `write(block, entry, value)` is told each entry.
+/// Rounds a row of blocks, each to its unit, and keeps its sum: `write(block, entry, value)` receives each entry.
 ///
 /// A translation of the whole body strains nothing, since the blocks of a row add up to zero. Entries that are
 /// rounded one by one add up to something else: springs to the ground, whose stiffness is a rounding error of the

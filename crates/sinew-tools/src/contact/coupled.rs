@@ -14,7 +14,7 @@ use super::tools::Tools;
 use crate::shape::TriangleTouch;
 use crate::vector::{Vector, add, between, scaled, sub};
 
-/// Most rounds of looking for contacts and solving for their forces: what one surface pushes back may meet another there.
+/// Most rounds of finding contacts and solving for their forces: what one surface pushes back may meet another there.
 const MOST_ROUNDS: usize = 8;
 
 /// Share of a pass within which a contact has been there at its beginning.
@@ -166,7 +166,8 @@ impl Search<'_> {
         swing(self.ways.meeting, kept, sub(to, from))
     }
 
-    /// Adds what is new; whether there is anything. At first, triangles that touch at the beginning: the others may not come to touch at all once these do not give way.
+    /// Adds new contacts; returns true if there are any. At first, triangles that touch at the beginning: the others
+    /// may not come to touch at all once these do not give way.
     fn all(&self, room: &mut Room, is_first: bool) -> bool {
         let count = |links: &Links| links.all.len() + links.lips.len();
         let before = count(&room.links);

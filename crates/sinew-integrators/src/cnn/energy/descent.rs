@@ -162,8 +162,9 @@ impl Descent {
             .add_viscous_blocks(&law.damped(), 1.0, &mut self.viscous_blocks)
     }
 
-    /// Goes where the velocity at the start of the step leads, and parts that may move as rigid bodies to the least of the potential over such motions, where it is
-    /// lower there; or these alone. Whether it went anywhere. Then takes rigid motions out of the blocks.
+    /// Moves by the velocity at the start of the step, and parts that may move as rigid bodies to the minimum of the
+    /// potential over such motions, where it is lower there; or these alone. Then takes rigid motions out of the
+    /// blocks. Returns true if anything moved.
     fn lead(
         &mut self,
         law: &Law<'_>,

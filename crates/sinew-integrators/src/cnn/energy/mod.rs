@@ -144,7 +144,8 @@ impl Scheme for CnnEnergy {
             Kind::ImplicitEuler => 1,
             Kind::Trapezoidal => 2,
         };
-        // Where the velocity leads y is off by dt^2, and each sweep leaves dt^2 of it, with other damping dt; v is off by that over dt.
+        // After a displacement by the velocity, y is off by dt^2, and each sweep leaves dt^2 of it, with other damping
+        // dt; v is off by that over dt.
         let sweeps = self.sweeps.min(8) as u8;
         let order = of_formula.min(2 * sweeps);
         Properties::of_order(order, Needs::Tangents, EnergyBehaviour::NeverRises)

@@ -333,7 +333,7 @@ impl Touched {
         }
     }
 
-    /// Leads the cells down the slope and lets contact push them.
+    /// Moves the cells down the slope and lets contact push them.
     fn meet(&mut self, taken: Taken<'_>, descent: &Descent) {
         let dt = taken.step.dt;
         self.change.copy_from_slice(&self.gradient);

@@ -3,7 +3,7 @@
 use sinew_core::vectors::{dot, weighted_dot};
 use sinew_core::{ElasticLaw, LoadTime, State, Step, StepReport, Trial};
 
-/// Growth over all the energy that start, loads and supports moved, from which on it is told.
+/// Growth over all the energy that start, loads and supports moved, from which on it is reported.
 const TOLD: f64 = 0.05;
 
 /// Sums up the energy that a motion may have: that of its start, and the work of loads and supports. Damping, which
@@ -65,7 +65,7 @@ impl EnergyWatch {
         report: &mut StepReport,
     ) {
         if !state.internal.is_empty() {
-            // What memory stores and what it dissipates are not told apart.
+            // What memory stores and what it dissipates are not distinguished.
             return;
         }
         let t = state.t();
