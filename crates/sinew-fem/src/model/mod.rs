@@ -75,7 +75,7 @@ pub struct Model {
     /// Source of each load of the operators.
     load_items: Vec<Item>,
     report: ModelReport,
-    /// Contact with rigid obstacles.
+    /// Contact, applied as a correction at the end of each step; `None` without any.
     contact: Option<Arc<dyn Contact>>,
 }
 
