@@ -65,7 +65,7 @@ pub enum Progress {
         done: usize,
         /// Runs in all.
         of: usize,
-        /// The run, in words.
+        /// Description of the run.
         what: String,
     },
 }
@@ -171,7 +171,7 @@ impl Bench {
         Ok(results)
     }
 
-    /// Looks for mistakes in the arguments themselves.
+    /// Checks for mistakes in the arguments themselves.
     ///
     /// # Errors
     /// [`BenchError::Integrator`] and [`BenchError::Step`].
@@ -266,7 +266,7 @@ fn load(id: String, scene: &Path) -> Result<Case, CaseError> {
     Case::new(id, Scene::load(scene)?.build()?)
 }
 
-/// A method as it runs on a case, and the variants that lead elsewhere on the front.
+/// A method as it runs on a case, and the variants that reach other parts of the front.
 fn variants(case: &Case, integrator: &str) -> Vec<MethodChoice> {
     let plain = MethodChoice::on(case, integrator);
     let entry = sinew_integrators::entry(integrator);

@@ -151,7 +151,7 @@ impl BenchResults {
             gaps.map(move |gap| Missing::number(&row.case, Some(name.clone()), gap))
         });
         for missing in of_cases.chain(of_rows) {
-            // Numbers that were missing when the results were written are told once.
+            // Numbers that were missing when the results were written are reported once.
             let known = |other: &Missing| {
                 (&other.scene, &other.row, &other.field)
                     == (&missing.scene, &missing.row, &missing.field)

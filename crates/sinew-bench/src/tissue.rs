@@ -65,7 +65,7 @@ pub(crate) fn free(law: Law, element: Element) -> Problem {
     }
 }
 
-/// A body that stands on its bottom, which is held.
+/// A body whose bottom is held.
 pub(crate) fn standing(law: Law, element: Element) -> Problem {
     Problem {
         fixed: vec![Fixed {
@@ -116,7 +116,7 @@ impl Specimen {
         static_solution_under(&self.model, &self.model.full_loads(&loads))
     }
 
-    /// Displacements (m) at so many equal instants of `steps` steps each, and the work of all of them.
+    /// Displacements (m) at `instants` equal instants of `steps` steps each, and the work of all of them.
     pub(crate) fn track(
         &self,
         integrator: &mut dyn Integrator,

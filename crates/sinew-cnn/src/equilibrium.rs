@@ -17,8 +17,10 @@ pub struct Equilibrium {
     pub left: f64,
 }
 
-/// The displacement at rest under forces f (N), until what is left of them is a share `enough`, by conjugate gradients with the cells' own blocks for a preconditioner (Hestenes and Stiefel,
-/// J. Res. Natl. Bur. Stand. 49, 1952), which needs no factor. More is left where forces move a part that nothing holds. Motions that nothing resists have no part in it otherwise.
+/// The displacement at rest under forces f (N), to a residual of `enough` times their norm, by conjugate gradients with
+/// the cells' own blocks for a preconditioner (Hestenes and Stiefel, J. Res. Natl. Bur. Stand. 49, 1952), which needs
+/// no factor. The residual is larger where forces move an unsupported component. Motions without resistance do not
+/// contribute otherwise.
 #[must_use]
 pub fn equilibrium(operators: &LinearOperators, force: &[f64], enough: f64) -> Equilibrium {
     let stiffness = operators.stiffness();

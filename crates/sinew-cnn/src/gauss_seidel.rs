@@ -57,8 +57,8 @@ fn symmetric_sweep(majorant: &Majorant, pivots: &CellBlocks, r: &[f64], x: &mut 
     let layers = majorant.operators().stiffness().layers().count();
     let cells = majorant.operators().stiffness().pattern().cells();
     x.fill(0.0);
-    // Forward with what stands left of the diagonal; x holds (D + L)^-1 r afterwards. Back with
-    // what stands right of it: x_i -= D_ii^-1 sum_j>i A_ij x_j.
+    // Forward with the entries left of the diagonal; x holds (D + L)^-1 r afterwards. Back with the entries right of
+    // it: x_i -= D_ii^-1 sum_j>i A_ij x_j.
     for forward in [true, false] {
         for step in 0..cells {
             let cell = if forward { step } else { cells - 1 - step };

@@ -12,7 +12,7 @@ use crate::program::{Loads, Program, Register, Sweep};
 
 /// Sweeps after which the estimate is taken as it is.
 const MOST_SWEEPS: usize = 10_000;
-/// Sweeps between two looks at the estimate.
+/// Sweeps between two checks of the estimate.
 const SWEEPS_A_LOOK: usize = 20;
 
 impl Program {

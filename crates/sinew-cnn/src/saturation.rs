@@ -2,8 +2,8 @@
 
 /// `f(x) = (|x + Q| - |x - Q|)/2`: the identity inside -Q..Q and constant outside (paper, Eq. 5).
 ///
-/// Each component is clamped by itself, as in the paper; the result therefore depends on the
-/// axes' directions once something saturates.
+/// Each component is clamped separately, as in the paper; the result therefore depends on the axes' directions once
+/// something saturates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Saturation {
     voltage: f64,

@@ -9,7 +9,8 @@ use crate::rigid::{RigidMotions, by_diagonal};
 /// Most products that its search takes.
 const MOST_PRODUCTS: usize = 400;
 
-/// Products between two looks, and the relative change of the square of its frequency between them at which it is found.
+/// Products between two checks, and the relative change of the square of its frequency between them at which it is
+/// found.
 const LOOK: usize = 10;
 const FOUND: f64 = 1e-4;
 

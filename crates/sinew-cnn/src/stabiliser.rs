@@ -17,9 +17,8 @@ use crate::{Machine, ReferenceMachine};
 /// Ways in which P is built from a [`Majorant`] P1 and its A. All start cold: truncated iterations that
 /// start from the last step's result are not a fixed P, and blow up.
 ///
-/// One iteration leaves no room for the whole damping, which would add `gamma blockdiag` of it to the
-/// inertia: it takes [`DampingShare::AsStiffness`]. More iterations take [`DampingShare::Whole`], so
-/// that damping is centred in time.
+/// One iteration cannot take the whole damping, which would add `gamma blockdiag` of it to the inertia: it takes
+/// [`DampingShare::AsStiffness`]. More iterations take [`DampingShare::Whole`], so that damping is centred in time.
 ///
 /// Where M' suffices ([`Majorant::mass_suffices`]) every kind is the Neumann series about M' with as
 /// many products: `P = A (I - (I - M'^-1 A)^p)^-1`. With `X = M'^-1 dt/2 D' < I` each mode of X has
@@ -88,7 +87,8 @@ impl Inner {
 /// With `P > dt/2 D + dt^2/4 K` the leapfrog step `P (v+ - v-) = dt (F - K u - D v-)`, `u += dt v+`
 /// never gains energy, at any step (see [`Stabiliser::certificate`]).
 ///
-/// Where parts may move as rigid bodies, which strain nothing, P is M' on these motions ([`Stabiliser::sparing`]): so a body that nothing holds falls, flies and turns as it would at any step.
+/// Where parts may move as rigid bodies, which strain nothing, P is M' on these motions ([`Stabiliser::sparing`]): so
+/// an unsupported body falls, flies and turns as it would at any step.
 #[derive(Clone, Debug)]
 pub struct Stabiliser {
     majorant: Majorant,
@@ -123,7 +123,7 @@ enum Spared {
 /// Energy of W in a motion, as a share of what the blocks hold in it, below which it is a rigid one to rounding.
 const RIGID: f64 = 1e-10;
 
-/// Iterations by which a solution begins and goes on.
+/// Iterations by which a solution begins and continues.
 enum Iteration {
     /// No sweep beyond the first.
     Single,
@@ -391,13 +391,13 @@ impl Stabiliser {
         )
     }
 
-    /// `P^-1` with room of its own.
+    /// `P^-1` with scratch space of its own.
     #[must_use]
     pub fn solver(&self) -> Inverse {
         Inverse::new(self)
     }
 
-    /// `out = P^-1 r`, with room of its own on each call.
+    /// `out = P^-1 r`, with new scratch space on each call.
     pub fn solve(&self, r: &[f64], out: &mut [f64]) {
         self.solver().solve(r, out);
     }
@@ -477,7 +477,7 @@ fn of_register(r: Register) -> Sweep {
     Sweep::local().with_own(r, 1.0, 0.0).over(Quotient::Blocks)
 }
 
-/// `P^-1` by itself.
+/// `P^-1` as an operator, with its scratch space.
 pub struct Inverse {
     solver: Solver,
     spared: Spared,

@@ -498,7 +498,7 @@ impl<'a> Batch<'a> {
         result
     }
 
-    /// Runs `body` on the next `parts` parts of the step under way at most.
+    /// Runs `body` on at most the next `parts` substeps of the step under way.
     pub fn next_parts<R>(&mut self, parts: u32, body: impl FnOnce(&mut Self) -> R) -> R {
         let pause = self.parts_taken.saturating_add(parts);
         // The end of a step is none.
@@ -508,7 +508,7 @@ impl<'a> Batch<'a> {
         result
     }
 
-    /// Takes the step of a trial, which led to this state.
+    /// Takes the step of a trial, which ended in this state.
     pub fn keep_trial(&mut self, state: &State) {
         self.parts_taken += 1;
         if self.parts_taken == self.parts {
@@ -544,8 +544,8 @@ impl<'a> Batch<'a> {
 /// The degree of freedom farthest beyond `limit` (m); one that is not a number is farthest of all.
 #[must_use]
 pub fn worst_beyond(u: &[f64], limit: f64) -> Option<usize> {
-    // Without a branch, in words as wide as the values, so that several are compared at a time: this
-    // is done after each step.
+    // Without a branch, in integers as wide as the values, so that several are compared at a time: this is done after
+    // each step.
     let largest_finite = limit.min(f64::MAX);
     let fine = |all, value: &f64| all & u64::from(value.abs() <= largest_finite);
     if u.iter().fold(1, fine) == 1 {

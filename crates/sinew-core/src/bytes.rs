@@ -54,7 +54,7 @@ pub enum BytesError {
 pub(crate) struct Kind {
     /// Name and version, with which the bytes begin.
     pub(crate) name: &'static [u8; 16],
-    /// The kind in words.
+    /// Description of the kind.
     pub(crate) words: &'static str,
 }
 

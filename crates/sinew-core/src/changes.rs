@@ -2,7 +2,7 @@
 
 use crate::revision::Revision;
 
-/// Largest number of changes remembered one by one; users of an older revision set up again.
+/// Largest number of changes kept one by one; users of an older revision set up again.
 const REMEMBERED: usize = 64;
 
 /// Cells whose rows changed from one revision to the next, latest last.
@@ -21,7 +21,7 @@ impl Changes {
         self.0.is_empty()
     }
 
-    /// Remembers that the rows of these cells changed after a revision.
+    /// Records that the rows of these cells changed after a revision.
     pub(crate) fn push(&mut self, before: Revision, cells: Vec<u32>) {
         if self.0.len() == REMEMBERED {
             self.0.remove(0);

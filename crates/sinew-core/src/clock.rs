@@ -2,8 +2,8 @@
 
 /// A time `t = base + n dt`: a base, a step and the number of steps taken since.
 ///
-/// Steps that are added up miss the instants they stand for by more with every step; this time is
-/// rounded once, however long the run. A step of another length begins a new base.
+/// Steps that are added up miss the instants they represent by more with every step; this time is rounded once, however
+/// long the run. A step of another length begins a new base.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Clock {
     base: f64,
@@ -12,7 +12,7 @@ pub struct Clock {
 }
 
 impl Clock {
-    /// Share of a time by which multiples of a step may miss the instant they stand for: rounding.
+    /// Share of a time by which multiples of a step may miss the instant that they represent: rounding.
     pub const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
     /// The time `t` (s), before any step.

@@ -84,7 +84,7 @@ impl ShowCells for AllShown {
     }
 }
 
-/// A step that led to a trial state, whose clock still shows the beginning.
+/// A step that ended in a trial state, whose clock still shows the beginning.
 #[derive(Clone, Copy, Debug)]
 pub struct Meeting<'a> {
     /// Inputs from outside.
@@ -107,7 +107,7 @@ pub struct Meeting<'a> {
 /// The matrix P that a step divides forces by, one block for each cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Inertia<'a> {
-    /// So many times the lumped mass.
+    /// The lumped mass times this factor.
     Mass(f64),
     /// The blocks of `P^-1` (1/kg), row by row.
     InverseBlocks(&'a [f64]),

@@ -42,8 +42,8 @@ pub struct SweepShape<'a> {
     pub parts: usize,
 }
 
-/// A sweep over elements, with room for what it keeps: displacements are taken, forces made pass by pass, and then given. The bits do not
-/// depend on the number of parts.
+/// A sweep over elements, with buffers for what it keeps: displacements are taken, forces made pass by pass, and then
+/// given. The bits do not depend on the number of parts.
 ///
 /// # Safety
 /// Each of the three is called by several threads, each for places or parts of its own, none before the one

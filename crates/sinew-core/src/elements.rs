@@ -29,7 +29,7 @@ impl ElementStiffness {
         self.matrix.len().isqrt()
     }
 
-    /// The degree of freedom of the whole system that a row stands for.
+    /// The degree of freedom of the whole system that a row represents.
     fn dof(&self, row: usize) -> usize {
         let layers = self.rows() / self.cells.len().max(1);
         self.cells[row / layers] as usize * layers + row % layers

@@ -5,19 +5,22 @@ use sinew_sparse::vectors::{noise, scale, weighted_dot};
 /// Products by which [`follow_largest_eigenvalue`] begins.
 pub const PRODUCTS_OF_BEGINNING: u64 = 16;
 
-/// Share of the estimate up to which eigenvalues count as too small to look for.
+/// Share of the estimate up to which eigenvalues count as too small to be sought.
 const TOO_SMALL: f64 = 0.9;
 
 /// Size of the noise that is added with each product, as a share of the field: one that has found its vector would have nothing of another that grows elsewhere.
 const NOISE: f64 = 0.1;
 
-/// An estimate from below, by some thousandths, of the largest eigenvalue of `M^-1 S`, S symmetric and M diagonal, where S is hardly another one than in the call before: one product improves
-/// the two fields, of the length of `mass` each, that have turned towards its vector. Where there are none it begins from noise that is always the same, by
-/// [`PRODUCTS_OF_BEGINNING`] products. `multiply(x, out)` writes `out = S x`; `room` has the length of `mass`.
+/// An estimate from below, by some thousandths, of the largest eigenvalue of `M^-1 S`, S symmetric and M diagonal,
+/// where S is hardly another one than in the call before: one product improves the two fields, of the length of `mass`
+/// each, that have turned towards its vector. Without such fields it begins from noise that is always the same, by
+/// [`PRODUCTS_OF_BEGINNING`] products. `multiply(x, out)` writes `out = S x`; `room` is scratch space, of the length of
+/// `mass`.
 ///
-/// Chebyshev's recurrence (Saad, Numerical Methods for Large Eigenvalue Problems, section 7.4), scaled anew in each step: eigenvalues from -.45 to .9 of the estimate stay as they are,
-/// those beyond grow, the one that was found by 1.7 and one half as large again by 3.5 in a product. So it turns to another vector within a few products,
-/// where the power iteration, by which they grow as the eigenvalues, would take some ten. Infinite where products are not finite.
+/// Chebyshev's recurrence (Saad, Numerical Methods for Large Eigenvalue Problems, section 7.4), scaled again in each
+/// step: eigenvalues from -.45 to .9 of the estimate stay as they are, those beyond grow, the one that was found by 1.7
+/// and one half as large again by 3.5 in a product. So it turns to another vector within a few products, where the
+/// power iteration, by which they grow as the eigenvalues, would take some ten. Infinite where products are not finite.
 ///
 /// # Errors
 /// That of `multiply`.

@@ -31,6 +31,6 @@ pub struct FreePart {
     pub moves: Vec<[bool; 3]>,
     /// The point (m) about which motions turn.
     pub centre: [f64; 3],
-    /// Independent motions about the rest: six where nothing holds it.
+    /// Independent motions about the rest: six for a part without supports.
     pub twists: Vec<Twist>,
 }

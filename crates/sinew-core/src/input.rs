@@ -5,8 +5,7 @@ use crate::force_record::{ForceInputError, ForceRecord};
 use crate::load::Load;
 use crate::ramp::{Channel, Ramp, RampError};
 
-/// Inputs that a caller gives while a simulation runs: forces of a hand, factors of loads,
-/// positions of supports.
+/// Inputs that a caller gives while a simulation runs: forces of a user, factors of loads, positions of supports.
 ///
 /// The caller owns them and passes them with every step. They are a record: what was given is kept
 /// with its time, so that a run that is driven by them is a function of them, and the same record

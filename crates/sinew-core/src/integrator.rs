@@ -10,9 +10,9 @@ use crate::system::System;
 
 /// A method that takes a state step by step through time.
 ///
-/// Holds caches and work buffers, never physics: all that a method must remember from one step
-/// to the next stands in the [`State`]. Duties that all methods share (checks of sizes, the clock,
-/// acceptance, divergence, the guard) are done once, by the [`Batch`] that it runs.
+/// Holds caches and work buffers, never physics: all that a method must keep from one step to the next is stored in the
+/// [`State`]. Duties that all methods share (checks of sizes, the clock, acceptance, divergence, the guard) are done
+/// once, by the [`Batch`] that it runs.
 ///
 /// ```
 /// use sinew_core::{
@@ -95,15 +95,15 @@ pub trait Integrator: Send {
     /// one step to [`Batch::each`].
     ///
     /// # Errors
-    /// [`StepError`] when the system refuses a trial state; `state` is then that after the last step, or
-    /// part of a step that is cut, as its clock says.
+    /// [`StepError`] when the system refuses a trial state; `state` is then that after the last step, or substep of a
+    /// step that is cut, as its clock says.
     fn run(&mut self, batch: &mut Batch<'_>, state: &mut State) -> Result<(), StepError>;
 
     /// Takes `state` from t to t + dt: a batch of one, as live code needs it.
     ///
     /// # Errors
-    /// [`StepError`] when set-up fails or the system refuses a trial state; `state` is then that of
-    /// before, or after the last part of a step that is cut, as its clock says.
+    /// [`StepError`] when set-up fails or the system refuses a trial state; `state` is then that of before, or after
+    /// the last substep of a step that is cut, as its clock says.
     fn step(
         &mut self,
         system: &dyn System,

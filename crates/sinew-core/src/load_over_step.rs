@@ -22,7 +22,7 @@ const MISS: f64 = 1e-9;
 const SHORTEST: f64 = 1e-7;
 
 impl LoadOverStep {
-    /// The condition in words.
+    /// Description of the condition.
     #[must_use]
     pub fn describe(self) -> &'static str {
         match self {

@@ -175,8 +175,8 @@ impl LinearOperators {
 
     /// These matrices, shared, under other loads.
     ///
-    /// The new loads count from the beginning of time: a run that changes to them on its way goes
-    /// on with one-step methods only. Forces that change while a run goes on are [`Inputs`].
+    /// The new loads count from the beginning of time: a run that changes to them on its way continues with one-step
+    /// methods only. Forces that change during a run are [`Inputs`].
     ///
     /// # Errors
     /// [`OperatorError`] when a ramp is impossible or a degree of freedom does not exist.

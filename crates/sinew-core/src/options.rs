@@ -79,7 +79,7 @@ pub enum OptionError {
         key: String,
         /// The value given.
         found: OptionValue,
-        /// Values that fit, in words.
+        /// Description of the values that fit.
         expected: &'static str,
     },
     /// No such integrator.

@@ -4,7 +4,7 @@ use crate::revision::Revision;
 use crate::step_error::SetupError;
 use crate::system::{System, loads_revision};
 
-/// Remembers which system and step an integrator is set up for.
+/// Record of the system and the step that an integrator is set up for.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Prepared {
     done_for: Option<(Revision, f64)>,
@@ -39,7 +39,7 @@ impl Prepared {
         self.done_for.map(|(_, dt)| dt)
     }
 
-    /// Remembers that set-up for this system and step is done, and with which loads.
+    /// Records that set-up for this system and step is done, and with which loads.
     pub fn done(&mut self, system: &dyn System, dt: f64) {
         self.done_for = Some((system.revision(), dt));
         self.loads = loads_revision(system);

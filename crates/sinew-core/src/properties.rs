@@ -91,7 +91,7 @@ impl ChangingLoads {
         }
     }
 
-    /// The accuracy in words.
+    /// Description of the accuracy.
     #[must_use]
     pub fn describe(self) -> String {
         match self {
@@ -175,7 +175,7 @@ impl OtherDamping {
         }
     }
 
-    /// The accuracy in words.
+    /// Description of the accuracy.
     #[must_use]
     pub fn describe(self) -> String {
         let words = |accuracy: Option<Accuracy>| match accuracy {
@@ -206,7 +206,7 @@ pub enum Needs {
 }
 
 impl Needs {
-    /// The needs in words.
+    /// Description of the needs.
     #[must_use]
     pub fn describe(self) -> &'static str {
         match self {

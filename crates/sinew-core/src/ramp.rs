@@ -115,13 +115,13 @@ pub enum RampError {
     /// The rate of a rate, or of an input in the place of the input's rate.
     #[error("the rate of a ramp {of}: expected that of one whose value is known")]
     RateOf {
-        /// The ramp in words.
+        /// Description of the ramp.
         of: String,
     },
     /// A factor of an input, or of what has one.
     #[error("a factor of a ramp {of}: expected that of one whose value is known")]
     FactorOf {
-        /// The ramp in words.
+        /// Description of the ramp.
         of: String,
     },
 }
@@ -194,7 +194,7 @@ impl Ramp {
         }
     }
 
-    /// The ramp in words.
+    /// Description of the ramp.
     #[must_use]
     pub fn describe(&self) -> String {
         match self {

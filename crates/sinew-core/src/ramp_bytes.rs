@@ -41,7 +41,7 @@ pub(crate) fn write(ramp: &Ramp, out: &mut Writer) {
 /// Reads what [`write`] wrote.
 pub(crate) fn read(rest: &mut Reader<'_>) -> Result<Ramp, BytesError> {
     Ok(match kind(rest)? {
-        // Of a rate there is none.
+        // A rate of a rate does not exist.
         RATE => {
             let of = kind(rest)?;
             Ramp::Rate(Box::new(plain(of, rest)?))

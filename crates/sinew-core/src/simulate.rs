@@ -70,7 +70,7 @@ pub struct RunReport {
     pub work: StepReport,
 }
 
-/// Reasons for which a run cannot go on.
+/// Reasons for which a run cannot continue.
 #[derive(Debug, thiserror::Error)]
 pub enum SimulateError {
     /// A step failed.

@@ -5,10 +5,10 @@ use sinew_sparse::vectors::{dot, weighted_dot};
 use crate::lanczos::{Lanczos, MAX_STEPS};
 use crate::operators::LinearOperators;
 
-/// Steps between two looks at the static response.
+/// Steps between two checks of the static response.
 const BETWEEN_LOOKS: usize = 10;
 
-/// Relative change of the squared static response between two looks at which it counts as known.
+/// Relative change of the squared static response between two checks below which it counts as known.
 const SETTLED: f64 = 1e-5;
 
 /// QL iterations for one eigenvalue; a handful is usual.
@@ -19,7 +19,7 @@ const QL_ITERATIONS: usize = 60;
 pub struct SpectralWeight {
     /// lambda (1/s^2).
     pub eigenvalue: f64,
-    /// The sum of `(x' f)^2` (N^2/kg) over the modes x that it stands for, `x' M x = 1`.
+    /// The sum of `(x' f)^2` (N^2/kg) over the modes x that it represents, `x' M x = 1`.
     pub weight: f64,
 }
 

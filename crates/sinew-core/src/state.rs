@@ -8,8 +8,8 @@ use crate::revision::Revision;
 
 /// Displacement and velocity of a system: free degrees of freedom only, node-major (x y z).
 ///
-/// A plain value: a clone is a checkpoint, and a run continued from a clone with a fresh
-/// integrator is bit-identical. It therefore carries everything a method must remember.
+/// A plain value: a clone is a checkpoint, and a run continued from a clone with a fresh integrator is bit-identical.
+/// It therefore carries everything that a method must keep.
 ///
 /// Two states are equal where all that determines the motion is equal; the identity of the loads
 /// does not count.
@@ -49,7 +49,7 @@ pub struct State {
 /// The cut of steps into parts that the current stiffness of a system allows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StepCut {
-    /// Parts of a step.
+    /// Number of substeps of a step.
     pub parts: u32,
     /// Parts taken since what a product does not tell was found.
     pub taken: u32,
@@ -66,7 +66,7 @@ impl Clone for State {
         clone
     }
 
-    /// Takes over another state without allocating where there is room for it.
+    /// Takes over another state without allocating if the capacity suffices.
     fn clone_from(&mut self, other: &Self) {
         let Self {
             clock,
@@ -146,8 +146,8 @@ pub struct DampedAt {
     /// Offset for cells, after the velocity's own time: more than 0 where a state keeps the acceleration of the last
     /// kick, and damping does not lag by a whole step.
     pub cells: f64,
-    /// Offset for moving supports, after the displacement's time: -1/2 stands for their displacement over the last
-    /// step, 1/2 for that over the next.
+    /// Offset for moving supports, after the displacement's time: -1/2 means their displacement over the last step, 1/2
+    /// that over the next.
     pub supports: f64,
 }
 
@@ -164,7 +164,7 @@ impl DampedAt {
         }
     }
 
-    /// Damping by the velocity that a state has, and that of supports so many steps after the displacement's time.
+    /// Damping by the velocity that a state has, and that of supports `steps` steps after the displacement's time.
     #[must_use]
     pub const fn supports(steps: f64) -> Self {
         Self {
@@ -181,7 +181,7 @@ pub enum Acceleration {
     None,
     /// The acceleration at the displacement's time, under the loads at the end of the last step.
     Same,
-    /// The acceleration of the last kick, which led to a velocity in the middle of the last step.
+    /// The acceleration of the last kick, which produced a velocity in the middle of the last step.
     Kick,
 }
 

@@ -62,7 +62,7 @@ impl State {
         out.number(self.damped.cells);
         out.number(self.damped.supports);
         out.number(self.start.map_or(0.0, |start| start.energy));
-        // No parts stand for no cut.
+        // Zero parts mean no cut.
         out.count(self.cut.map_or(0, |cut| cut.parts.into()));
         out.count(self.cut.map_or(0, |cut| cut.taken.into()));
         out.number(self.cut.map_or(0.0, |cut| cut.stable_step));
@@ -75,8 +75,8 @@ impl State {
         out.finish()
     }
 
-    /// The state that [`State::to_bytes`] wrote, of a system built in the same way. Loads are not
-    /// compared, and the law of a system without matrices by what it tells of itself ([`crate::ForceLaw::fingerprint`]).
+    /// The state that [`State::to_bytes`] wrote, of a system built in the same way. Loads are not compared, and the law
+    /// of a system without matrices by what it reports of itself ([`crate::ForceLaw::fingerprint`]).
     ///
     /// # Errors
     /// [`StateBytesError`] for other bytes and for other systems.

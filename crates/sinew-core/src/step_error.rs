@@ -102,7 +102,7 @@ pub enum SetupError {
         /// Degrees of freedom of the system.
         dofs: usize,
     },
-    /// A staggered state under other loads than those that led to it.
+    /// A staggered state under other loads than those that produced it.
     #[error(
         "`{integrator}`: the loads were replaced in mid-run; a velocity half a step behind follows from \
          those before. Give loads that change as it happens through `Inputs`, or call \
@@ -150,7 +150,7 @@ pub enum StepError {
     /// A batch was run without set-up.
     #[error("the integrator was not set up: call `prepare` first, or take steps by `Batch::take`")]
     NotPrepared,
-    /// A velocity that no other step or method can go on from.
+    /// A velocity that no other step or method can continue from.
     #[error(transparent)]
     Synchronise(#[from] SynchroniseError),
     /// The method found that its step would be wrong.

@@ -15,7 +15,7 @@ pub struct StepReport {
     pub factorizations: u64,
     /// Newton iterations.
     pub newton_iterations: u64,
-    /// Trials of a line search that were refused or led too little down.
+    /// Trials of a line search that were refused or decreased too little.
     pub backtracks: u64,
     /// Solutions with a tangent whose negative eigenvalues were removed.
     pub projected_solves: u64,

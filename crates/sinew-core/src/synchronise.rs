@@ -84,8 +84,8 @@ impl State {
         Ok(())
     }
 
-    /// Moves a staggered velocity to the displacement's time, so that any method can go on from
-    /// here; returns whether it was staggered. `work` has the length of `u`.
+    /// Moves a staggered velocity to the displacement's time, so that any method can continue from here; returns
+    /// whether it was staggered. `work` has the length of `u`.
     ///
     /// Contact has no part in that: whatever takes the next step lets it push by as much as the whole of the time between two
     /// velocities asks for, and what it pushes by is what tools receive.

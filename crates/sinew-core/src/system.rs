@@ -46,15 +46,15 @@ pub trait System: Send + Sync {
     /// The forces.
     fn equations(&self) -> Equations<'_>;
 
-    /// Number of internal variables, such as the viscous stresses of laws with memory; they stand
-    /// in [`State::internal`].
+    /// Number of internal variables, such as the viscous stresses of laws with memory; they are stored in
+    /// [`State::internal`].
     fn internal_variables(&self) -> usize {
         0
     }
 
-    /// Tells that a step was accepted and the state is its result, `dt` (s) after the one before. Called once per step, or per
-    /// part of a step that is cut; laws with memory update the state's internal variables here. By hand it is called for a change that
-    /// takes no time, with 0, and for one after which all relaxes, with infinity.
+    /// Tells that a step was accepted and the state is its result, `dt` (s) after the one before. Called once per step,
+    /// or per substep of a step that is cut; laws with memory update the state's internal variables here. To call it by
+    /// hand, pass `dt = 0` for an instantaneous change and infinity for full relaxation.
     ///
     /// # Errors
     /// [`EvaluationError`] for a state outside the domain of a law with memory; the internal variables are then unspecified.
@@ -73,7 +73,7 @@ pub trait System: Send + Sync {
         true
     }
 
-    /// Positions of the cells at rest (m), where the system has them: machines look for rows that repeat.
+    /// Positions of the cells at rest (m), where the system has them: machines search for rows that repeat.
     fn cell_positions(&self) -> Option<Vec<[f64; 3]>> {
         None
     }

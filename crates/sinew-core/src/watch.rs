@@ -12,7 +12,7 @@ pub struct Watch {
 }
 
 impl Watch {
-    /// Watches these degrees of freedom, with room for `steps` samples before anything is allocated.
+    /// Watches these degrees of freedom, with capacity for `steps` samples before anything more is allocated.
     #[must_use]
     pub fn new(dofs: Vec<u32>, steps: usize) -> Self {
         Self {
@@ -49,7 +49,7 @@ impl Watch {
         self.times.iter().copied().zip(values)
     }
 
-    /// Forgets the samples and keeps the room.
+    /// Forgets the samples and keeps the capacity.
     pub fn clear(&mut self) {
         self.times.clear();
         self.values.clear();

@@ -15,13 +15,13 @@ use crate::tet::{EDGES, FACES};
 
 use crate::vector::{Vector, bounds_of, length, sub};
 
-/// Stands for no tetrahedron.
+/// Marks the absence of a tetrahedron.
 pub(crate) const NONE: u32 = u32::MAX;
 
 /// A body of tetrahedra whose faces can be split and whose tetrahedra can be taken away.
 ///
-/// Tetrahedra keep their numbers, and nodes theirs; copies of nodes are appended. Room for [`spare_nodes`] of them is made at
-/// the beginning: until it is used up, strokes allocate nothing.
+/// Tetrahedra keep their numbers, and nodes theirs; copies of nodes are appended. Space for [`spare_nodes`] of them is
+/// reserved at the beginning: until it is used up, strokes allocate nothing.
 pub struct CuttableBody {
     pub(crate) properties: Box<dyn TetProperties>,
     /// Rest positions of the mesh's own nodes, as the mesh gave them.
@@ -56,17 +56,17 @@ pub struct CuttableBody {
 /// Lists that strokes use again.
 #[derive(Default)]
 pub(crate) struct Room {
-    /// The last look in which each tetrahedron was seen.
+    /// The last search in which each tetrahedron was seen.
     pub(crate) seen: Vec<u32>,
     pub(crate) look: u32,
-    /// Tetrahedra that are to be looked at.
+    /// Tetrahedra that are still to be checked.
     pub(crate) queue: Vec<u32>,
     pub(crate) touched: Vec<(u32, Passed)>,
-    /// Nodes that the blade has passed in this look.
+    /// Nodes that the blade has passed in this search.
     pub(crate) passed: Vec<u32>,
     /// Other tetrahedra at these nodes.
     pub(crate) left: Vec<u32>,
-    /// The last look in which each tetrahedron at such a node was listed.
+    /// The last search in which each tetrahedron at such a node was listed.
     pub(crate) listed_in: Vec<u32>,
     pub(crate) nodes: SeenNodes,
     /// Nodes that may be moved, with their distance from the sheet by their shortest edge.
@@ -75,12 +75,12 @@ pub(crate) struct Room {
     pub(crate) corners: Vec<u32>,
     /// One flag per node: true if it is listed.
     pub(crate) is_listed: Vec<bool>,
-    /// Group of each tetrahedron at the node at hand.
+    /// Group of each tetrahedron at the current node.
     pub(crate) group_of: Vec<u32>,
 }
 
 impl Room {
-    /// Starts a look at a body of so many nodes.
+    /// Starts a search in a body of `nodes` nodes.
     pub(crate) fn start_look(&mut self, nodes: usize) {
         self.look = self.look.wrapping_add(1);
         self.touched.clear();
@@ -89,7 +89,7 @@ impl Room {
         self.nodes.resize(nodes);
     }
 
-    /// Queues a tetrahedron that this look has not seen yet.
+    /// Queues a tetrahedron that this search has not seen yet.
     pub(crate) fn see(&mut self, tet: u32) {
         let seen = &mut self.seen[tet as usize];
         if *seen != self.look {
@@ -106,8 +106,8 @@ impl Room {
     }
 }
 
-/// Number of copies of nodes that room is made for beforehand, in whatever has a place for each node of a body: a tenth of the nodes, and
-/// a few for small bodies.
+/// Number of copies of nodes for which space is reserved beforehand, in all arrays over the nodes of a body: a tenth of
+/// the nodes, and a few for small bodies.
 #[must_use]
 pub fn spare_nodes(nodes: usize) -> usize {
     nodes / 10 + 16

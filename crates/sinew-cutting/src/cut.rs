@@ -48,7 +48,7 @@ impl CuttableBody {
         self.stroke.clear();
         if !self.goes_on(poses[0]) {
             if self.marks.course.blade.is_some() && self.is_in_the_air(poses, positions) {
-                // Another blade than that of the stroke at hand, which goes on after it.
+                // Another blade than that of the current stroke, which continues after it.
                 self.room.start_look(positions.len());
                 return Ok(&self.stroke);
             }
@@ -100,7 +100,8 @@ impl CuttableBody {
         self.split(positions);
     }
 
-    /// Lifts the blade: the next stroke goes on with no tetrahedron that this one left entered in part. What it left uncut, as [`CuttableBody::uncut`].
+    /// Lifts the blade: the next stroke continues no tetrahedron that this one left partly cut. Returns what was left
+    /// uncut, as [`CuttableBody::uncut`].
     pub fn lift(&mut self) -> Option<Uncut> {
         let uncut = self.uncut();
         self.marks.clear();

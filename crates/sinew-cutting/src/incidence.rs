@@ -2,8 +2,8 @@
 
 /// The tetrahedra at each node, increasing.
 ///
-/// Cuts only take tetrahedra away from nodes, or divide them among a node and its copies: so the room of a node holds all of its
-/// copies' lists as well, and nothing moves.
+/// Cuts only take tetrahedra away from nodes, or divide them among a node and its copies: so the list of a node has
+/// space for all of its copies' lists as well, and nothing moves.
 #[derive(Clone, Debug)]
 pub(crate) struct Incidence {
     starts: Vec<u32>,

@@ -81,7 +81,7 @@ impl Mark {
     }
 }
 
-/// The side of a node for the stroke at hand.
+/// The side of a node for the current stroke.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum NodeSide {
     /// Not settled: where it lies now.
@@ -163,7 +163,7 @@ impl Marks {
         self.sides[node as usize]
     }
 
-    /// The side of a node for the stroke at hand, by an edge of it that was crossed, or else as the blade passed it.
+    /// The side of a node for the current stroke, by an edge of it that was crossed, or else as the blade passed it.
     pub(crate) fn known_side(&self, node: u32) -> NodeSide {
         match self.sides[node as usize] {
             NodeSide::Open => self.passed[node as usize],

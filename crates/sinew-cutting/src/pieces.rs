@@ -12,7 +12,7 @@ pub struct Pieces {
 }
 
 impl CuttableBody {
-    /// The pieces of the body. Looks at every tetrahedron.
+    /// The pieces of the body. Checks every tetrahedron.
     #[must_use]
     pub fn pieces(&self) -> Pieces {
         let mut parents: Vec<u32> = (0..self.points.len() as u32).collect();

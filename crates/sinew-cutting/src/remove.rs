@@ -44,7 +44,7 @@ impl CuttableBody {
         Ok(self.take_away(removal, positions))
     }
 
-    /// An empty removal, in the room of the last one.
+    /// An empty removal, in the buffers of the last one.
     fn next_removal(&mut self) -> Removal {
         let mut removal = std::mem::take(&mut self.removal);
         removal.tets.clear();

@@ -1,4 +1,4 @@
-//! Strokes that run finer than the mesh: they cut off chips, or nothing.
+//! Strokes whose path is smaller than the mesh's elements: they cut off chips, or nothing.
 
 use crate::body::CuttableBody;
 use crate::tet::EDGES;
@@ -56,7 +56,7 @@ impl Missed {
 }
 
 impl CuttableBody {
-    /// The chips of the stroke at hand. Looks at every tetrahedron.
+    /// The chips of the current stroke. Checks every tetrahedron.
     #[must_use]
     pub fn chips(&self) -> Option<Chips> {
         if !self.has_cut() {

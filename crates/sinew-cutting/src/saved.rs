@@ -1,4 +1,4 @@
-//! A cut body as bytes, from which it goes on with the same bits.
+//! A cut body as bytes, from which it continues with the same bits.
 
 use crate::body::CuttableBody;
 use crate::course::Course;

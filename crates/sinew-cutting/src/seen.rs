@@ -34,12 +34,12 @@ impl Flat {
     }
 }
 
-/// The nodes as the sheet at hand sees them: each is looked at once, for all tetrahedra at it.
+/// Positions of the nodes relative to the current sheet: each is computed once, for all tetrahedra at the node.
 #[derive(Default)]
 pub(crate) struct SeenNodes {
     distances: Vec<f64>,
     flats: Vec<Flat>,
-    /// The look in which each was seen.
+    /// The search in which each was seen.
     looks: Vec<u32>,
 }
 
@@ -52,14 +52,14 @@ impl SeenNodes {
         }
     }
 
-    /// Lets there be so many nodes.
+    /// Resizes the lists to `nodes` nodes.
     pub(crate) fn resize(&mut self, nodes: usize) {
         self.distances.resize(nodes, 0.0);
         self.flats.resize(nodes, Flat::default());
         self.looks.resize(nodes, 0);
     }
 
-    /// Distances from the plane of a tetrahedron's vertices, which this look has seen; 0 for those that lie on it.
+    /// Distances from the plane of a tetrahedron's vertices, which this search has seen; 0 for those that lie on it.
     pub(crate) fn distances(&self, nodes: [u32; 4]) -> [f64; 4] {
         nodes.map(|node| self.distances[node as usize])
     }

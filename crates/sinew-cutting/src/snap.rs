@@ -42,9 +42,10 @@ impl Freedom {
 }
 
 impl CuttableBody {
-    /// Moves nodes of crossed edges that are within a share `snap` of their shortest edge onto the sheet, nearest first. Space is moved
-    /// through the tissue: each goes, at rest, to the point that lies on the sheet now. Nodes of the surface stay in their face, and
-    /// those of an earlier cut where they are, for its lips fit each other, as do those that are kept or held.
+    /// Moves nodes of crossed edges that are within a share `snap` of their shortest edge onto the sheet, nearest
+    /// first. Space is moved through the tissue: each goes, at rest, to the point that lies on the sheet now. Nodes of
+    /// the surface stay in their face, and those of an earlier cut where they are, because its two faces fit each
+    /// other, as do those that are kept or held.
     pub(crate) fn snap(&mut self, sheet: &Sheet, positions: &mut [Vector], snap: f64) {
         let mut near = std::mem::take(&mut self.room.near);
         near.clear();

@@ -3,7 +3,7 @@
 use crate::body::{CuttableBody, NONE};
 use crate::tet::FACES;
 
-/// Stands for a tetrahedron of no group yet.
+/// Marks a tetrahedron of no group yet.
 const NO_GROUP: u32 = u32::MAX;
 
 impl CuttableBody {

@@ -28,7 +28,7 @@ pub enum StrokesError {
         /// The number.
         found: f64,
     },
-    /// An end that is farther away than sheets are told apart.
+    /// An end that is farther away than the distance up to which sheets can be distinguished.
     #[error(
         "row {row}: an end of the blade at {found:e} m: expected at most {FARTHEST:e} m in size"
     )]
@@ -98,7 +98,7 @@ pub struct Strokes(Vec<BladePose>);
 /// Action of a blade within a time.
 #[derive(Clone, Copy, Debug)]
 pub enum BladeAct {
-    /// It is lifted, or set on anew.
+    /// It is lifted, or set on again.
     Lift,
     /// It goes from one pose to another, each given by both ends (m), or rests.
     Sweep([[[f64; 3]; 2]; 2]),

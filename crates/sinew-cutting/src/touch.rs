@@ -41,12 +41,12 @@ impl Beside {
 }
 
 impl CuttableBody {
-    /// A tetrahedron, whose nodes this look has seen, beside the sheet.
+    /// A tetrahedron, whose nodes this search has seen, beside the sheet.
     pub(crate) fn beside(&self, tet: u32) -> Beside {
         Beside(self.room.nodes.distances(self.tets[tet as usize]))
     }
 
-    /// Sees the nodes of a tetrahedron that this look has not seen yet.
+    /// Sees the nodes of a tetrahedron that this search has not seen yet.
     fn see_nodes(&mut self, tet: u32, sheet: &Sheet, positions: &[Vector]) {
         for node in self.tets[tet as usize] {
             if self.room.nodes.is_new(node, self.room.look) {
@@ -71,7 +71,7 @@ impl CuttableBody {
         self.room.nodes.set(node, distance, flat);
     }
 
-    /// Notes a node that this look has seen and is here now, where the blade passes it for the first time.
+    /// Notes a node that this search has seen and is here now, where the blade passes it for the first time.
     fn pass(&mut self, node: u32, sheet: &Sheet, place: Vector) {
         let (distance, flat) = self.room.nodes.of(node);
         if self.marks.has_passed(node) {
@@ -146,7 +146,7 @@ impl CuttableBody {
         }
     }
 
-    /// Tells of a place (m) whether a tetrahedron with a vertex there may reach into a box, unless it is stretched.
+    /// Checks for a place (m) whether a tetrahedron with a vertex there may reach into a box, unless it is stretched.
     pub(crate) fn is_near(&self, [low, high]: [Vector; 2]) -> impl Fn(&Vector) -> bool + use<> {
         let reach = self.longest_edge;
         let [low, high] = [
@@ -187,8 +187,8 @@ impl CuttableBody {
         self.room.touched.sort_unstable_by_key(|(tet, _)| *tet);
     }
 
-    /// Finds the tetrahedra, increasing, that this look has not touched, one of whose nodes the blade has passed in it, and at which something may be left
-    /// to be cut, into `room.left`.
+    /// Finds the tetrahedra, increasing, that this search has not touched, one of whose nodes the blade has passed in
+    /// it, and at which something may be left to be cut, into `room.left`.
     pub(crate) fn find_left(
         &mut self,
         touched: &[(u32, Passed)],

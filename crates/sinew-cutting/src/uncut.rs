@@ -50,7 +50,7 @@ impl CuttableBody {
         let faces = bridges.into_iter().filter_map(|(tet, vertex)| {
             let beside = [tet, self.neighbours[tet as usize][vertex]];
             let [one, other] = beside.map(|tet| parts[tet as usize]);
-            // Tissue that was cut and flies back behind the blade takes sides anew there.
+            // Tissue that was cut and flies back behind the blade takes sides again there.
             let is_within =
                 || one == other && !beside.iter().any(|tet| self.marks.of(*tet).is_settled());
             if one == CHIP || other == CHIP || is_within() {

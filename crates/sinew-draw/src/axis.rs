@@ -51,7 +51,7 @@ impl Axis {
         }
     }
 
-    /// The axis with the range that it shows: its own, or that of the data with some room.
+    /// The axis with the range that it shows: its own, or that of the data with some margin.
     #[must_use]
     pub fn fitted(&self, data: impl Iterator<Item = f64>) -> Fitted {
         let scale = self.scale;
@@ -65,7 +65,7 @@ impl Axis {
     }
 }
 
-/// Room round the data, and some extent where there is none.
+/// Margin round the data, and some extent if the data have none.
 fn padded(scale: Scale, data: impl Iterator<Item = f64>) -> (f64, f64) {
     let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
     for x in data.map(|x| scale.forward(x)).filter(|x| x.is_finite()) {

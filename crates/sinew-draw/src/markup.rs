@@ -20,7 +20,7 @@ pub fn escape(text: &str) -> String {
     out
 }
 
-/// Escaped text in which what stands between two backticks is set as code.
+/// Escaped text in which the text between two backticks is set as code.
 #[must_use]
 pub fn prose(text: &str) -> String {
     let mut out = String::with_capacity(text.len());

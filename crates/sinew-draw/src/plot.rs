@@ -64,7 +64,7 @@ pub struct Point {
 pub struct Rule {
     /// Its place on the axis that it crosses.
     pub at: f64,
-    /// Its meaning, in words.
+    /// Description of its meaning.
     pub label: String,
 }
 

@@ -12,7 +12,7 @@ const TITLE: f64 = 15.0;
 const TEXT: f64 = 12.0;
 const SMALL: f64 = 11.0;
 const LEFT: f64 = 62.0;
-/// Room for the labels of horizontal roofs.
+/// Space for the labels of horizontal roofs.
 const RIGHT: f64 = 150.0;
 const MARKER: f64 = 4.2;
 /// Distance between labels.
@@ -216,7 +216,7 @@ impl Family {
     }
 }
 
-/// Places in increasing order, moved apart until each has room for a line, about where they were.
+/// Places in increasing order, moved apart until each has space for a line, about where they were.
 fn apart(mut places: Vec<f64>) -> Vec<f64> {
     for _ in 0..200 {
         let mut moved = false;

@@ -33,8 +33,8 @@ pub struct Surface<'a> {
     pub range: Option<(f64, f64)>,
     /// A box drawn in outline: lowest and highest corner (m). Usually the undeformed body.
     pub outline: Option<[[f64; 3]; 2]>,
-    /// The box the picture has room for, lowest and highest corner (m); otherwise it fits the
-    /// surface and the outline. The same box gives pictures of the same scale.
+    /// The box that fits into the picture, lowest and highest corner (m); otherwise it fits the surface and the
+    /// outline. The same box gives pictures of the same scale.
     pub view: Option<[[f64; 3]; 2]>,
     /// Width and height of the drawing without title and colour bar (px).
     pub size: (f64, f64),

@@ -106,7 +106,7 @@ fn anew(mesh: &Arc<TetMesh>) {
     );
 }
 
-/// What a stroke that cut took.
+/// Cost of a stroke that cut.
 struct Cost {
     micros: f64,
     faces: usize,

@@ -22,7 +22,7 @@ use crate::{Problem, springs};
 /// The matrices of a body of some materials.
 pub(crate) struct Assembled {
     pub(crate) stiffness: BlockMatrix,
-    /// Dashpots along springs, as a matrix; `None` where there are none.
+    /// Dashpots along springs, as a matrix; `None` without any.
     pub(crate) damping: Option<BlockMatrix>,
     /// The dashpots, held ends included.
     pub(crate) dashpots: Vec<Dashpot>,
@@ -36,8 +36,8 @@ pub(crate) struct Assembled {
 
 /// Sums up the matrices of a body, whose tetrahedra are in the regions `region_of`.
 ///
-/// The matrices are by far the largest part of a model: `graph` and all lists of springs but one are gone before there is
-/// room made for them.
+/// The matrices are by far the largest part of a model: `graph` and all lists of springs but one are gone before they
+/// are allocated.
 pub(crate) fn assemble(
     mesh: &TetMesh,
     body: &Body,
@@ -131,7 +131,7 @@ fn stiffness(
     Ok(stiffness)
 }
 
-/// The dashpots as a matrix (N s/m); `None` where there are none.
+/// The dashpots as a matrix (N s/m); `None` without any.
 fn damping(
     mesh: &TetMesh,
     body: &Body,

@@ -10,15 +10,15 @@ use crate::shares::Shares;
 use crate::tissue::unit;
 use crate::{Problem, Region};
 
-/// What the data give, looked up and checked.
+/// Properties per tetrahedron, read from the mesh's data and checked.
 #[derive(Debug, Default)]
 pub(crate) struct ByTet {
     regions: Vec<RegionByTet>,
-    /// What densities are multiplied by in each tetrahedron.
+    /// Factor of the region's density in each tetrahedron; `None` if no region takes its density from the mesh.
     densities: Option<Vec<f64>>,
 }
 
-/// What the data give to a region; arrays are over all tetrahedra of the mesh.
+/// Properties per tetrahedron of a region; arrays are over all tetrahedra of the mesh.
 #[derive(Clone, Debug)]
 pub(crate) struct RegionByTet {
     /// The least and the largest factor of Young's modulus.
@@ -43,7 +43,7 @@ impl Default for RegionByTet {
 }
 
 impl ByTet {
-    /// What the data of a mesh give, whose tetrahedra are in the regions `region_of`.
+    /// Reads the properties that the data of a mesh give, whose tetrahedra are in the regions `region_of`.
     pub(crate) fn new(
         mesh: &TetMesh,
         problem: &Problem,
@@ -118,12 +118,12 @@ impl ByTet {
         Ok(by_tet)
     }
 
-    /// What they give to a region.
+    /// The properties of a region.
     pub(crate) fn region(&self, index: usize) -> &RegionByTet {
         &self.regions[index]
     }
 
-    /// What the density of a tetrahedron's region is multiplied by.
+    /// Factor of the density of a tetrahedron's region; 1 if the mesh gives none.
     pub(crate) fn density(&self, tet: usize) -> f64 {
         self.densities.as_ref().map_or(1.0, |all| all[tet])
     }
@@ -145,7 +145,8 @@ impl<'a> Members<'a> {
         of_region.filter_map(is_own)
     }
 
-    /// The data with a name, which have so many values for each tetrahedron, and some for each of these.
+    /// The data with a name, which must have `expected` values per tetrahedron, and some for each tetrahedron of the
+    /// region.
     fn data(self, name: &str, expected: usize) -> Result<&'a TetData, DataError> {
         let data = self.mesh.data(name)?;
         let name = || name.to_owned();

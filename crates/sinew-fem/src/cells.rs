@@ -76,7 +76,7 @@ impl Cells {
         }
     }
 
-    /// Makes room for so many further nodes.
+    /// Reserves space for `nodes` further nodes.
     pub(crate) fn reserve(&mut self, nodes: usize) {
         self.nodes.reserve(nodes);
         self.pinned.reserve(3 * nodes);
@@ -125,14 +125,14 @@ impl Cells {
         std::array::from_fn(|axis| if pinned[axis] { 0.0 } else { values[axis] })
     }
 
-    /// Whether some node is held in some directions only.
+    /// True if some node is held in some directions only.
     pub(crate) fn partly_held(&self) -> bool {
         let wholly_held = self.cell_of_node.len() - self.nodes.len();
         self.held_components > 3 * wholly_held
     }
 }
 
-/// The components of each node that do not move by themselves: held, or moved from outside.
+/// The components of each node that are not free: held, or moved from outside.
 fn held_axes(
     mesh: &TetMesh,
     (fixed, moves): (&[Fixed], &[Moving]),

@@ -46,7 +46,7 @@ impl Problem {
         Ok(problem)
     }
 
-    /// Whether each node of the uncut mesh bears a share of a force: it is not held altogether.
+    /// True for each node of the uncut mesh that bears a share of a force: it is not held in all three directions.
     fn bears_forces(&self, uncut: &TetMesh) -> Result<Vec<bool>, Cause> {
         let held = supported(uncut, &self.fixed).map_err(|error| error.cause().clone())?;
         let mut bears: Vec<bool> = held.iter().map(|held| *held != [true; 3]).collect();
@@ -74,7 +74,7 @@ impl Problem {
 }
 
 impl LoadSpec {
-    /// What it is on after cuts.
+    /// The nodes or triangles that the load is on after cuts.
     fn on_after_cuts(&self, uncut: &TetMesh, cut: &CutMesh) -> Result<On, Cause> {
         Ok(match self.kind {
             LoadKind::Force(_) => On::Nodes(cut.without_copies(uncut, &self.on.nodes(uncut)?)),

@@ -49,7 +49,7 @@ impl From<FieldError> for CutModelError {
     }
 }
 
-/// What a cut did to the body and to its energy.
+/// Changes that a cut made to the body and to its energy.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CutReport {
     /// Faces that were cut.
@@ -93,7 +93,7 @@ impl CutReport {
         }
     }
 
-    /// Whether nothing changed.
+    /// True if nothing changed.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         [
@@ -130,10 +130,12 @@ impl CutReport {
 /// nothing, energy stay what they are where no node is moved. Frequencies and K's blocks are bounded by single tetrahedra where these bounds hold, so that stable
 /// steps are the same before and after.
 ///
-/// Linear bodies of plain tetrahedra whose supports rest follow a split in their place, at the cost of the rows that it touches: with the bits of a
-/// model that is made anew, [`Model::report`] aside, whose sums of masses, volumes and loads stay. A tenth more nodes have room; until it is used up
-/// nothing is allocated, while no clone of the model shares its rows. All other models are made anew on the mesh of the body that is left: springs,
-/// hyperelastic regions, elements that average strain, supports in motion, and any body from the first piece on that was removed or frozen.
+/// Linear bodies of plain tetrahedra whose supports rest follow a split in their place, at the cost of the rows that it
+/// touches: with the bits of a model that is rebuilt, [`Model::report`] aside, whose sums of masses, volumes and loads
+/// stay. Space for a tenth more nodes is reserved; until it is used up nothing is allocated, while no clone of the
+/// model shares its rows. All other models are rebuilt on the mesh of the body that is left: springs, hyperelastic
+/// regions, elements that average strain, supports in motion, and any body from the first piece on that was removed or
+/// frozen.
 pub struct CutModel {
     uncut: Arc<TetMesh>,
     problem: Problem,
@@ -147,9 +149,9 @@ pub struct CutModel {
     densities: Arc<[f64]>,
     /// Displacement (m) of the nodes of the body that are frozen.
     frozen: BTreeMap<u32, [f64; 3]>,
-    /// What the model follows splits with; `None` where it is made anew.
+    /// State for following splits in place; `None` if the model is rebuilt instead.
     in_place: Option<Box<InPlace>>,
-    /// Room for positions of the nodes of the body.
+    /// Buffer for the positions of the nodes of the body.
     positions: Vec<[f64; 3]>,
 }
 
@@ -221,7 +223,8 @@ impl CutModel {
         Ok(cut_model)
     }
 
-    /// Makes room in a state for the nodes that the model has room for, so that cuts allocate nothing for it either.
+    /// Reserves space in a state for the nodes that the model has space for, so that cuts allocate nothing for it
+    /// either.
     pub fn make_room(&self, state: &mut State) {
         let more = 3 * spare_nodes(self.mesh.nodes.len());
         for values in [&mut state.u, &mut state.v, &mut state.a] {
@@ -253,8 +256,8 @@ impl CutModel {
         self.epoch
     }
 
-    /// Number of times that all rows were laid out anew to make room for further nodes, and of those in which something else shared the
-    /// model's rows, so that they were copied.
+    /// Number of times that all rows were laid out again to make space for further nodes, plus the times that something
+    /// else shared the model's rows, so that they were copied.
     #[must_use]
     pub fn layouts(&self) -> u64 {
         self.layouts
@@ -290,7 +293,8 @@ impl CutModel {
         self.split(nodes, state, inputs)
     }
 
-    /// Lifts the blade: the next stroke goes on with no tetrahedron that this one left entered in part. What it left uncut of a body that it came through.
+    /// Lifts the blade: the next stroke continues no tetrahedron that this one left partly cut. Returns what was left
+    /// uncut of a body that the blade passed through.
     pub fn lift(&mut self) -> Option<Uncut> {
         self.body.lift()
     }
@@ -398,7 +402,8 @@ impl CutModel {
         Ok(report)
     }
 
-    /// Whether each tetrahedron belongs to a piece that nothing holds or moves from outside; `None` where there is none.
+    /// True for each tetrahedron of a component without fixed or prescribed nodes; `None` if there is no such
+    /// component.
     fn loose_tets(&self, held: &[u32]) -> Option<Vec<bool>> {
         let held: HashSet<u32> = held.iter().copied().collect();
         let is_held = |node: u32| {
@@ -417,7 +422,7 @@ impl CutModel {
         is_loose.contains(&true).then(|| of_tet().collect())
     }
 
-    /// What cuts changed, as bytes.
+    /// The changes that cuts made, as bytes.
     #[must_use]
     pub fn to_bytes(&self) -> Vec<u8> {
         let mut bytes = self.epoch.to_le_bytes().to_vec();
@@ -458,7 +463,7 @@ impl CutModel {
         Ok(())
     }
 
-    /// Whether a blade (both ends, m) is in the body as it lay at the last stroke.
+    /// True if a blade (both ends, m) is in the body as it lay at the last stroke.
     #[must_use]
     pub fn holds(&self, blade: [[f64; 3]; 2]) -> bool {
         self.body.holds(blade, &self.positions)
@@ -519,7 +524,7 @@ impl CutModel {
         Ok(())
     }
 
-    /// Goes on after the last stroke, or cut of faces, of the body, which had so many nodes before.
+    /// Updates the model after the last stroke, or cut of faces, of the body, which had `nodes` nodes before.
     fn split(
         &mut self,
         nodes: usize,
@@ -551,8 +556,8 @@ impl CutModel {
         }
     }
 
-    /// Goes on with a model made anew, after a change of the body, which had so many nodes before: `moved` ones lie elsewhere at rest now, and
-    /// those after them are copies of `copied` ones.
+    /// Rebuilds the model after a change of the body, which had `nodes` nodes before: `moved` ones have another rest
+    /// position now, and those after them are copies of `copied` ones.
     fn go_on_anew(
         &mut self,
         nodes: usize,

@@ -25,7 +25,7 @@ use crate::number::require;
 /// patches have their mean by volume.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Element {
-    /// Tetrahedra of constant strain, each by itself.
+    /// Tetrahedra of constant strain, without averages.
     #[default]
     P1,
     /// The change of volume is averaged over patches: no locking by incompressibility.
@@ -37,7 +37,7 @@ pub enum Element {
     FbarEdge {
         /// Share of the shear energy that is averaged over edges, from 0 to 1. The rest keeps single tetrahedra stiff.
         edge_share: f64,
-        /// As for [`Element::Fbar`].
+        /// Tetrahedra of a patch, as for [`Element::Fbar`].
         patch: Option<u32>,
     },
 }
@@ -58,7 +58,7 @@ impl Element {
         }
     }
 
-    /// Whether changes of volume are averaged over patches.
+    /// True if changes of volume are averaged over patches.
     #[must_use]
     pub fn has_patches(self) -> bool {
         self != Self::P1

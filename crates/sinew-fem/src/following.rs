@@ -46,7 +46,7 @@ impl Triangle {
 }
 
 impl FollowingPressure {
-    /// The pressure (Pa) of a load on outward triangles; `None` where there are none.
+    /// The pressure (Pa) of a load on outward triangles; `None` without any.
     pub(crate) fn new(
         mesh: &TetMesh,
         (load, ramp, pressure): (usize, &Ramp, f64),

@@ -5,16 +5,16 @@ use sinew_mesh::TetDataError;
 /// The names of the mesh's data ([`sinew_mesh::TetMesh::data`]) that give properties of a region for each of its tetrahedra.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct FromMesh {
-    /// What Young's modulus of the law is multiplied by: with 1 Pa there, the data are moduli (Pa).
+    /// Factor of Young's modulus of the law: with 1 Pa there, the data are moduli (Pa).
     pub youngs_modulus: Option<String>,
-    /// What the density is multiplied by: with 1 kg/m^3 there, the data are densities.
+    /// Factor of the density: with 1 kg/m^3 there, the data are densities.
     pub density: Option<String>,
     /// The direction of the fibres, in place of [`crate::FibreFamily::direction`]; lengths do not matter.
     pub direction: Option<String>,
 }
 
 impl FromMesh {
-    /// Whether the region takes nothing from the mesh.
+    /// True if the region takes nothing from the mesh.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         *self == Self::default()
@@ -38,7 +38,7 @@ pub enum DataError {
         name: String,
         /// Their values for each tetrahedron.
         found: usize,
-        /// Those of the property.
+        /// Values of the property for each tetrahedron.
         expected: usize,
     },
     /// Tetrahedra without a value.

@@ -31,7 +31,7 @@ pub enum Law {
         youngs_modulus: f64,
         /// The rule by which stiffness follows from the modulus.
         rule: SpringRule,
-        /// Whether stiffnesses are scaled so that the network's Voigt average is the modulus.
+        /// True to scale stiffnesses so that the network's Voigt average is the modulus.
         calibrate: bool,
         /// gamma: rate of each spring's dashpot over `2 sqrt(k (m_i + m_j))`.
         damping_ratio: f64,
@@ -119,7 +119,7 @@ impl Law {
         }
     }
 
-    /// The law in words, with Young's modulus (Pa) as it is said.
+    /// Description of the law, with Young's modulus (Pa) as it is said.
     #[must_use]
     pub fn with_modulus(&self, youngs_modulus: &str) -> String {
         match self {
@@ -156,7 +156,7 @@ impl Law {
         }
     }
 
-    /// Whether it is a law of large deformation.
+    /// True if it is a law of large deformation.
     #[must_use]
     pub fn is_hyperelastic(&self) -> bool {
         matches!(self, Self::Hyperelastic { .. })
@@ -227,7 +227,7 @@ fn constants(id: &str, parameters: &Parameters) -> [f64; 2] {
     [modulus.unwrap_or(made[0]), ratio.unwrap_or(made[1])]
 }
 
-/// A law of large deformation in words: its constants at small strain, then its own parameters.
+/// Description of a law of large deformation: its constants at small strain, then its own parameters.
 fn hyperelastic_with_modulus(id: &str, parameters: &Parameters, modulus: &str) -> String {
     let [_, nu] = constants(id, parameters);
     let stated = parameters.stated();

@@ -17,13 +17,13 @@ use crate::{LoadKind, LoadSpec, MoveFacts, Problem};
 
 /// The loads of a problem on a body.
 pub(crate) struct LoadsOnBody {
-    /// Loads on components that move by themselves: in the order of the problem, gravity last.
+    /// Loads on free components: in the order of the problem, gravity last.
     pub(crate) moving: Vec<Load>,
     /// Source of each of them.
     pub(crate) items: Vec<Item>,
     /// Parts of the loads on held components; loads without one are left out.
     pub(crate) held: Vec<HeldLoad>,
-    /// What pressures that follow the surface do beyond that.
+    /// Additional contributions of pressures that follow the surface.
     pub(crate) following: Vec<FollowingPressure>,
     /// Resultants of the loads.
     pub(crate) facts: Vec<LoadFacts>,
@@ -208,7 +208,7 @@ fn gather(cells: &Cells, nodal: &[(u32, Vector3<f64>)], ramp: Ramp, item: Item) 
     }
 }
 
-/// What a load spreads over triangles.
+/// Surface load that is spread over triangles.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Spread {
     /// Force over area (Pa).

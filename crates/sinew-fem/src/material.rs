@@ -21,7 +21,7 @@ use crate::{Element, Law, Region, SpringRule, springs, stress, tetra};
 /// The law of a region ready for computation, calibration included.
 #[derive(Clone, Debug)]
 pub(crate) struct Material {
-    /// Of its stiffest tetrahedron.
+    /// The law of the stiffest tetrahedron.
     kind: Kind,
     /// The stiffness of each tetrahedron.
     shares: Shares,
@@ -133,7 +133,7 @@ impl Material {
         }
     }
 
-    /// Whether it is of large deformation.
+    /// True if it is of large deformation.
     pub(crate) fn is_hyperelastic(&self) -> bool {
         matches!(self.kind, Kind::Hyperelastic { .. })
     }
@@ -169,7 +169,8 @@ impl Material {
         }
     }
 
-    /// Lame's constants (Pa) of a tetrahedron by itself, where a linear law and they are all that its stiffness follows from.
+    /// Lame's constants (Pa) of a single tetrahedron, where a linear law and they are all that its stiffness follows
+    /// from.
     pub(crate) fn lame_of_plain(&self, tet: usize) -> Option<[f64; 2]> {
         match self.kind {
             Kind::Continuum {
@@ -206,8 +207,8 @@ impl Material {
         [share * lambda, 0.0]
     }
 
-    /// Stiffness matrix (N/m) of a tetrahedron by itself, without what acts on averages, at small strain: 12 x 12, row-major and
-    /// vertex-major; `None` where it is flat.
+    /// Stiffness matrix (N/m) of a single tetrahedron, without what acts on averages, at small strain: 12 x 12,
+    /// row-major and vertex-major; `None` where it is flat.
     pub(crate) fn stiffness(&self, mesh: &TetMesh, tet: usize) -> Option<[f64; 144]> {
         let share = self.shares.of(tet);
         let (points, nodes) = (&mesh.points, &mesh.tets[tet]);
@@ -324,7 +325,7 @@ impl fmt::Debug for Directions {
     }
 }
 
-/// What fibres add to the stiffness (Pa) along them as soon as they are pulled.
+/// Stiffness (Pa) that fibres add along themselves as soon as they are pulled.
 fn modulus_along(family: &FibreFamily, tissue: &Tissue) -> f64 {
     4.0 * tissue.factor_of_fibres() * family.fibres.modulus_at_rest()
 }

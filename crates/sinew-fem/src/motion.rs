@@ -29,7 +29,7 @@ pub(crate) struct MovedPart {
     rates: Vec<Ramp>,
 }
 
-/// Which derivative of a motion is asked for.
+/// Order of the time derivative of a motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Field {
     /// Displacement (m).
@@ -40,7 +40,7 @@ pub(crate) enum Field {
     Acceleration,
 }
 
-/// Parts whose motions need no memory of their own: a frame that looks at them allocates nothing.
+/// Number of parts whose motions need no heap memory: a frame that evaluates them allocates nothing.
 const FEW: usize = 8;
 
 /// A field of all parts at an instant: of the first few, and of the others.
@@ -112,12 +112,12 @@ impl Motions {
         self
     }
 
-    /// Whether a node is held where it was frozen.
+    /// True if a node is held where it was frozen.
     pub(crate) fn is_frozen(&self, node: u32) -> bool {
         self.frozen(node).is_some()
     }
 
-    /// The courses of a component of a node; none where it is held at rest or moves by itself.
+    /// The courses of a component of a node; none where it is held at rest or free.
     pub(crate) fn courses(&self, node: u32, axis: usize) -> &[Course] {
         if let Some(part) = self.part_of(node, axis) {
             return self.parts.get(part).map_or(&[], |part| &part.courses);
@@ -258,7 +258,7 @@ impl Course {
         Some(along * self.ramp.known(when.inputs()).value(when.t()))
     }
 
-    /// Whether it moves nothing.
+    /// True if the course moves nothing.
     pub(crate) fn is_rest(&self) -> bool {
         self.displacement == [0.0; 3]
     }

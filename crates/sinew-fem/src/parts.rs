@@ -18,7 +18,7 @@ pub(crate) struct Parts<'a> {
     pub(crate) materials: &'a [Material],
 }
 
-/// A part, as its number stands for it.
+/// A part, as its number encodes it.
 #[derive(Clone, Copy)]
 enum Part {
     Tet(usize),
@@ -85,7 +85,7 @@ impl<'a> Parts<'a> {
         }
     }
 
-    /// Whether a part belongs to a hyperelastic region, whose matrix is that at rest and stands in no sum.
+    /// True if a part belongs to a hyperelastic region, whose matrix is that at rest and is part of no sum.
     pub(crate) fn is_hyperelastic(&self, number: usize) -> bool {
         let part = self.part(number);
         let tet = match part {
@@ -155,7 +155,7 @@ impl<'a> Parts<'a> {
     }
 }
 
-/// The stiffness of a part between all its nodes, and room to compute it.
+/// The stiffness of a part between all its nodes, and scratch space to compute it.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct WholePart {
     average: Average,

@@ -31,7 +31,7 @@ impl Problem {
 /// A part of the body made of one material.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Region {
-    /// A group of tetrahedra; `None` stands for the whole mesh.
+    /// A group of tetrahedra; `None` means the whole mesh.
     pub group: Option<String>,
     /// Mass density (kg/m^3).
     pub density: f64,
@@ -39,9 +39,9 @@ pub struct Region {
     pub law: Law,
     /// Element; springs have none but [`Element::P1`].
     pub element: Element,
-    /// What it has beside an isotropic law.
+    /// Additions to an isotropic law: fibres and stress that relaxes.
     pub tissue: Tissue,
-    /// What differs from tetrahedron to tetrahedron.
+    /// Properties that differ from tetrahedron to tetrahedron.
     pub from_mesh: FromMesh,
 }
 

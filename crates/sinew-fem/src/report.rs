@@ -27,7 +27,7 @@ pub struct ModelReport {
     pub mesh_dofs: usize,
     /// Components held by supports or moved from outside.
     pub held_components: usize,
-    /// Degrees of freedom that move by themselves.
+    /// Free degrees of freedom.
     pub free_dofs: usize,
     /// Mass of the body (kg), held nodes included.
     pub mass: f64,
@@ -43,7 +43,7 @@ pub struct ModelReport {
     pub gravity: Option<LoadFacts>,
     /// Stored blocks of the stiffness matrix.
     pub blocks: usize,
-    /// Whether damping needs a matrix of its own.
+    /// True if damping needs a matrix of its own.
     pub damping_matrix: bool,
     /// Changes made to the mesh when it was read, in sentences.
     pub notes: Vec<String>,

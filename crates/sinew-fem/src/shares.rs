@@ -20,7 +20,7 @@ pub(crate) struct Shares {
 }
 
 impl Shares {
-    /// Those of a region with these tetrahedra.
+    /// The shares of a region with these tetrahedra.
     pub(crate) fn new(all: Arc<[f64]>, tets: impl Iterator<Item = usize>) -> Self {
         let least = tets.map(|tet| all[tet]).fold(1.0, f64::min);
         Self {
@@ -29,12 +29,12 @@ impl Shares {
         }
     }
 
-    /// Whether there are any.
+    /// True if the shares differ from tetrahedron to tetrahedron.
     pub(crate) fn vary(&self) -> bool {
         self.all.is_some()
     }
 
-    /// That of a tetrahedron of the region.
+    /// The share of a tetrahedron of the region.
     pub(crate) fn of(&self, tet: usize) -> f64 {
         self.all.as_ref().map_or(1.0, |all| all[tet])
     }

@@ -1,4 +1,4 @@
-//! What tissue has beside an isotropic law.
+//! Additions to an isotropic law: fibres and stress that relaxes.
 
 use std::fmt;
 
@@ -8,19 +8,19 @@ use crate::hyperelastic::fibres::Fibres;
 use crate::hyperelastic::prony::{self, Term};
 use crate::number::require_finite;
 
-/// What tissue has beside an isotropic law; only laws of large deformation take any of it.
+/// Additions to an isotropic law; only laws of large deformation take any of them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Tissue {
     /// Fibres that stiffen it where they are stretched.
     pub fibres: Option<FibreFamily>,
-    /// What of its stress relaxes.
+    /// The part of its stress that relaxes.
     pub memory: Option<Memory>,
 }
 
 /// A family of fibres.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FibreFamily {
-    /// How they pull.
+    /// The law of the fibres' stress.
     pub fibres: Fibres,
     /// Their direction at rest, of any length but 0, unless the mesh's data give it ([`crate::FromMesh`]).
     pub direction: [f64; 3],
@@ -43,22 +43,22 @@ pub enum ViscousPart {
     /// All of it, that of fibres included.
     #[default]
     All,
-    /// That of the isochoric part of the law: pressure and fibres are elastic. For laws that have such a part.
+    /// The stress of the isochoric part of the law: pressure and fibres are elastic. For laws that have such a part.
     Deviatoric,
 }
 
 /// The moduli that the parameters of a law with memory are, those of its fibres included where they relax.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Moduli {
-    /// Those of a deformation that takes no time.
+    /// Moduli of an instantaneous deformation.
     #[default]
     Instantaneous,
-    /// Those of a deformation that is held for a long time.
+    /// Moduli of a deformation that is held for a long time.
     LongTerm,
 }
 
 impl Tissue {
-    /// Whether there is any of it.
+    /// True if there are no additions.
     #[must_use]
     pub fn is_plain(&self) -> bool {
         *self == Self::default()
@@ -87,7 +87,7 @@ impl Tissue {
         Ok(())
     }
 
-    /// What the moduli of fibres are multiplied by to be instantaneous ones.
+    /// Factor that turns the moduli of fibres into instantaneous ones.
     pub(crate) fn factor_of_fibres(&self) -> f64 {
         match &self.memory {
             Some(Memory {

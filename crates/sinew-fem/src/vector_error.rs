@@ -29,7 +29,7 @@ pub enum SupportMotionError {
     /// A node that does not exist, or a component that is not finite.
     #[error(transparent)]
     Vector(#[from] ForceError),
-    /// A displacement given to a component that moves by itself.
+    /// A displacement given to a free component.
     #[error("node index {node} is not held in {}", ["x", "y", "z"][*axis % 3])]
     NotHeld {
         /// The node (0-based).

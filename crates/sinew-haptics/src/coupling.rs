@@ -14,7 +14,7 @@ pub struct Coupling {
 pub struct DeviceLimits {
     /// Time (s) for which a force is held constant: one tick.
     pub tick: f64,
-    /// Lower bound of the damping (N s/m) of the device together with the hand that holds it.
+    /// Lower bound of the damping (N s/m) of the device together with the user's hand.
     pub damping: f64,
     /// The smallest displacement (m) that it measures.
     pub resolution: f64,

@@ -9,7 +9,7 @@ use crate::published::Published;
 /// Energy (J) that a device is granted before it has supplied any: without it no first force could ever be rendered.
 const LENT: f64 = 5e-7;
 
-/// Energy (J) that is not spent on a device which gives way: from nothing, no force would ever grow again.
+/// Energy (J) that is not spent on a device that yields: from nothing, no force would ever grow again.
 const KEPT: f64 = 0.5 * LENT;
 
 /// Largest displacement of a device in the next tick, over that in the last one.

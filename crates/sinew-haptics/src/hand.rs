@@ -1,4 +1,4 @@
-//! The motion of a handle as positions tell of it.
+//! The motion of a handle, estimated from its positions.
 
 use sinew_tools::vector::{scaled, sub};
 

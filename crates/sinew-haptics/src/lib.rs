@@ -5,11 +5,11 @@
 //! After each step a simulation publishes the position of its tool, the force of the tissue on it, and the stiffness of
 //! the tissue there ([`Published`]); from these a [`ForceLoop`] computes the force on the device at each of its ticks.
 //! The stiffness is that against slow displacements ([`LocalStiffness`]), so that between two steps the force follows
-//! the hand as the tissue would.
+//! the user's tool pose as the tissue would.
 //!
 //! [`real_time::run`] runs a device and a simulation in a thread each, by the clock; [`Lockstep`] runs them in one
 //! simulated time, for tests. [`ToolSimulation`] is a body with a tool that the device moves; [`SoftwareDevice`]
-//! replaces a device and the hand that holds it, [`RigidWall`] is the hardest case to render.
+//! replaces a device and the user's hand, [`RigidWall`] is the hardest case to render.
 //!
 //! ```
 //! use sinew_haptics::{Coupling, Device, Lockstep, RigidWall, SoftwareDevice};

@@ -33,7 +33,8 @@ impl LocalModel {
         }
     }
 
-    /// The position (m) of a massless tool whose coupling of this stiffness (N/m) leads to a position (m).
+    /// The equilibrium position (m) of a massless tool that a coupling of this stiffness (N/m) connects to the device
+    /// at a position (m).
     pub(crate) fn tool(&self, coupling: f64, device: Vector) -> Vector {
         let at = self.balance(coupling, device, &self.stiffness, self.force);
         let Some(normal) = self.normal else {

@@ -126,7 +126,7 @@ struct Held<'a, D: Device>(&'a mut D);
 impl<D: Device> Drop for Held<'_, D> {
     fn drop(&mut self) {
         if thread::panicking() {
-            // A device that panics once more would end the process, before the first reason is told.
+            // A device that panics once more would end the process, before the first reason is reported.
             let _ = catch_unwind(AssertUnwindSafe(|| self.0.render([0.0; 3])));
         } else {
             self.0.render([0.0; 3]);

@@ -10,15 +10,15 @@ use crate::device::Device;
 /// Substeps of a tick in which its motion is computed.
 const PARTS: usize = 10;
 
-/// A handle with a mass, pulled by the spring and the damper of a hand that follows a path, with an encoder and with
-/// forces that are held for a tick.
+/// A handle with a mass, pulled by the spring and the damper of a model of the user's hand that follows a path, with an
+/// encoder and with forces that are held for a tick.
 ///
 /// Time passes with [`Device::render`], by one tick: simulated time, in which nothing depends on a clock.
 pub struct SoftwareDevice {
     limits: DeviceLimits,
     /// Mass (kg).
     mass: f64,
-    /// Stiffness (N/m) of the hand, whose damping is that of the limits.
+    /// Stiffness (N/m) of the model of the user's hand, whose damping is that of the limits.
     hand: f64,
     path: Box<dyn Fn(f64) -> [f64; 3] + Send>,
     ticks: u64,
@@ -40,8 +40,8 @@ impl Debug for SoftwareDevice {
 }
 
 impl SoftwareDevice {
-    /// A handle of 100 g in a hand of 500 N/m and 5 N s/m that follows a path (m) in time (s); ticks of 1 ms, a
-    /// resolution of 25 um, at most 20 N.
+    /// A handle of 100 g in a model of the user's hand, of 500 N/m and 5 N s/m, that follows a path (m) in time (s);
+    /// ticks of 1 ms, a resolution of 25 um, at most 20 N.
     #[must_use]
     pub fn in_a_hand(path: impl Fn(f64) -> [f64; 3] + Send + 'static) -> Self {
         Self {

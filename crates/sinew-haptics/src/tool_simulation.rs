@@ -1,4 +1,4 @@
-//! A tool of a simulated body in the hand of a device.
+//! A tool of a simulated body, steered by a device.
 
 use std::sync::Arc;
 
@@ -63,7 +63,7 @@ impl ToolSimulation {
     }
 
     /// Takes this many iterations for the local stiffness in each step from now on, 2 at first; with 0 it is that of a
-    /// tissue of which only the touched nodes give way.
+    /// tissue of which only the touched nodes yield.
     pub fn set_iterations(&mut self, iterations: usize) {
         self.iterations = iterations;
     }
@@ -79,10 +79,10 @@ impl ToolSimulation {
         &mut self.world
     }
 
-    /// The force (N) of the tissue at a place (m) of the tool, as the hand feels it: a force that the tissue of the last
-    /// step, as a spring, does not predict comes through the tool's mass, within the time `sqrt(m/k)` of its coupling. A
-    /// node that meets the tool gives up its momentum within one step, a push that is the harder the shorter the step; a
-    /// tool of mass m takes it up before the coupling does.
+    /// The force (N) of the tissue at a place (m) of the tool, as the user feels it: a force that the tissue of the
+    /// last step, as a spring, does not predict comes through the tool's mass, within the time `sqrt(m/k)` of its
+    /// coupling. A node that meets the tool gives up its momentum within one step, a push that is the harder the
+    /// shorter the step; a tool of mass m takes it up before the coupling does.
     fn felt(&self, tools: &Tools, force: [f64; 3], at: [f64; 3]) -> [f64; 3] {
         let body = tools.tools()[self.tool.index()].body;
         match (&self.last, body) {

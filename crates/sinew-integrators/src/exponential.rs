@@ -1,6 +1,6 @@
 //! Exponentials of small dense matrices.
 
-/// Square matrices of one size, row-major, with room for their exponential.
+/// Square matrices of one size, row-major, with scratch space for their exponential.
 #[derive(Clone, Debug)]
 pub(crate) struct Exponential {
     capacity: usize,

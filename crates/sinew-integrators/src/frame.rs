@@ -338,7 +338,7 @@ fn first_refused(needed: LoadOverStep, batch: &Batch<'_>, state: &State) -> Opti
     }
     let linear = batch.system().as_linear()?;
     let dt = batch.dt();
-    // A staggered method looks back by a step too.
+    // A staggered method reads loads a step back too.
     let back = if state.is_staggered_by(dt) { dt } else { 0.0 };
     let t = state.t() - back;
     let end = t + back + batch.parts_left() as f64 * dt;

@@ -1,4 +1,4 @@
-//! Energy that a method takes by itself.
+//! Numerical dissipation: energy that a method takes from the motion.
 
 use sinew_core::vectors::{dot, weighted_dot};
 use sinew_core::{LinearOperators, LoadTime};

@@ -1,4 +1,4 @@
-//! Options in words and as data.
+//! Options as descriptions and as data.
 
 use sinew_core::{OptionError, OptionValue, Options};
 
@@ -11,7 +11,7 @@ pub struct OptionHelp {
     pub key: &'static str,
     /// Its effect.
     pub help: &'static str,
-    /// The values that fit, in words that follow "expected".
+    /// Description of the values that fit, to follow "expected".
     pub expected: &'static str,
     /// The values that fit, as data.
     pub kind: OptionKind,
@@ -28,7 +28,7 @@ pub struct OptionHelp {
 pub enum OptionDefault {
     /// This value, as a scene writes it.
     Value(&'static str),
-    /// This, in words.
+    /// The behaviour, as a description.
     InWords(&'static str),
 }
 

@@ -29,7 +29,7 @@ pub trait Scheme: Send + Sized + 'static {
         None
     }
 
-    /// The energy that it takes by itself, where there is a closed form.
+    /// The energy that it dissipates numerically, where there is a closed form.
     fn numerical_dissipation(&self) -> Option<NumericalDissipation> {
         None
     }

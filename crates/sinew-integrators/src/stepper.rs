@@ -14,7 +14,7 @@ pub trait Stepper: Integrator {
         None
     }
 
-    /// The energy that it takes by itself from a linear system, where there is a closed form.
+    /// The energy that it dissipates numerically from a linear system, where there is a closed form.
     fn numerical_dissipation(&self) -> Option<NumericalDissipation> {
         None
     }
@@ -24,8 +24,9 @@ pub trait Stepper: Integrator {
         StableStep::Unknown
     }
 
-    /// Cuts the parts into which it cuts steps by itself into so many each from now on; false where steps are as long as its caller asks for, or cut into a number of parts that was given. Who
-    /// compares a run with one of shorter steps needs it: half of a step that is cut in two is the same two parts.
+    /// Cuts each substep into which it cuts steps automatically into `_times` substeps from now on; false where steps
+    /// are as long as its caller asks for, or cut into a given number of substeps. A comparison of a run with one of
+    /// shorter steps needs it: half of a step that is cut in two is the same two substeps.
     fn refine(&mut self, _times: u32) -> bool {
         false
     }

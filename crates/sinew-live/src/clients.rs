@@ -1,4 +1,4 @@
-//! The pages that look on.
+//! The connected pages.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
@@ -229,7 +229,7 @@ mod tests {
         Instant::now() + Duration::from_secs(60)
     }
 
-    /// A picture after so many changes.
+    /// A picture after this number of changes.
     fn picture(changes: u64) -> Picture<'static> {
         Picture {
             message: vec![0; 64],

@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use crate::protocol::Order;
 
-/// Most orders that wait: more come from no hand.
+/// Most orders that wait: a user does not give more.
 const MOST_ORDERS: usize = 256;
 
 /// A request of a client, by the number that the client gave it.
@@ -114,7 +114,7 @@ impl Inbox {
         has_room
     }
 
-    /// Tells of a new client.
+    /// Reports a new client.
     pub(crate) fn enter(&self, client: u32) {
         let mut waiting = self.lock();
         waiting.entered.push(client);
@@ -139,8 +139,8 @@ impl Inbox {
         self.wake(waiting);
     }
 
-    /// Moves what waits into `taken`, which keeps its room, after at most `patience` of waiting for anything. As long as orders are left there, others and the
-    /// poses behind them go on waiting here.
+    /// Moves what waits into `taken`, which keeps its capacity, after at most `patience` of waiting for anything. As
+    /// long as orders are left there, others and the poses behind them continue to wait here.
     pub(crate) fn take(&self, taken: &mut Waiting, patience: Duration) {
         let mut waiting = self.lock();
         if !waiting.woken && !patience.is_zero() {

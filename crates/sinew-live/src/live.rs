@@ -25,13 +25,13 @@ use crate::scene_values::SceneValues;
 use crate::server::{Guests, Shared, Standing, Token, router};
 use crate::tool_facts::tools_of;
 
-/// Time between two looks at whether the page shall end.
+/// Time between two checks of whether the page shall end.
 const LOOK: Duration = Duration::from_millis(50);
 
 /// Time that the simulation has to end: it does so between steps and orders, and to set up a method may take minutes.
 const PATIENCE: Duration = Duration::from_secs(3);
 
-/// Three loads of a scene, along x, y and z, by which a hand pulls at a place.
+/// Three loads of a scene, along x, y and z, by which the user pulls at a place.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hand {
     /// Names of the loads.
@@ -55,7 +55,7 @@ pub struct Settings {
     pub panes: Vec<PaneChoice>,
     /// The second pane, where it is asked for later.
     pub second: PaneChoice,
-    /// Loads by which a hand pulls; they are 0 at the beginning.
+    /// Loads by which the user pulls; they are 0 at the beginning.
     pub hand: Option<Hand>,
     /// The port of this computer; 0 for a free one.
     pub port: u16,
@@ -206,7 +206,7 @@ impl Live {
                 while !ends() && !simulated.is_finished() {
                     look.tick().await;
                 }
-                // Pages are told that the connection closes.
+                // Pages are notified that the connection closes.
                 shared.clients.dismiss();
                 tokio::time::sleep(LOOK).await;
             });
@@ -243,7 +243,7 @@ fn loads_of(simulation: &Simulation, body: &BodyModel) -> Vec<LoadFacts> {
     facts.collect()
 }
 
-/// A kind of load with its size, in words.
+/// Description of a kind of load, with its size.
 fn kind_of(kind: &LoadKind) -> String {
     let length = |vector: &[f64; 3]| vector.iter().map(|x| x * x).sum::<f64>().sqrt();
     match kind {

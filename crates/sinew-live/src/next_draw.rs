@@ -5,11 +5,12 @@ use std::time::{Duration, Instant};
 /// Time from the making of a picture to a page that can draw it, where both have much to do.
 const UNDER_WAY: Duration = Duration::from_millis(6);
 
-/// Time between two draws where a page tells of none.
+/// Time between two draws where a page announces none.
 const BETWEEN_DRAWS: Duration = Duration::from_millis(16);
 
-/// The next draw of a page. A page that can take two pictures gets one at once, so that it never draws without, and another as late
-/// as may be, so that the screen shows what a hand did just before; to one that can take a single picture only the late one goes.
+/// The next draw of a page. A page that can take two pictures gets one at once, so that it never draws without, and
+/// another as late as may be, so that the screen shows what the user did just before; to one that can take a single
+/// picture only the late one goes.
 #[derive(Debug)]
 pub(crate) struct NextDraw {
     /// Time at which the page announced the draw.
@@ -37,7 +38,7 @@ impl NextDraw {
         match (self.has_early, self.has_late) {
             (false, false) if takes > 1 => self.told,
             (_, false) => self.late,
-            // It has not told of its draw.
+            // The page has not announced its draw.
             (_, true) => self.late + BETWEEN_DRAWS,
         }
     }

@@ -76,7 +76,7 @@ impl<T> Variant<T> {
 }
 
 impl<T: Precision> Variant<T> {
-    /// Takes the vectors that the codes stand for, and the weights of the present step.
+    /// Takes the vectors that the codes name, and the weights of the present step.
     pub(crate) fn resolve(&mut self, table: &[Field], weight: impl Fn(Weight) -> f64) {
         let of = |code: Field| table[code as usize];
         let (codes, map) = (&self.codes, &mut self.map);

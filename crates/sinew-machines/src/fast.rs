@@ -23,7 +23,7 @@ use crate::touched::Touched;
 /// The size to which displacements rise unseen, as a share of that of the touched cells.
 const LEAST_REACH: f64 = 1e-3;
 
-/// Room for displacements to grow unseen, as a factor: where one exceeds it the whole state is shown and looked at again.
+/// Margin for displacements to grow unseen, as a factor: if one exceeds it, the whole state is shown and checked again.
 const ROOM: f64 = 1.25;
 
 /// Runs programs on the cells of a system in the order of a [`Layout`], each sweep in one pass over matrices; where forces are sums
@@ -110,7 +110,7 @@ impl<T: ElementPrecision> FastMachine<T> {
         }
     }
 
-    /// Uses up to so many threads, in batches that are long enough.
+    /// Uses up to `threads` threads, in batches that are long enough.
     #[must_use]
     pub fn with_threads(self, threads: usize) -> Self {
         Self {
@@ -736,7 +736,7 @@ impl<T: ElementPrecision> Loaded<T> {
         self.pushed.reserve(cells.len());
     }
 
-    /// Finds a size that no component of a displacement exceeds, with room for some more motion.
+    /// Finds a size that no component of a displacement exceeds, with a margin for some more motion.
     fn look_at_largest(&mut self, u: &[f64]) {
         let largest = u.iter().fold(0.0_f64, |largest, u| largest.max(u.abs()));
         self.largest = (ROOM * largest).max(LEAST_REACH * self.touched.size());

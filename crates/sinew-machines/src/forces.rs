@@ -17,7 +17,7 @@ pub(crate) struct Forces {
 }
 
 impl Forces {
-    /// Room for the loads of a system.
+    /// Storage for the loads of a system.
     pub(crate) fn new<T: Precision>(operators: &LinearOperators, positions: usize) -> Self {
         let loads = operators.loads();
         let entries = loads.iter().map(|load| load.entries.len()).sum();

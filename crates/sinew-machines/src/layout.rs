@@ -13,9 +13,9 @@ pub struct Layout<T> {
     pub(crate) reach: usize,
     pub(crate) stiffness: Rows<T>,
     pub(crate) dashpots: Option<Rows<T>>,
-    /// Blocks of the matrices, each row by itself.
+    /// Blocks of the matrices, with each row counted separately.
     blocks: usize,
-    /// Elements of the force law beside which the matrices stand; 0 where there is none.
+    /// Elements of the force law whose forces are added to those of the matrices; 0 without a force law.
     pub(crate) elements: usize,
 }
 
@@ -46,7 +46,7 @@ const THIRD_CACHE: usize = 32 << 20;
 const MAP: usize = 8;
 
 impl<T: Precision> Layout<T> {
-    /// The rows of any matrix, each by itself; made once for all clones of the operators.
+    /// The rows of any matrix, each stored separately; made once for all clones of the operators.
     #[must_use]
     pub fn general(operators: &LinearOperators) -> Arc<Self> {
         let of = |operators: &LinearOperators| {
@@ -91,9 +91,8 @@ impl<T: Precision> Layout<T> {
         Arc::clone(&forces.operators().derived::<BesideElements<T>>(of).0)
     }
 
-    /// Templates on a lattice, where cells are on one and few templates make all rows; made once for all
-    /// clones of the operators. Rows that changed since the matrices were made have none, so that they
-    /// need not be looked for again.
+    /// Templates on a lattice, where cells are on one and few templates make all rows; made once for all clones of the
+    /// operators. Rows that changed since the matrices were made have none, so that they need not be sought again.
     #[must_use]
     pub fn repeated(system: &dyn LinearSystem) -> Option<Arc<Self>> {
         if system.operators().has_changed() {
@@ -139,7 +138,7 @@ impl<T: Precision> Layout<T> {
         lattice.vectors_of_blocks() + MAP * lattice.vectors_of_positions() < of_rows
     }
 
-    /// Bytes of the rows that templates stand for, each by itself.
+    /// Bytes of the rows that templates represent, if each were stored separately.
     fn bytes_of_rows(&self, lattice: &Lattice<T>) -> usize {
         let layers = lattice.layers();
         self.blocks * (layers * layers * size_of::<T>() + size_of::<u32>())
@@ -177,8 +176,8 @@ impl<T: Precision> Layout<T> {
         self.stiffness.bytes() + self.dashpots.as_ref().map_or(0, Rows::bytes)
     }
 
-    /// The number of threads that pays for sweeps over so many chunks and elements: as many as each get work for some tens
-    /// of microseconds in a sweep, and one where a batch ends before others have begun.
+    /// The number of threads that pays for sweeps over this number of chunks and elements: as many as each get work for
+    /// some tens of microseconds in a sweep, and one where a batch ends before others have begun.
     pub(crate) fn threads_for(&self, chunks: usize, elements: usize, sweeps: usize) -> usize {
         // Microseconds, about: rows of blocks are read from memory, templates are not.
         let (work, vectors) = match self.stiffness {
@@ -209,7 +208,7 @@ fn blocks(operators: &LinearOperators) -> usize {
     matrices.map(|matrix| matrix.pattern().blocks()).sum()
 }
 
-/// A number of bytes in words.
+/// Description of a number of bytes.
 fn size(bytes: usize) -> String {
     match bytes {
         0..10_000 => format!("{bytes} bytes"),

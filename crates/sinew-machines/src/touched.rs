@@ -133,8 +133,9 @@ impl<T: Precision> Touched<T> {
         places.for_each(|place| self.show(place, &layers, state));
     }
 
-    /// Lists the places of those whose ways in the step may meet a box (m), increasing. No component of a displacement is larger than `largest` (m) at
-    /// either end of a way: where all of a block stays away from the box then, its ways are not looked at.
+    /// Lists the places of those whose ways in the step may meet a box (m), increasing. No component of a displacement
+    /// is larger than `largest` (m) at either end of a way: where all of a block stays away from the box then, its ways
+    /// are not checked.
     pub(crate) fn list_near(
         &self,
         set: InstructionSet,

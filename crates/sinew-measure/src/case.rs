@@ -313,7 +313,7 @@ impl Case {
         Ok(track)
     }
 
-    /// The case in words.
+    /// Description of the case.
     #[must_use]
     pub fn info(&self) -> CaseInfo {
         let track = &self.samples;

@@ -48,7 +48,7 @@ impl<'a> DeformationWatch<'a> {
         })
     }
 
-    /// Looks at the state after a step. States that the law refuses are passed over: the run ends there by itself.
+    /// Checks the state after a step. States that the law refuses are passed over: the run ends there automatically.
     pub(crate) fn look(&mut self, moment: &Moment<'_>) {
         let state = moment.state;
         let trial = Trial::of(state, LoadTime::at(state.t()));

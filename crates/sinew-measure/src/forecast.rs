@@ -40,16 +40,17 @@ pub enum ForecastError {
     Run(#[from] SimulateError),
 }
 
-/// Steps that stand for themselves alone: they find caches empty, and some methods look at the body before the first of them.
+/// Steps that are not representative: they find caches empty, and some methods check the body before the first of them.
 const COLD: usize = 2;
 
-/// Steps from which the others are told: as many as methods take from one look at the stiffness to the next, and more.
+/// Steps from which the others are predicted: as many as methods take from one check of the stiffness to the next, and
+/// more.
 const ENOUGH: usize = 40;
 
 /// Time (s) that they take at least, where steps are short.
 const LEAST: f64 = 0.03;
 
-/// The same for force laws, of which steps take more work as the motion goes on.
+/// The same for force laws, of which steps take more work as the motion continues.
 const LEAST_OF_LAWS: f64 = 0.25;
 
 /// Time (s) by which they end where steps are long.
@@ -62,8 +63,9 @@ const WHOLE: f64 = 5.0;
 const AGAIN: usize = 4;
 
 impl Forecast {
-    /// Sets an integrator up and takes some of the scene's first steps with it, for some hundredths of a second or, where steps are long, up to a quarter of a second and a step. Under force laws it goes on to the end
-    /// where that is a matter of seconds.
+    /// Sets an integrator up and takes some of the scene's first steps with it, for some hundredths of a second or,
+    /// where steps are long, up to a quarter of a second and a step. Under force laws it continues to the end where
+    /// that is a matter of seconds.
     ///
     /// # Errors
     /// [`ForecastError`].
@@ -157,7 +159,7 @@ impl Forecast {
         Ok((forecast.run_s() > seconds).then_some(forecast))
     }
 
-    /// The part of the motion (s) that was looked at; `None` where that is all of it.
+    /// The part of the motion (s) that was measured; `None` where that is all of it.
     #[must_use]
     pub fn seen_s(&self) -> Option<f64> {
         (self.seen < self.steps).then_some(self.seen as f64 * self.dt)

@@ -217,7 +217,7 @@ fn work(report: &RunReport, setup_factorizations: u64) -> Work {
     }
 }
 
-/// Most looks of a run at surfaces that may be in each other: a look costs as much as some steps.
+/// Most checks of a run for surfaces that may overlap: a check costs as much as some steps.
 const LOOKS: usize = 10;
 
 /// Compares each state with the reference as it comes; keeps no copies.

@@ -33,7 +33,7 @@ pub struct CaseInfo {
     /// Simulated time (s).
     #[serde(deserialize_with = "gaps::null_is_nan")]
     pub duration_s: f64,
-    /// The method of the reference, in words.
+    /// Description of the method of the reference.
     pub reference: String,
     /// The reference's own estimated relative error (fraction).
     #[serde(deserialize_with = "gaps::null_is_nan")]
@@ -202,7 +202,7 @@ pub struct Work {
     /// Newton iterations.
     #[serde(default)]
     pub newton_iterations: u64,
-    /// Trials of a line search that were refused or led too little down.
+    /// Trials of a line search that were refused or decreased too little.
     #[serde(default)]
     pub backtracks: u64,
     /// Steps whose velocity was reduced, because the energy would have risen.

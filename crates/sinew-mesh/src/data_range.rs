@@ -10,9 +10,9 @@ pub struct DataRange {
     pub values: usize,
     /// Numbers that are missing.
     pub missing: usize,
-    /// The least value; infinite if there are none.
+    /// The least value; infinite without values.
     pub least: f64,
-    /// The greatest value; infinite if there are none.
+    /// The greatest value; infinite without values.
     pub greatest: f64,
     /// True if all values are whole numbers, as labels are.
     pub is_whole: bool,
@@ -24,7 +24,7 @@ pub struct DataRange {
 const COUNTED: usize = 4096;
 
 impl DataRange {
-    /// Looks at values, among which NaN stands for none.
+    /// Range of values, among which NaN means that a value is missing.
     #[must_use]
     pub fn of(values: impl IntoIterator<Item = f64>) -> DataRange {
         let mut range = DataRange {

@@ -19,7 +19,7 @@ use crate::warning::Warning;
 pub struct Mesh {
     /// Coordinates of the nodes in file order, in the file's length unit. Nodes that no cell uses are kept.
     pub points: Vec<[f64; 3]>,
-    /// The tag of each point in the file: at least 1, in any order, with gaps. Empty stands for `1..=points.len()`.
+    /// The tag of each point in the file: at least 1, in any order, with gaps. Empty means `1..=points.len()`.
     pub node_tags: Vec<u64>,
     /// The geometrical entity on which each point lies (meshio's `gmsh:dim_tags`). Empty if the file has none (1, 2.2).
     pub node_entities: Vec<Entity>,

@@ -20,7 +20,7 @@ use crate::error::RecordRunError;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Energies {
     pub(crate) t: f64,
-    /// Time (s) since the last look.
+    /// Time (s) since the last check.
     pub(crate) span: f64,
     pub(crate) kinetic: f64,
     pub(crate) elastic: f64,
@@ -200,7 +200,7 @@ impl Balance {
             is_watched: false,
             has_rows_of_steps: rows.is_every_step(),
         };
-        // Beside steps that are sweeps a look at each of them costs too much where rows are rare for that reason.
+        // Beside steps that are sweeps, a check of each of them costs too much where rows are rare for that reason.
         balance.takes_energy = method.is_some_and(|method| takes_energy(method, body.system()));
         balance.is_watched = balance.takes_energy
             && !balance.has_memory()

@@ -1,4 +1,4 @@
-//! The file from which a run goes on.
+//! The file from which a run continues.
 
 use sha2::{Digest, Sha256};
 use sinew_scene::output::OwnedFolder;
@@ -58,7 +58,7 @@ impl Checkpoint {
     }
 
     /// Restores the world of the last checkpoint in a folder, after a check that its frames are unchanged; `None` if
-    /// there is none yet.
+    /// there is no checkpoint yet.
     pub(crate) fn restore(
         folder: &OwnedFolder,
         world: &mut World,

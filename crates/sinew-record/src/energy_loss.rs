@@ -13,17 +13,17 @@ use crate::error::RecordRunError;
 use crate::recorder::Schedules;
 use crate::taken_energy::Taken;
 
-/// Steps of a method that a clamp may brake for each look: a look costs up to three of its steps.
+/// Steps of a method that a clamp may brake per check: a check costs up to three of its steps.
 const STEPS_FOR_A_LOOK: usize = 20;
 
-/// Looks at a run of such a method, where it has as many steps.
+/// Checks in a run of such a method, if it has as many steps.
 const LOOKS: usize = 100;
 
 /// A recorder that measures the energy taken by a dissipative method at each step, or by a clamp now and then, and
 /// reports it.
 pub struct EnergyLoss {
     body: Arc<SceneBody>,
-    /// None where nothing is looked at.
+    /// `None` if nothing is checked.
     looks: Option<(Balance, Schedule)>,
     saturates: bool,
     v: Vec<f64>,
@@ -31,7 +31,7 @@ pub struct EnergyLoss {
 }
 
 impl EnergyLoss {
-    /// Looks at a run of this scene by a method that is set up for it.
+    /// Checks of a run of this scene by a method that is set up for it.
     #[must_use]
     pub fn new(simulation: &Simulation, method: &dyn Stepper) -> Self {
         let body = simulation.body();

@@ -9,7 +9,7 @@ use sinew_scene::output::OutputError;
 use sinew_scene::{CuttingError, ProbeRowError, ReactionError, SceneError};
 use sinew_world::{InputFileError, ReplayError, WorldStepError};
 
-/// A reason for which a run leaves no result, or cannot go on.
+/// A reason for which a run leaves no result, or cannot continue.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum RecordRunError {
@@ -98,7 +98,7 @@ pub enum RecordRunError {
     /// An input that cannot be read.
     #[error("{0}; the run reads it")]
     NoInput(#[from] InputFileError),
-    /// A session that is repeated, whose folder a run is to go on with.
+    /// A session that is repeated, whose folder a run is to continue.
     #[error("{} holds a session that was repeated by its log, with which no run can go on: repeat it again, by `sinew run --replay`", folder.display())]
     Replay {
         /// The folder.

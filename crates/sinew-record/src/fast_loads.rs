@@ -1,9 +1,9 @@
-//! Loads and motions that turn faster than energies are looked at.
+//! Loads and motions that vary faster than energies are checked.
 
 use sinew_core::Ramp;
 use sinew_scene::SceneBody;
 
-/// Looks within half a wave of a sine from which on its work is known to 10 %.
+/// Checks within half a wave of a sine from which on its work is known to 10 %.
 const LOOKS: f64 = 5.0;
 
 /// A sentence which says that checks of energy every `span` (s) are too rare to show the effect of the method, since a
@@ -22,7 +22,7 @@ pub(crate) fn unseen(body: &SceneBody, span: f64) -> Option<String> {
     })
 }
 
-/// The longest time (s) between two looks that see how a ramp turns; `None` where it does not turn.
+/// The longest time (s) between two checks that resolve the reversals of a ramp; `None` if it does not reverse.
 fn look(ramp: &Ramp) -> Option<f64> {
     match ramp {
         Ramp::Sine { frequency, .. } => Some(0.5 / frequency / LOOKS),

@@ -80,7 +80,7 @@ impl Tets {
     }
 }
 
-/// Writes frames, and keeps the room for them.
+/// Writes frames, and keeps the buffers for them.
 #[derive(Debug)]
 pub(crate) struct Fields {
     body: Arc<BodyModel>,
@@ -121,7 +121,7 @@ impl Fields {
             u: of_nodes(true),
             v: of_nodes(true),
             a: of_nodes(settings.acceleration),
-            // Lips of cuts alone have none: frames before and after a cut have the same fields.
+            // Cut faces alone have none: frames before and after a cut have the same fields.
             contact: model.needs_contact().then(|| ContactFields::new(nodes)),
             tets: Tets::default(),
             regions: model.region_of().iter().map(number).collect(),

@@ -1,4 +1,4 @@
-//! The size of a run's folder, told before the run.
+//! The size of a run's folder, predicted before the run.
 
 use sinew_scene::{ProbeRows, Simulation};
 

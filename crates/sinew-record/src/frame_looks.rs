@@ -61,7 +61,7 @@ impl FrameLooks {
         Self::with(simulation, Schedules::of(simulation))
     }
 
-    /// Checks of a replay of so many steps of this length (s) on average.
+    /// Checks of a replay of `steps` steps, `dt` (s) long on average.
     #[must_use]
     pub fn of_steps(simulation: &Simulation, (steps, dt): (usize, f64)) -> Self {
         Self::with(simulation, Schedules::of_steps(simulation, steps, dt))

@@ -9,10 +9,10 @@ use sinew_world::Recorder;
 
 use crate::made_energy::{THERMAL, has_stored_energy, remedy};
 
-/// Most looks at a run.
+/// Most checks in a run.
 const MOST_LOOKS: usize = 16;
 
-/// Steps for each look: a look costs about two forces.
+/// Steps per check: a check costs about two evaluations of forces.
 const STEPS_FOR_A_LOOK: usize = 100;
 
 /// Energy, as a multiple of what start and loads account for, from which on a motion is wrong.
@@ -26,7 +26,7 @@ const FAR_BEYOND: f64 = 2.0;
 /// and go between two checks, or energy that memory stored in a deformed start.
 #[derive(Debug)]
 pub struct EnergyGrowth {
-    /// None where nothing is looked at.
+    /// `None` if nothing is checked.
     spacing: Option<usize>,
     /// The last step.
     end: usize,
@@ -43,7 +43,7 @@ pub struct EnergyGrowth {
 }
 
 impl EnergyGrowth {
-    /// Looks at a run of this simulation.
+    /// Checks of a run of this simulation.
     #[must_use]
     pub fn new(simulation: &Simulation) -> Self {
         let end = simulation.run().steps;
@@ -79,7 +79,7 @@ impl EnergyGrowth {
         let dofs = state.u.len();
         self.load.resize(dofs, 0.0);
         system.external_force(LoadTime::at(state.t()), &state.u, &mut self.load);
-        // Without a finite energy there is none to tell.
+        // Without a finite energy, infinity.
         let energy = system.energy(&state.u, &state.v);
         let energy = energy.map_or(f64::INFINITY, Energy::total);
         let tools = self.tools.as_ref();

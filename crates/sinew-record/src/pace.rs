@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 /// Wall time between two checks.
 const LOOK: Duration = Duration::from_millis(40);
 
-/// Says after how many steps a run looks up, to show where it is and to see whether it is to stop: several times a
+/// Number of steps after which a run checks in, to show its progress and to see whether it is to stop: several times a
 /// second, however long a step takes.
 #[derive(Debug, Clone, Copy)]
 pub struct Pace {
@@ -15,7 +15,7 @@ pub struct Pace {
 }
 
 impl Pace {
-    /// A run that begins now, after so many steps.
+    /// A run that begins now, after `step` steps.
     #[must_use]
     pub fn new(step: usize) -> Self {
         Self {
@@ -25,13 +25,13 @@ impl Pace {
         }
     }
 
-    /// The step after which it looks up next.
+    /// The step after which the next check is due.
     #[must_use]
     pub fn next(&self) -> usize {
         self.at.saturating_add(self.steps)
     }
 
-    /// It looks up after a step.
+    /// Notes a check after a step.
     pub fn look(&mut self, step: usize) {
         let taken = step.saturating_sub(self.at);
         if taken > 0 {

@@ -209,7 +209,7 @@ pub(crate) struct Work {
 }
 
 impl Work {
-    /// Share of the velocities of so many steps that were saturated.
+    /// Share of the velocities of `steps` steps that were saturated.
     pub(crate) fn saturated_share(&self, steps: usize, dofs: usize) -> f64 {
         self.saturated as f64 / (steps * dofs).max(1) as f64
     }

@@ -214,7 +214,7 @@ impl RunFolder {
         Ok(Self { folder, record })
     }
 
-    /// Opens the folder of an unfinished run to go on with it, and its scene.
+    /// Opens the folder of an unfinished run, to continue it, and its scene.
     ///
     /// # Errors
     /// [`RecordRunError`] for a folder without a run, for one of another version, and for inputs that changed since.
@@ -401,7 +401,7 @@ impl RunFolder {
         })
     }
 
-    /// Writes what stands in the folder of a run that has come to an end.
+    /// Writes the files that the folder of a finished run holds.
     pub(crate) fn complete(
         &self,
         schedules: &Schedules,
@@ -438,7 +438,7 @@ impl RunFolder {
         if let Some(body) = moving.model().body()
             && matches!(ended, Ended::Refused { .. } | Ended::Interrupted { .. })
         {
-            // A run that came to its end, or beyond all bounds, has been looked at as far as it goes.
+            // A run that came to its end, or beyond all bounds, has been checked as far as it goes.
             let mut overlaps = OverlapWatch::new(body);
             overlaps.look_at_state(state)?;
             progress.seen.see_overlap(overlaps.deepest());

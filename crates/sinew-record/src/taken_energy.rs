@@ -1,4 +1,4 @@
-//! Energy that a method takes away by itself.
+//! Energy that a method dissipates numerically.
 
 use serde::{Deserialize, Serialize};
 use sinew_scene::SceneBody;
@@ -7,15 +7,15 @@ use crate::balance::Energies;
 use crate::fast_loads::unseen;
 use crate::made_energy::{THERMAL, keeper};
 
-/// Share of what was put in from which on it is told.
+/// Share of what was put in from which on it is reported.
 const MUCH: f64 = 0.1;
 
-/// The most that was taken (J), and the most that was put in, by looks.
+/// The most that was taken (J), and the most that was put in, over all checks.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Taken {
     taken: f64,
     pub(crate) given: f64,
-    /// The longest time (s) between two looks.
+    /// The longest time (s) between two checks.
     #[serde(default)]
     pub(crate) span: f64,
 }

@@ -18,7 +18,7 @@ pub struct Schedule {
 }
 
 impl Schedule {
-    /// Every step, or as many as there is room for.
+    /// At most `most` steps, evenly spaced: every step if they are no more.
     #[must_use]
     pub fn at_most(most: usize, steps: usize) -> Self {
         Self {

@@ -85,7 +85,7 @@ const LARGEST: u64 = 16 << 20;
 /// The text of a scene file. Pipes, devices and files without end are not waited for.
 pub(crate) fn text_of(path: &Path) -> io::Result<String> {
     let refused = |reason: String| io::Error::new(ErrorKind::InvalidInput, reason);
-    // Looked at before it is opened, which would wait for the writer of a pipe.
+    // Checked before it is opened, which would wait for the writer of a pipe.
     if !std::fs::metadata(path)?.is_file() {
         return Err(refused("it is no file; expected a file of TOML".to_owned()));
     }

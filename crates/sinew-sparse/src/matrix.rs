@@ -167,7 +167,7 @@ impl BlockMatrix {
     /// Takes the entries of a matrix of the same layers whose pattern is a part of this one's, and 0 elsewhere.
     ///
     /// # Errors
-    /// [`AssemblyError::NotNeighbours`] where it has a block that this one has no room for, and
+    /// [`AssemblyError::NotNeighbours`] where it has a block that is not in the pattern of this one, and
     /// [`AssemblyError::CellOutOfRange`] where it has more cells. The entries are unspecified then.
     pub fn set_to(&mut self, other: &Self) -> Result<(), AssemblyError> {
         if Arc::ptr_eq(&self.pattern, &other.pattern) && self.layers == other.layers {
@@ -183,8 +183,8 @@ impl BlockMatrix {
         Ok(())
     }
 
-    /// Takes over rows, whose matrix is to be symmetric afterwards as it was. Returns whether all rows were laid out anew, which makes room
-    /// for `spare_cells` more than these: without it nothing is allocated.
+    /// Takes over rows, whose matrix is to be symmetric afterwards as it was. Returns true if all rows were laid out
+    /// again, which reserves space for `spare_cells` more than these: without it nothing is allocated.
     ///
     /// # Errors
     /// [`AssemblyError::Row`] and [`AssemblyError::CellOutOfRange`] where rows have other columns than they may; nothing is changed then.
@@ -217,14 +217,15 @@ impl BlockMatrix {
         Ok(!has_room)
     }
 
-    /// The same matrix on a pattern of its own, with room for so many more cells: [`BlockMatrix::take_rows`] allocates nothing until it is
-    /// used up.
+    /// The same matrix on a pattern of its own, with space for `cells` more cells: [`BlockMatrix::take_rows`] allocates
+    /// nothing until it is used up.
     #[must_use]
     pub fn with_room(&self, cells: usize) -> Self {
         self.packed(0, 0, cells)
     }
 
-    /// The same with room for so many cells and blocks, and for spare cells with as many blocks as others have.
+    /// The same with space for `cells` cells and `blocks` blocks, and for `spare` more cells with as many blocks as
+    /// others have.
     fn packed(&self, cells: usize, blocks: usize, spare: usize) -> Self {
         let (cells, blocks) = (
             cells + spare,

@@ -13,7 +13,7 @@ pub struct Pattern {
     starts: Vec<usize>,
     /// Blocks of each row.
     counts: Vec<u32>,
-    /// Column of the block at each position; what rows have left behind is not looked at.
+    /// Column of the block at each position; what rows have left behind is not read.
     columns: Vec<u32>,
     /// Place of the cell itself among its neighbours.
     diagonal: Vec<u32>,
@@ -68,8 +68,8 @@ impl Pattern {
         Ok(pattern)
     }
 
-    /// The pattern of those cells that `keep` chooses, numbered anew in the same order: what remains of a matrix
-    /// when the rows and columns of the other cells are struck out.
+    /// The pattern of those cells that `keep` chooses, renumbered in the same order: what remains of a matrix when the
+    /// rows and columns of the other cells are struck out.
     #[must_use]
     pub fn restricted(&self, keep: impl Fn(u32) -> bool) -> Self {
         let mut number = vec![None; self.cells()];
@@ -98,7 +98,7 @@ impl Pattern {
         pattern
     }
 
-    /// A pattern without rows, and with room for `cells` of them and `blocks` blocks.
+    /// A pattern without rows, and with space for `cells` of them and `blocks` blocks.
     fn with_room(cells: usize, blocks: usize) -> Self {
         Self {
             starts: Vec::with_capacity(cells),
@@ -119,7 +119,8 @@ impl Pattern {
         self.blocks = self.columns.len();
     }
 
-    /// The same pattern with its rows one after the other, and room for so many further cells and blocks.
+    /// The same pattern with its rows one after the other, and space for `cells` further cells and `blocks` further
+    /// blocks.
     pub(crate) fn packed(&self, cells: usize, blocks: usize) -> Self {
         let mut packed = Self::with_room(self.cells() + cells, self.blocks + blocks);
         for cell in 0..self.cells() {

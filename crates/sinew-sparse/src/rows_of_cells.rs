@@ -24,7 +24,7 @@ pub(crate) struct RowOfCell<'a> {
 }
 
 impl RowsOfCells {
-    /// No rows, and room for so many rows and blocks of three layers.
+    /// No rows, and space for `rows` rows and `blocks` blocks of three layers.
     #[must_use]
     pub fn with_room(rows: usize, blocks: usize) -> Self {
         Self {
@@ -75,7 +75,7 @@ impl RowsOfCells {
         })
     }
 
-    /// Checks that a matrix with blocks of so many entries can take them over; the number of its cells afterwards.
+    /// Checks that a matrix with blocks of `len` entries can take them over; the number of its cells afterwards.
     pub(crate) fn check(&self, pattern: &Pattern, len: usize) -> Result<usize, AssemblyError> {
         let mut cells = pattern.cells();
         if self.entries.len() != len * self.columns.len() {

@@ -147,7 +147,7 @@ pub fn bodies() -> impl Strategy<Value = Body> {
     bodies_up_to(4)
 }
 
-/// All orders of so many nodes.
+/// All orders of `nodes` nodes.
 pub fn orders(nodes: usize) -> impl Strategy<Value = Vec<u32>> {
     Just((0..nodes as u32).collect::<Vec<u32>>()).prop_shuffle()
 }
@@ -172,7 +172,7 @@ const EVEN: [[usize; 4]; 12] = [
     [3, 2, 1, 0],
 ];
 
-/// An even permutation for each of so many tetrahedra.
+/// An even permutation for each of `tets` tetrahedra.
 pub fn turns(tets: usize) -> impl Strategy<Value = Vec<usize>> {
     vec(0..EVEN.len(), tets)
 }

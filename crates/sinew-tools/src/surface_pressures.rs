@@ -5,15 +5,17 @@ use crate::vector::{Vector, cross, dot, sub};
 /// Finds the pressures of contact at the points of a surface.
 #[derive(Clone, Debug, Default)]
 pub struct SurfacePressures {
-    /// The area (m2) at each point that looks against its force.
+    /// The area (m2) at each point that faces against its force.
     areas: Vec<f64>,
 }
 
 impl SurfacePressures {
-    /// Takes where each point is (m) and the force (N) on it, with outward triangles between points; writes the pressure (Pa) of each.
+    /// Takes the position (m) of each point and the force (N) on it, with outward triangles between points; writes the
+    /// pressure (Pa) of each.
     ///
-    /// The pressure at a point is its force over its share of the surface as seen along the force: a third of each triangle that
-    /// looks against it. So a plate that presses evenly on a cube has one pressure up to the edges, whose other sides it does not see.
+    /// The pressure at a point is its force over its share of the surface as seen along the force: a third of each
+    /// triangle that faces against it. So a plate that presses evenly on a cube has one pressure up to the edges, whose
+    /// other sides it does not see.
     pub fn take(
         &mut self,
         triangles: &[[u32; 3]],

@@ -1,4 +1,4 @@
-//! The room that a tool passes through in a step.
+//! The space that a tool passes through in a step.
 
 use crate::pose::Pose;
 use crate::shape::Shape;
@@ -15,7 +15,7 @@ pub fn swept_box(shape: &Shape, before: &Pose, after: &Pose) -> Option<[[f64; 3]
     around(parts.map(|part| Stroke::new(part, *before, *after).bounds()))
 }
 
-/// The smallest box (m) around some; none where there is none of one of them, or no box at all.
+/// The smallest box (m) around all boxes; `None` if one of them is `None`, or without any box.
 pub(crate) fn around(mut boxes: impl Iterator<Item = Option<[Vector; 2]>>) -> Option<[Vector; 2]> {
     let first = boxes.next()??;
     boxes.try_fold(first, |[low, high], next| {

@@ -60,7 +60,7 @@ pub fn length(a: Vector) -> f64 {
     largest * dot(a, a).sqrt()
 }
 
-/// The length of a vector and its direction, which is `otherwise` where there is none.
+/// The length of a vector and its direction, or `otherwise` for a vector of length 0.
 #[must_use]
 pub fn length_and_direction(a: Vector, otherwise: Vector) -> (f64, Vector) {
     let length = length(a);

@@ -103,7 +103,7 @@ pub fn export(case: &Case, folder: &OutputFolder) -> Result<Exported, ExportErro
         reals(&rows.values),
         reals(operators.mass()),
         reals(&force),
-        // Last, so that a head never stands beside parts of another case.
+        // Last, so that a head is never next to parts of another case.
         head.to_string().into_bytes(),
     ];
     for (name, content) in FILES.iter().zip(&contents) {

@@ -14,7 +14,7 @@ pub struct Target {
     pub row: Row,
 }
 
-/// Errors (fractions) that are looked for.
+/// Errors (fractions) that are sought.
 const ERRORS: [f64; 3] = [1e-2, 1e-3, 1e-6];
 
 /// The same method and step as the other program's first, then the cheapest run for each error, as

@@ -28,7 +28,7 @@ const NEO_HOOKEAN: [(&str, &[&str]); 3] = [
     ),
 ];
 
-/// Cubes by which the largest one in real time is told.
+/// Cubes by which the largest one in real time is predicted.
 pub(super) struct Sizes {
     pub(super) tissue: &'static str,
     /// The cubes, small ones first.

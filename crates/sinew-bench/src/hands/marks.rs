@@ -7,7 +7,7 @@ use crate::planned::{is_yardstick, yardstick};
 use crate::report::{number, percent};
 use crate::results::{Mark, MarkVerdict};
 
-/// Largest error (fraction) of a reference by which errors of some per cent are told.
+/// Largest error (fraction) of a reference by which errors of some per cent can be measured.
 const OF_REFERENCE: f64 = 1e-3;
 
 /// Largest error (fraction) of motion and of forces in steps that follow the stiffness.

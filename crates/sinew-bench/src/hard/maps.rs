@@ -205,8 +205,8 @@ pub(crate) fn ids(quick: bool) -> Vec<&'static str> {
     wanted(quick).map(|varied| varied.id).collect()
 }
 
-/// The maps, `begins` told of each, and what is missing of them with its reason. A quick run makes
-/// one of them, coarser.
+/// The maps, and what is missing of them with its reason; `begins` is notified of each. A quick run makes one of them,
+/// coarser.
 pub(crate) fn all(quick: bool, mut begins: impl FnMut(&str)) -> (Vec<StabilityMap>, Vec<Missing>) {
     let (mut maps, mut missing) = (Vec::new(), Vec::new());
     for varied in wanted(quick) {

@@ -47,7 +47,7 @@ fn asked(case: &'static str, asked: &'static str, limit: f64) -> Asked {
     Asked { case, asked, limit }
 }
 
-/// Every mark that can be given on scenes and on bodies, `begins` told of each as it begins.
+/// Every mark that can be given on scenes and on bodies; `begins` is notified of each as it begins.
 pub(crate) fn all(measured: &Measured<'_>, mut begins: impl FnMut(&str)) -> Vec<Mark> {
     let mut marks = of_scenes(measured, &mut begins);
     for tissue in large::all() {

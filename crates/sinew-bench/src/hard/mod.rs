@@ -36,10 +36,9 @@ pub struct HardBench {
 }
 
 impl HardBench {
-    /// Measures every case on one thread and gives the marks. A run that diverges is a row like
-    /// any other, one that cannot be made is listed with its reason, and a mark that is not passed
-    /// stands in the results as such. So do marks on a scene that cannot be read, which is listed
-    /// too.
+    /// Measures every case on one thread and gives the marks. A run that diverges is a row like any other, one that
+    /// cannot be made is listed with its reason, and a mark that is not passed is listed in the results as such. So do
+    /// marks on a scene that cannot be read, which is listed too.
     ///
     /// # Errors
     /// [`BenchError`] where no scene can be read.

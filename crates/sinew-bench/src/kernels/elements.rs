@@ -260,7 +260,7 @@ const TIMES: [(&str, &str, f64); 3] = [
     ("corotational", "p1", 2.4),
 ];
 
-/// Laws whose vectors in single precision should be so many times as fast as plain numbers in double.
+/// Laws whose vectors in single precision should be [`GAIN`] times as fast as plain numbers in double.
 const GAINS: [&str; 2] = ["stvk", "neo-hookean"];
 const GAIN: f64 = 4.5;
 

@@ -9,7 +9,7 @@ const CUBE: FinerMeshes = FinerMeshes {
     is_violent: true,
 };
 
-/// Figures that others publish, which stand beside ours.
+/// Figures that others publish, listed next to ours.
 const OF_SOFA: &[&str] = &[
     "Published for this beam (SofaCUDA_benchmarks.csv in SOFA's SofaCUDA plugin, read at 2a278d89; ten runs of 1000 steps each, f32), in \
      milliseconds a step: corotational tetrahedra 33.6 (i7-10750H) and 32.3 (Ryzen 3800X), on graphics processors 2.80 (RTX 2070) and 3.82 \

@@ -10,7 +10,7 @@ use crate::results::{Mark, MarkVerdict};
 /// Largest rise of the energy, over all that was brought in, by which rounding is not exceeded.
 const ROUNDING: f64 = 1e-11;
 
-/// All marks; `begins` is told of each that takes time.
+/// All marks; `begins` is notified of each that takes time.
 pub(super) fn all(rows: &[Row], quick: bool, begins: impl FnMut(&str)) -> Vec<Mark> {
     let mut marks = vec![
         energy_never_rises(rows),
@@ -87,8 +87,8 @@ fn steps_follow_the_stiffness(rows: &[Row]) -> Mark {
     }
 }
 
-/// Errors at 10 ms of an independent implementation, of the methods of a quick run behind the yardstick, and whether that takes the same steps: its sweeps set out from rest, and
-/// those here from where the velocity leads.
+/// Errors at 10 ms of an independent implementation, of the methods of a quick run behind the yardstick, and whether
+/// that takes the same steps: its sweeps set out from rest, and those here from the displacement by the velocity.
 const OF_OTHERS: [(f64, bool); 2] = [(0.0044, true), (0.0178, false)];
 
 /// The pushed cube at 10 ms, beside an independent implementation.

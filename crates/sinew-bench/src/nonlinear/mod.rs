@@ -1,6 +1,7 @@
 //! Large deformations: every method, law and element on scenes where tissue is pressed, twisted and let go.
 //!
-//! Errors in time are against a reference of the same body in steps of no length; errors of the mesh, against finer meshes, stand apart.
+//! Errors in time are against a reference of the same body in steps of no length; errors of the mesh, against finer
+//! meshes, are listed separately.
 
 mod cases;
 mod equal_error;

@@ -27,7 +27,7 @@ impl Material {
         self.law
     }
 
-    /// The material in words.
+    /// Description of the material.
     pub(crate) fn words(self) -> String {
         format!("{}, {}", self.law, self.element)
     }

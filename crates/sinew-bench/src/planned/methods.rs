@@ -5,7 +5,7 @@ use sinew_measure::{MethodChoice, Row};
 
 const SUBSTEPS: &str = "substeps";
 
-/// Central difference whose parts of a step follow the stiffness: the method to which costs are compared.
+/// Central difference whose substeps follow the stiffness: the method to which costs are compared.
 pub(crate) fn yardstick() -> MethodChoice {
     with(
         "central-difference",

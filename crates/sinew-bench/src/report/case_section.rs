@@ -153,7 +153,7 @@ fn cell(column: &Column, row: &Row) -> Cell {
     }
     let verdict = row.verdict();
     let text = match verdict {
-        // The cell says so in words.
+        // The cell says so as text.
         RowVerdict::Diverged | RowVerdict::Refused => text,
         verdict => format!("{text} {}", verdict.symbol()),
     };

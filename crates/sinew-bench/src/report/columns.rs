@@ -5,13 +5,13 @@ use sinew_measure::Row;
 
 use super::{missing::shown, number, verdict};
 
-/// A column: its head, what stands in it, what it is sorted by.
+/// A column: its head, its cells, what it is sorted by.
 pub(super) struct Column {
     pub(super) head: &'static str,
     pub(super) unit: &'static str,
     pub(super) explained: &'static str,
     pub(super) cell: fn(&Row) -> String,
-    /// Numbers are sorted by this and stand on the right; none sorts by the text.
+    /// Numbers are sorted by this and aligned on the right; none sorts by the text.
     pub(super) key: Option<fn(&Row) -> f64>,
 }
 
@@ -35,7 +35,7 @@ impl Column {
     }
 }
 
-/// The error stands before the speeds and next to them.
+/// The error comes before the speeds and next to them.
 static COLUMNS: [Column; 13] = [
     Column {
         head: "method",

@@ -21,10 +21,10 @@ const TITLE: f64 = 15.0;
 const HEAD_TEXT: f64 = 13.0;
 /// Height of a row.
 const ROW: f64 = 22.0;
-/// Room that a sign needs on each side of its middle.
+/// Space that a sign needs on each side of its middle.
 const SIGN: f64 = 6.0;
 const COLUMNS: usize = 3;
-/// Room above a panel for its name, and below it for its axis.
+/// Space above a panel for its name, and below it for its axis.
 const HEAD: f64 = 40.0;
 const FOOT: f64 = 44.0;
 const BETWEEN: f64 = 22.0;
@@ -73,7 +73,7 @@ impl Layout {
         // Values, and the parameter's name along them.
         let gutter = labels.fold(20.0, f64::max) + 10.0 + TEXT + 8.0;
         let steps = Steps::of(map);
-        // What stands above a panel has room there.
+        // The texts above a panel must fit there.
         let heads = map.panels.iter().flat_map(|panel| {
             [
                 text_width(&panel.method, HEAD_TEXT),

@@ -60,7 +60,7 @@ fn table(marks: &[Mark], style: TableStyle, escape: impl Fn(&str) -> String) -> 
     table
 }
 
-/// The marks as a section of the page; nothing where there are none.
+/// The marks as a section of the page; nothing without marks.
 pub(super) fn section(page: &mut Page, marks: &[Mark]) {
     if marks.is_empty() {
         return;

@@ -5,7 +5,7 @@ use sinew_draw::page::{Cell, Column, Table, TableRow};
 
 use crate::results::Missing;
 
-/// A number by its format, or what stands in its place.
+/// A number by its format, or the text that replaces it.
 pub(super) fn shown(x: f64, format: impl Fn(f64) -> String) -> String {
     if x.is_finite() {
         format(x)

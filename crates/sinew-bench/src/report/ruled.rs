@@ -1,4 +1,4 @@
-//! The look of tables on a terminal.
+//! The appearance of tables on a terminal.
 
 use comfy_table::{CellAlignment, ContentArrangement, LineStyle, Table, TableStyle};
 

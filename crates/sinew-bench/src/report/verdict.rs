@@ -1,11 +1,11 @@
-//! The look of verdicts: a symbol and a word with every colour.
+//! The appearance of verdicts: a symbol and a word with every colour.
 
 use sinew_draw::Colour;
 use sinew_measure::{Row, RowOutcome, RowVerdict};
 
 use super::{missing::shown, number};
 
-/// The meaning of a verdict, in words.
+/// Description of the meaning of a verdict.
 pub(super) fn meaning(verdict: RowVerdict) -> &'static str {
     match verdict {
         RowVerdict::Accurate => "error ≤ 5 %",
@@ -29,7 +29,7 @@ pub(super) fn tint(verdict: RowVerdict) -> Colour {
     }
 }
 
-/// The error in per cent without the sign, or what stands in its place.
+/// The error in per cent without the sign, or the text that replaces it.
 pub(super) fn error(row: &Row) -> String {
     match (row.outcome, row.error) {
         (RowOutcome::Diverged, _) => match row.diverged_at_s {

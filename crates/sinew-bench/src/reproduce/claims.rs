@@ -12,7 +12,7 @@ pub struct Claim {
     pub place: &'static str,
     /// The claim, in short.
     pub says: &'static str,
-    /// The measured figures, in words.
+    /// Description of the measured figures.
     pub measured: String,
     /// Verdict on the claim.
     pub holds: Holds,

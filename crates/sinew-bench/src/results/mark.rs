@@ -5,13 +5,13 @@ use serde::{Deserialize, Serialize};
 /// A pass mark and the figure measured for it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Mark {
-    /// The case in words.
+    /// Description of the case.
     pub case: String,
-    /// The question, in words.
+    /// Description of the question.
     pub asked: String,
-    /// The measured figure in words, with its unit, or why there is none.
+    /// Description of the measured figure, with its unit, or why it is absent.
     pub measured: String,
-    /// The measured figure; none where there is none or it is not finite.
+    /// The measured figure; `None` if it is absent or not finite.
     #[serde(default)]
     pub figure: Option<f64>,
     /// The largest figure that passes.

@@ -5,8 +5,8 @@ use std::fmt;
 use serde::{Deserialize, Serialize};
 use sinew_measure::Gap;
 
-/// A scene, a run or a number that was asked for and is not there. In its place stands `null` in
-/// JSON and `n/a` in tables; everything else is as it would be without it.
+/// A scene, a run or a number that was asked for and is not there. `null` replaces it in JSON and `n/a` in tables;
+/// everything else is as it would be without it.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Missing {
     /// Id of the case or the map; the file where a scene could not be read.
@@ -17,7 +17,7 @@ pub struct Missing {
     /// The number's field; none where more than a number is missing.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub field: Option<String>,
-    /// The text that stands in place of a number, as in `inf`; none where nothing does.
+    /// The text that replaces a number, such as `inf`; `None` without any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub value: Option<String>,
     /// Why it is missing.
@@ -53,7 +53,7 @@ impl Missing {
         }
     }
 
-    /// The number and what stands in its place, or all of it.
+    /// The number and the text that replaces it, or all of it.
     #[must_use]
     pub fn what(&self) -> String {
         match (&self.field, &self.value) {

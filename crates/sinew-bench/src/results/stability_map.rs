@@ -9,7 +9,7 @@ use sinew_measure::{Row, RowOutcome, RowVerdict};
 pub struct StabilityMap {
     /// Name for files and anchors.
     pub id: String,
-    /// The scene and what is varied, in words.
+    /// Description of the scene and of what is varied.
     pub title: String,
     /// The parameter that is varied, with its unit.
     pub parameter: String,

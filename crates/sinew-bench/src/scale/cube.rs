@@ -28,7 +28,7 @@ pub(super) struct Cube {
     pub(super) critical_step: f64,
 }
 
-/// The name of a cube of so many cells a side, by its nodes.
+/// The name of a cube of `cells` cells a side, by its nodes.
 pub(super) fn name(cells: usize) -> String {
     format!("cube {}^3", cells + 1)
 }

@@ -3,7 +3,7 @@
 use sinew_measure::{CaseError, MeasureError, ThreadError};
 use sinew_scene::SceneError;
 
-/// Why a bench over sizes cannot go on.
+/// Reasons for which a bench over sizes cannot continue.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ScaleError {

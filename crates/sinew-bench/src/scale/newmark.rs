@@ -16,7 +16,8 @@ const ASSUMED: f64 = 4e9;
 const MEMORY: f64 = 4.0 / 3.0;
 const TIME: f64 = 2.0;
 
-/// Why a factor of a body with so many tetrahedra is not tried, judged from the factors of smaller ones.
+/// The reason for which a factor of a body with `tets` tetrahedra is not tried, judged from the factors of smaller
+/// ones.
 pub(super) fn refused(rows: &[ScaleRow], tets: f64) -> Option<String> {
     judged(rows, tets, SHARE * available())
 }

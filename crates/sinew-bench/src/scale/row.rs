@@ -21,7 +21,7 @@ pub struct ScaleBody {
     pub build_wall_s: f64,
     /// Memory (bytes per tetrahedron) of mesh and matrices; none where no allocator counts it.
     pub bytes_per_tet: Option<f64>,
-    /// The method of the reference and its check, in words.
+    /// Description of the method of the reference and its check.
     pub reference: String,
     /// The reference's own estimated relative error (fraction).
     pub reference_error: f64,

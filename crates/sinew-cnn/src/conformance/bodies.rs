@@ -169,8 +169,8 @@ pub fn batches_of_bodies_allocate_nothing(methods: &[Method], bodies: &[Body], m
     }
 }
 
-/// A step that the law refuses ends the batch with its error, and the machine then goes on from another state as if nothing
-/// had been.
+/// A step that the law refuses ends the batch with its error, and the machine then continues from another state as if
+/// nothing had happened.
 pub fn a_refused_body_leaves_the_machine_usable(methods: &[Method], bodies: &[Body], make: &Make) {
     for run in runs(methods, bodies).filter(|run| run.body.refuses) {
         let mut machine = run.loaded(make());

@@ -13,8 +13,8 @@ use super::{Make, Method};
 use crate::Machine;
 use crate::program::{LoadAt, Physics, Program, Register};
 
-/// A step that a system refuses ends the batch with its error, and the machine then goes on from
-/// another state as if nothing had been.
+/// A step that a system refuses ends the batch with its error, and the machine then continues from another state as if
+/// nothing had happened.
 pub fn a_refused_trial_leaves_the_machine_usable(methods: &[Method], make: &Make) {
     let kind = Kind {
         layers: Layers::Three,

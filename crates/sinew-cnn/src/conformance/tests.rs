@@ -64,7 +64,7 @@ enum Mistake {
     UpdatesBackwards,
     /// Gives the weights of an update's terms to each other's registers.
     WeightsExchanged,
-    /// Registers that follow from the state are not made anew when a batch begins.
+    /// Registers that follow from the state are not recomputed when a batch begins.
     EntryForgotten,
     /// The first step is as any other.
     StartForgotten,
@@ -84,7 +84,7 @@ enum Mistake {
     CountsTooMuch,
     /// The velocity loses its last bit when a batch begins.
     RoundsWhenABatchBegins,
-    /// After a refused step it does not go on.
+    /// After a refused step it does not continue.
     StopsAfterARefusal,
     /// A refused step is passed over in silence.
     HidesARefusal,

@@ -118,7 +118,7 @@ pub struct FollowedLoad {
 }
 
 impl FollowedLoad {
-    /// Room for a program.
+    /// Storage for a program.
     #[must_use]
     pub fn of(program: &Program) -> Self {
         let moments = program.moments.clone();

@@ -34,8 +34,7 @@ pub trait Machine: Send + std::fmt::Debug {
         "plain loops in f64".to_owned()
     }
 
-    /// Takes a program for a system, and room for what it needs: afterwards a batch allocates
-    /// nothing.
+    /// Takes a program for a system, and allocates what it needs: afterwards a batch allocates nothing.
     fn load(&mut self, program: Arc<Program>, system: &dyn System);
 
     /// Takes the steps of a batch, each in as many parts as the program repeats. The velocity of `state`

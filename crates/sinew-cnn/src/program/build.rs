@@ -33,7 +33,7 @@ impl Program {
         Register(self.names.len() as u8 - 1)
     }
 
-    /// The register of this name, a new one where there is none yet.
+    /// The register of this name, a new one if absent.
     pub fn named(&mut self, name: &'static str) -> Register {
         match self.names.iter().position(|known| *known == name) {
             Some(index) => Register(index as u8),

@@ -1,4 +1,4 @@
-//! Programs in words and formulas, as in a textbook.
+//! Programs as text and formulas, as in a textbook.
 
 use std::collections::BTreeSet;
 use std::fmt;

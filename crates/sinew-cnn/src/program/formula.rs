@@ -28,7 +28,7 @@ pub(super) struct Lines {
     pub(super) when: Option<String>,
     /// The sweep's q, then the updates in order.
     pub(super) lines: Vec<Line>,
-    /// Time of the loads, in words.
+    /// Description of the time of the loads.
     pub(super) loads: Option<&'static str>,
 }
 

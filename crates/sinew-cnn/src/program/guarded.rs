@@ -65,8 +65,8 @@ fn clamp(sweeps: &mut [Sweep], dt: f64, before: Register, kept: Option<(Register
     last.updates
         .push(u.becomes([(u, 1.0)]).clamped(vector(Some(before), dt)));
     if let Some((unclamped, time)) = kept {
-        // What the clamp took from the velocity it takes from the acceleration that led to it. The
-        // difference comes first, so that 0 stays 0.
+        // What the clamp took from the velocity it takes from the acceleration that produced it. The difference comes
+        // first, so that 0 stays 0.
         let taken = unclamped.becomes([(v, 1.0), (unclamped, -1.0)]);
         last.updates.push(taken.in_last_step());
         last.updates

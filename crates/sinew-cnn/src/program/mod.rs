@@ -84,7 +84,7 @@ struct Source {
 /// The matrix P that a step divides forces by, of one block for each cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum CellInertia {
-    /// So many times the lumped mass.
+    /// The lumped mass times this factor.
     Mass(f64),
     /// The inverse of [`Program::blocks`].
     Blocks,

@@ -250,7 +250,7 @@ pub enum Weight {
 /// A bound, counted where it is reached.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Clamp {
-    /// Bounds each component by itself to this size: the network's saturation.
+    /// Bounds each component separately to this size: the network's saturation.
     Component(f64),
     /// Bounds each cell's vector, measured from a register or from 0, to this factor times the cell's limit.
     Vector {

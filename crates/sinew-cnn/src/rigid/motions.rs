@@ -21,12 +21,13 @@ pub struct RigidMotions {
     pub(crate) weighted: Vec<[f64; LAYERS]>,
     /// The factor of the metric of the part's own twists.
     factor: Factor,
-    /// The point (m) that these turn about: one that moves with a part which nothing holds, so that they stay independent however far it goes.
+    /// The point (m) that these turn about: one that moves with an unsupported part, so that they stay independent
+    /// however far it goes.
     origin: [f64; 3],
 }
 
 impl RigidMotions {
-    /// Room for the motions of a part.
+    /// Storage for the motions of a part.
     #[must_use]
     pub fn new(free: FreePart) -> Self {
         let count = free.twists.len() * free.cells.len();
@@ -142,10 +143,12 @@ impl RigidMotions {
         }
     }
 
-    /// Writes the rigid displacement y (m) of the part from the displacement `u` (m) on, however large, at which `y'M y/2 - b'y` is least for the forces b (N) `pull` and the
-    /// diagonal M (N/m) of `inertia`; `places` is room. Cells of other parts stay as they are.
+    /// Writes the rigid displacement y (m) of the part from the displacement `u` (m) on, however large, at which
+    /// `y'M y/2 - b'y` is least for the forces b (N) `pull` and the diagonal M (N/m) of `inertia`; `places` is scratch
+    /// space. Cells of other parts stay as they are.
     ///
-    /// It is the rigid motion that is nearest to `M^-1 b` in the metric of M (Kabsch, Acta Cryst. A 32, 1976, where nothing holds the part), by twists that are made finite by the exponential map.
+    /// It is the rigid motion that is nearest to `M^-1 b` in the metric of M (Kabsch, Acta Cryst. A 32, 1976, for an
+    /// unsupported part), by twists that are made finite by the exponential map.
     pub fn lead(
         &mut self,
         u: &[f64],

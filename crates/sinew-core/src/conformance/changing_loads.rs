@@ -109,7 +109,7 @@ fn difference(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
     [a[0] - b[0], a[1] - b[1]]
 }
 
-/// A ramp with the motion of the chain that it leads to, from rest.
+/// A ramp with the motion of the chain that it causes, from rest.
 struct Motion {
     ramp: Ramp,
     exact: Box<dyn Fn(f64) -> [f64; 2]>,
@@ -333,8 +333,8 @@ fn almost_free(ramp: Ramp) -> LinearModel {
     }
 }
 
-/// A mass that nothing holds gets the velocity that the impulse gives it, however short the load
-/// and wherever it falls between two steps; a method that cannot take the load refuses it.
+/// An unsupported mass gets the velocity that the impulse gives it, however short the load and wherever it falls
+/// between two steps; a method that cannot take the load refuses it.
 pub fn the_impulse_of_a_load_arrives_wherever_it_falls(make: &dyn Fn() -> Boxed) {
     let dt = 0.005;
     let (short, long) = (0.12 * dt, 3.4 * dt);

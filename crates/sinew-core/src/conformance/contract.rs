@@ -16,7 +16,7 @@ pub fn rest_stays_at_rest(make: &dyn Fn() -> Boxed) {
         assert_eq!(state.v, vec![0.0; dofs]);
         match state.clock.last_step() {
             Some(0.01) => assert_eq!(state.t(), 1.0),
-            // The parts of a step are rounded.
+            // The substeps are rounded.
             _ => assert!((state.t() - 1.0).abs() <= 4.0 * f64::EPSILON),
         }
     }

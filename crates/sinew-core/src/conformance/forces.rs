@@ -136,7 +136,7 @@ fn forces_are_enough(
         let agree = agree(shown, found, sizes.map(|size| rounding * size));
         assert!(agree, "{what}: step {step}: {shown:?} {found:?}");
     }
-    // Steps by a law's current stiffness cost looks at it.
+    // Steps by a law's current stiffness have to check it, at a cost.
     let follows = found.iter().any(|state| state.cut.is_some());
     assert!(
         follows || of_shown == of_hidden,

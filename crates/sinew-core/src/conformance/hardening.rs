@@ -53,7 +53,7 @@ impl Hardening {
         ForceModel::new(law, &[MASS; 2], Layers::One)
     }
 
-    /// The same forces, of which only their values are told.
+    /// The same forces, of which only their values are available.
     fn without_tangent() -> ForceModel<Self> {
         let law = Self {
             tells_tangent: false,
@@ -326,7 +326,7 @@ pub fn a_refusal_ends_the_run_and_keeps_what_was(make: &dyn Fn() -> Boxed) {
             assert!(message.contains(&part), "{message}");
         }
 
-        // A method that looks ahead within a step is refused one step sooner than another.
+        // A method that evaluates ahead within a step is refused one step sooner than another.
         let rows = keeper.rows.len();
         assert!(
             rows == beyond || rows == beyond + 1,

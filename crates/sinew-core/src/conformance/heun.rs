@@ -15,7 +15,7 @@ use crate::{
 enum Declared {
     /// The right one: none without damping.
     Right,
-    /// So many times the right one.
+    /// The right one times this factor.
     Times(f64),
     /// This share of 2/omega_max.
     OfCritical(f64),

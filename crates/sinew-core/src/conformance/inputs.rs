@@ -23,8 +23,8 @@ enum Taken {
     Refused(StepError),
 }
 
-/// Takes FRAMES frames of `steps` steps each from rest; `give` is told the number of a frame and the
-/// time at which it begins and ends (s) before it is taken.
+/// Takes FRAMES frames of `steps` steps each from rest; `give` receives the number of a frame and the time at which it
+/// begins and ends (s) before it is taken.
 fn frames(
     integrator: &mut dyn Integrator,
     system: &dyn System,

@@ -156,8 +156,8 @@ pub fn a_maxwell_element_relaxes_as_in_closed_form(make: &dyn Fn() -> Boxed) {
     in_every_way(make, &system, Inputs::none(), &start, dt, 23);
 }
 
-/// A linear system that counts, in internal variables, how often it is told of an accepted step,
-/// and adds up the steps' lengths. As a force law it also checks each trial.
+/// A linear system that counts, in internal variables, how often it is notified of an accepted step, and adds up the
+/// steps' lengths. As a force law it also checks each trial.
 struct Counting {
     inner: LinearModel,
     shows_matrices: bool,
@@ -242,9 +242,9 @@ impl ForceLaw for Counting {
     }
 }
 
-/// A system is told once of each accepted step, or part of one, one by one and in batches; nothing
-/// but its own [`System::accept`] changes the internal variables, and each trial has those of the last
-/// accepted state and says how long ago that was.
+/// A system is notified once of each accepted step, or substep, one by one and in batches; nothing but its own
+/// [`System::accept`] changes the internal variables, and each trial has those of the last accepted state and says how
+/// long ago that was.
 pub fn each_step_is_accepted_once(make: &dyn Fn() -> Boxed) {
     let needs = make().properties().needs;
     for shows_matrices in [true, false] {

@@ -94,7 +94,7 @@ pub(super) fn chain_under(ramp: Ramp, damping: f64, force: f64, masses: [f64; 2]
     damped_chain(ramp, damping, force, masses)
 }
 
-/// The chain with other damping; the dashpot stands between the wall and the first mass.
+/// The chain with other damping; the dashpot is between the wall and the first mass.
 pub(super) fn damped_chain(
     ramp: Ramp,
     damping: Dampers,

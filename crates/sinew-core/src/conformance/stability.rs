@@ -176,7 +176,7 @@ fn hold_to_stable_step(make: &dyn Fn() -> Boxed, problem: &Problem, damping: Dam
             let long = taken(3.0 * critical, 4 * BLOCK);
             is_bounded(&long, 200.0, "3 times critical");
             match follow(1e3 * critical, 400) {
-                // In so few steps, a hundredth of a turn each, growth is not told from the motion.
+                // In so few steps, a hundredth of a turn each, growth cannot be distinguished from the motion.
                 Ok(Followed { largest, .. }) => assert!(
                     largest < 200.0,
                     "{what}: {largest:.3e} times as far as the exact motion at 1000 times critical"

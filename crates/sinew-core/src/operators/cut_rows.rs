@@ -19,7 +19,7 @@ pub struct CutRows {
 }
 
 impl CutRows {
-    /// No rows, and room for so many and their blocks.
+    /// No rows, and space for `rows` rows with `blocks` blocks.
     #[must_use]
     pub fn with_room(rows: usize, blocks: usize) -> Self {
         Self {
@@ -53,7 +53,8 @@ impl CutRows {
 }
 
 impl LinearOperators {
-    /// Makes room for so many more cells, so that [`LinearOperators::take_cut_rows`] allocates nothing until it is used up.
+    /// Reserves space for `cells` more cells, so that [`LinearOperators::take_cut_rows`] allocates nothing until it is
+    /// used up.
     pub fn make_room_for_cuts(&mut self, cells: usize) {
         let matrices = Arc::make_mut(&mut self.matrices);
         matrices.stiffness = Arc::new(matrices.stiffness.with_room(cells));
@@ -61,9 +62,10 @@ impl LinearOperators {
         matrices.mass.reserve(layers * cells);
     }
 
-    /// Takes over rows of a body that was cut, and appends those of new cells, at the cost of these rows while no other clone shares the
-    /// matrices, and of a copy otherwise. These are other matrices afterwards, which know no earlier revision, with bounds by elements as before, which no cut
-    /// passes. Loads are carried over by [`LinearOperators::change_loads`]. Returns whether all rows were laid out anew, which makes room for
+    /// Takes over rows of a body that was cut, and appends those of new cells, at the cost of these rows while no other
+    /// clone shares the matrices, and of a copy otherwise. These are other matrices afterwards, which know no earlier
+    /// revision, with bounds by elements as before, which no cut passes. Loads are carried over by
+    /// [`LinearOperators::change_loads`]. Returns true if all rows were laid out again, which reserves space for
     /// `spare_cells` more than these.
     ///
     /// # Errors

@@ -7,8 +7,8 @@ use crate::markup::{escape, prose};
 use contents::Contents;
 pub use table::{Cell, Column, Table, TableRow};
 
-/// A page being written: a title, what stands before the first section, and sections. Texts are
-/// escaped; in those called prose, what stands between backticks is set as code.
+/// A page being written: a title, the part before the first section, and sections. Texts are escaped; in those called
+/// prose, the text between backticks is set as code.
 #[derive(Clone, Debug)]
 pub struct Page {
     title: String,
@@ -112,7 +112,7 @@ impl Page {
         self.markup("</details>\n");
     }
 
-    /// HTML as it stands, for what the other methods cannot say.
+    /// HTML as given, for what the other methods cannot say.
     pub fn markup(&mut self, html: &str) {
         if self.contents.is_empty() {
             self.lead.push_str(html);

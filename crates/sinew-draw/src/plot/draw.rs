@@ -11,7 +11,7 @@ use crate::svg::{Paint, Stroke, Svg, Text};
 const MARKER: f64 = 4.2;
 /// Width of a rim (px) round what lies upon a line or a marker.
 const RIM: f64 = 1.6;
-/// The colour of signs that stand for no series.
+/// The colour of signs that belong to no series.
 const NEUTRAL: Colour = Colour(0x77, 0x77, 0x77);
 /// The legend's word for the arrow where a series leaves the frame.
 const LEAVES: &str = "leaves the frame";

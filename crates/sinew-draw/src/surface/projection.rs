@@ -98,13 +98,13 @@ impl Extent {
         self.high = (self.high.0.max(p.x), self.high.1.max(p.y));
     }
 
-    /// Width and height, 1 where there is none.
+    /// Width and height, 1 without an extent.
     pub(super) fn size(&self) -> (f64, f64) {
         let size = |low: f64, high: f64| if high > low { high - low } else { 1.0 };
         (size(self.low.0, self.high.0), size(self.low.1, self.high.1))
     }
 
-    /// Its middle, the origin where there is none.
+    /// Its middle, the origin without points.
     pub(super) fn middle(&self) -> (f64, f64) {
         let middle = |low: f64, high: f64| if low <= high { 0.5 * (low + high) } else { 0.0 };
         (

@@ -1,7 +1,7 @@
 //! Colours and lines.
 //!
-//! Neutral colours have a name besides their value, so that a page can restyle them: attributes
-//! give way to its CSS, and a file alone still looks right.
+//! Neutral colours have a name besides their value, so that a page can restyle them: its CSS overrides attributes, and
+//! a file alone still looks right.
 
 use crate::style::{Colour, Dash};
 

@@ -1,4 +1,4 @@
-//! Texts and how much room they take.
+//! Texts and the space that they take.
 
 use std::fmt::{self, Display};
 
@@ -27,7 +27,7 @@ pub struct Text<'a> {
     pub content: &'a str,
     /// Size of its letters (px).
     pub size: f64,
-    /// The part of it that stands at `x`.
+    /// The part of it that is at `x`.
     pub anchor: Anchor,
     /// Its colour.
     pub paint: Paint,

@@ -1,5 +1,5 @@
-//! The checks that every hyperelastic law stands, as a suite that any crate can run on its own law. It comes with the feature
-//! `conformance`, which a crate switches on among its dev-dependencies.
+//! The checks that every hyperelastic law passes, as a suite that any crate can run on its own law. It comes with the
+//! feature `conformance`, which a crate switches on among its dev-dependencies.
 //!
 //! ```
 //! use sinew_fem::hyperelastic::{HyperelasticLaw, NeoHookean, Parameters, conformance};

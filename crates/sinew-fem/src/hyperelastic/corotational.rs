@@ -23,7 +23,7 @@ pub struct Corotational {
 }
 
 impl Corotational {
-    /// `tr S I - S` and its inverse, which is 0 where there is none.
+    /// `tr S I - S` and its inverse, which is 0 if the tensor is singular.
     #[inline(always)]
     fn turning<N: Number>(at: &Point<N, Rotated<N>>) -> [Tensor<N>; 2] {
         let stretch = at.own.rotation.transposed_times(at.gradient).symmetric();
@@ -47,8 +47,9 @@ impl Corotational {
         rotation * Tensor::cross_product_with(inverse.on(skew))
     }
 
-    /// What the change of R adds to the tangent against turning, by the stress of the dilation: `mu I + c (tr S I - S)^-1` with
-    /// `c = bulk - 2 mu`, which is what matters in extension, or a multiple of I that is no less where c < 0, and never below 0.
+    /// Contribution of the change of R to the tangent against turning, by the stress of the dilation:
+    /// `mu I + c (tr S I - S)^-1` with `c = bulk - 2 mu`, which is what matters in extension, or a multiple of I that
+    /// is no less where c < 0, and never below 0.
     #[inline(always)]
     fn against_turning<N: Number>(&self, at: &Point<N, Rotated<N>>, bulk: N) -> Tensor<N> {
         let (mu, zero) = (N::of(self.mu), N::of(0.0));

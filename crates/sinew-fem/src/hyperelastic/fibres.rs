@@ -33,7 +33,7 @@ pub enum Stiffening {
     Exponential {
         /// Modulus (Pa).
         k1: f64,
-        /// How soon they stiffen.
+        /// Dimensionless exponent: the larger, the sooner the fibres stiffen.
         k2: f64,
         /// kd: 0 for parallel fibres, 1/3 for ones of all directions.
         dispersion: f64,
@@ -92,7 +92,7 @@ impl Fibres {
         }
     }
 
-    /// The same with moduli that are so many times as large.
+    /// The same with moduli `factor` times as large.
     #[must_use]
     pub fn scaled(self, factor: f64) -> Self {
         let stiffening = match self.stiffening {
@@ -185,7 +185,7 @@ impl Fibres {
         self.at(&Deformation::of(Tensor::zero()), direction).slope
     }
 
-    /// Whether they are defined only where J > 0.
+    /// True if the fibres are defined only where J > 0.
     #[must_use]
     pub fn is_split(&self) -> bool {
         self.split

@@ -14,9 +14,9 @@ pub const SMALLEST_VOLUME_RATIO: f64 = 1e-6;
 
 /// A hyperelastic law of an isotropic material.
 ///
-/// The energy density is `psi = psi_local(F) + lambda/2 theta(F)^2`: elements that do not lock average the dilation theta over
-/// patches of tetrahedra. So the local part has the whole shear modulus and the bulk modulus 2 mu/3 at small strain, which
-/// keeps it positive by itself, and `lambda` is Lame's first constant.
+/// The energy density is `psi = psi_local(F) + lambda/2 theta(F)^2`: elements that do not lock average the dilation
+/// theta over patches of tetrahedra. So the local part has the whole shear modulus and the bulk modulus 2 mu/3 at small
+/// strain, which keeps it positive without the dilational part, and `lambda` is Lame's first constant.
 ///
 /// A law is written over any [`Number`]: the same text serves f64, f32 and vectors. Stresses are first Piola-Kirchhoff ones, `P = d psi/dF`
 /// (Pa), and the tangent is their change by a change of F.
@@ -37,14 +37,14 @@ pub trait HyperelasticLaw: Copy + Debug + Send + Sync {
     /// True if the law overrides [`Self::dilation`], so that its viscosity takes that measure of volume in place of
     /// `J - 1`.
     const OWN_DILATION: bool = false;
-    /// Whether it is defined where J <= 0.
+    /// True if the law is defined where J <= 0.
     const DEFINED_WHEN_INVERTED: bool;
-    /// Whether its local energy is an isochoric one, of F freed of volume change, and `mu/3 (J - 1)^2`.
+    /// True if the local energy is an isochoric one, of F freed of volume change, and `mu/3 (J - 1)^2`.
     const HAS_ISOCHORIC_PART: bool = false;
     /// The tangent that its node blocks belong to.
     const NODE_BLOCK: NodeBlock = NodeBlock::Exact;
 
-    /// What it computes once for a deformation.
+    /// Values cached per deformation gradient.
     type Own<N: Number>: Copy + Debug;
 
     /// The law with these values of its [`Self::PARAMETERS`], which are present and within their ranges.
@@ -71,7 +71,7 @@ pub trait HyperelasticLaw: Copy + Debug + Send + Sync {
     /// Lame's constants (lambda, mu) (Pa) at small strain.
     fn lame(&self) -> (f64, f64);
 
-    /// What it computes once for a deformation.
+    /// Computes the values that are cached per deformation gradient.
     fn own<N: Number>(&self, deformation: &Deformation<N>) -> Self::Own<N>;
 
     /// The local energy density (J/m^3).
@@ -83,7 +83,7 @@ pub trait HyperelasticLaw: Copy + Debug + Send + Sync {
     /// The change of the local stress by a change of F.
     fn tangent<N: Number>(&self, at: &Point<N, Self::Own<N>>, change: Tensor<N>) -> Tensor<N>;
 
-    /// As [`Self::tangent`] with rotations held fast, which is positive semidefinite; for laws that have a rotation.
+    /// [`Self::tangent`] with rotations held fast, which is positive semidefinite; for laws that have a rotation.
     #[inline(always)]
     fn frozen_tangent<N: Number>(
         &self,
@@ -124,7 +124,7 @@ pub trait HyperelasticLaw: Copy + Debug + Send + Sync {
         gradient: [N; 3],
     ) -> Tensor<N>;
 
-    /// The deformation with what the law computes once for it.
+    /// The deformation with the values that the law caches for it.
     #[inline(always)]
     fn at<N: Number>(&self, displacement_gradient: Tensor<N>) -> Point<N, Self::Own<N>> {
         let deformation = Deformation::of(displacement_gradient);
@@ -132,7 +132,7 @@ pub trait HyperelasticLaw: Copy + Debug + Send + Sync {
         Point { deformation, own }
     }
 
-    /// Whether the law is defined for a deformation, in all lanes.
+    /// True if the law is defined for a deformation, in all lanes.
     #[inline(always)]
     fn admits<N: Number>(&self, deformation: &Deformation<N>) -> bool {
         let smallest = N::of(SMALLEST_VOLUME_RATIO);
@@ -177,7 +177,7 @@ pub trait HyperelasticLaw: Copy + Debug + Send + Sync {
             .plus(bulk.modulus * gradient.contracted(change), gradient)
     }
 
-    /// As [`Self::tangent_with`] with rotations held fast; for laws that have a rotation.
+    /// [`Self::tangent_with`] with rotations held fast; for laws that have a rotation.
     #[inline(always)]
     fn frozen_tangent_with<N: Number>(
         &self,
@@ -192,12 +192,12 @@ pub trait HyperelasticLaw: Copy + Debug + Send + Sync {
     }
 }
 
-/// A deformation with what a law computes once for it.
+/// A deformation with the values that a law caches for it.
 #[derive(Clone, Copy, Debug)]
 pub struct Point<N, Own> {
     /// The deformation.
     pub deformation: Deformation<N>,
-    /// What the law computes.
+    /// Values that the law caches for it.
     pub own: Own,
 }
 
@@ -235,7 +235,7 @@ impl<N: Number> Bulk<N> {
 /// A tangent that node blocks belong to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NodeBlock {
-    /// The exact one, whose own blocks are positive semidefinite by themselves.
+    /// The exact one, whose own blocks are positive semidefinite without a correction.
     Exact,
     /// The exact one and something positive semidefinite, where that is needed.
     Majorant,

@@ -1,4 +1,4 @@
-//! Errors of laws that are looked up by their ids.
+//! Errors of the lookup of laws by their ids.
 
 use super::parameters::ParameterError;
 

@@ -37,7 +37,7 @@ const C1_OVER_C2: LawParameter = LawParameter::number(
     &[4.0],
 );
 
-/// What a law in the invariants without change of volume computes once.
+/// Values cached per deformation gradient by laws in the invariants without change of volume.
 #[derive(Clone, Copy, Debug)]
 pub struct Isochoric<N> {
     /// 1/J.
@@ -202,7 +202,7 @@ impl HyperelasticLaw for MooneyRivlin {
         tangent.plus(a2, second)
     }
 
-    /// As the exact block, with the coefficient 16/9 in the place of 14/9 in what I2 adds along c g.
+    /// The exact block, but with the coefficient 16/9 in place of 14/9 in the contribution of I2 along c g.
     ///
     /// The part of I1 is rank-one convex. In that of I2 a vector w meets `|D[w g']|^2 - 8/3 (B : w g') n + 14/9 I2 n^2`, n being `c : w g'/J`. As
     /// `B : w g' = c : D[w g']` and `c : c = I2`, it is a square and so not below 0 with 16/9, which with 14/9 it may be

@@ -33,7 +33,7 @@ impl<'a, N: Number, L: HyperelasticLaw> Linearised<'a, N, L> {
         }
     }
 
-    /// Whether the tangent of a kind is a projection: a law without a rotation has no other that is semidefinite.
+    /// True if the tangent of a kind is a projection: a law without a rotation has no other that is semidefinite.
     #[inline(always)]
     pub(crate) fn projects(law: &L, kind: TangentKind) -> bool {
         let freezes = || {

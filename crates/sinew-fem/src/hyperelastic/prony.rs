@@ -21,7 +21,7 @@ pub struct Term {
     pub time: f64,
 }
 
-/// What a step makes of a term.
+/// Coefficients of a term over one step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TermStep {
     /// `e^-x`, x = dt/tau.
@@ -63,7 +63,8 @@ pub fn instantaneous_over_longterm(terms: &[Term]) -> f64 {
 }
 
 impl Term {
-    /// What a step of dt (s), 0 or above, makes of the term; nothing is left after an infinite one.
+    /// The coefficients of the term over a step of dt (s), 0 or above; nothing of the memory is left after an infinite
+    /// one.
     #[must_use]
     pub fn over(&self, dt: f64) -> TermStep {
         let x = dt / self.time;
@@ -92,7 +93,7 @@ impl TermStep {
         self.decay
     }
 
-    /// `g (1 - e^-x)/x`: the share of a change of S0 that is remembered.
+    /// `g (1 - e^-x)/x`: the share of a change of S0 that enters the memory.
     #[inline(always)]
     #[must_use]
     pub fn gain(&self) -> f64 {

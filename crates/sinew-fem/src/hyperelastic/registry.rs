@@ -109,7 +109,7 @@ pub fn known_laws() -> Vec<&'static KnownLaw> {
     OURS.iter().chain(added.iter().copied()).collect()
 }
 
-/// The law with an id; `None` if there is none.
+/// The law with an id; `None` if absent.
 #[must_use]
 pub fn known_law(id: &str) -> Option<&'static KnownLaw> {
     known_laws().into_iter().find(|known| known.id == id)
@@ -242,7 +242,7 @@ impl Hyperelastic {
     ///
     /// # Errors
     ///
-    /// [`LawError`] if there is none, or if it cannot have these parameters.
+    /// [`LawError`] if there is no such law, or if it cannot have these parameters.
     pub fn new(id: &str, parameters: &Parameters) -> Result<Self, LawError> {
         Ok(found(id)?.make(parameters)?)
     }
@@ -252,7 +252,7 @@ impl Hyperelastic {
     ///
     /// # Errors
     ///
-    /// [`LawError`] if there is none, or if it cannot have them.
+    /// [`LawError`] if there is no such law, or if it cannot have them.
     pub fn parameters(
         id: &str,
         youngs_modulus: f64,
@@ -297,13 +297,13 @@ impl Hyperelastic {
         self.0.node_block_kind()
     }
 
-    /// Energy density (J/m^3) of a tetrahedron by itself, by the gradient of the displacement.
+    /// Energy density (J/m^3) of a tetrahedron without averages, by the gradient of the displacement.
     #[must_use]
     pub fn energy(&self, h: Tensor<f64>) -> f64 {
         self.0.energy(h)
     }
 
-    /// First Piola-Kirchhoff stress (Pa) of a tetrahedron by itself, by the gradient of the displacement.
+    /// First Piola-Kirchhoff stress (Pa) of a tetrahedron without averages, by the gradient of the displacement.
     #[must_use]
     pub fn stress(&self, h: Tensor<f64>) -> Tensor<f64> {
         self.0.stress(h)
@@ -315,7 +315,7 @@ impl Hyperelastic {
         self.0.tangent(h, change)
     }
 
-    /// A node's own block (Pa/m^2) of a tetrahedron by itself, by the gradient (1/m) of its shape function
+    /// A node's own block (Pa/m^2) of a tetrahedron without averages, by the gradient (1/m) of its shape function
     /// ([`HyperelasticLaw::node_block`]).
     #[must_use]
     pub fn node_block(&self, h: Tensor<f64>, gradient: [f64; 3]) -> Tensor<f64> {

@@ -22,8 +22,9 @@ pub(crate) struct InMotion<'a> {
 }
 
 impl InPlace {
-    /// The kinetic energy (J) of nodes of which all is made anew, and the elastic one of tetrahedra of another shape: all others keep theirs.
-    /// Asked before and after a model follows a split, it tells by how much that changes the energy.
+    /// The kinetic energy (J) of nodes whose sums are recomputed, and the elastic energy of tetrahedra of another
+    /// shape: all others keep theirs. The difference of its values before and after a model follows a split is the
+    /// change of the energy.
     pub(crate) fn energy(&self, of: &InMotion<'_>, body: &CuttableBody) -> Energy {
         let nodes = self.touched.made_anew();
         let nodes = nodes.filter(|node| (*node as usize) < of.masses.len());

@@ -14,7 +14,7 @@ use crate::{LoadKind, Problem};
 /// Loads by what they are shared out over, so that their shares at a few nodes can be summed up again.
 #[derive(Debug)]
 pub(super) struct LoadsInPlace {
-    /// By the places of the problem; `None` for forces, which stay with their nodes.
+    /// Triangles of each load, in the order of the problem; `None` for forces, which stay with their nodes.
     spread: Vec<Option<Faces>>,
     gravity: Option<[f64; 3]>,
     /// Sums at the touched nodes.
@@ -30,8 +30,8 @@ struct Faces {
 }
 
 impl LoadsInPlace {
-    /// The loads of a problem on the mesh of a body, uncut and as cuts left it, with room for so many touched nodes; `None` where one cannot follow
-    /// a split.
+    /// The loads of a problem on the mesh of a body, uncut and as cuts left it, with space for `nodes` touched nodes;
+    /// `None` if one of them cannot follow a split.
     pub(super) fn new(
         problem: &Problem,
         uncut: &TetMesh,
@@ -142,7 +142,7 @@ impl LoadsInPlace {
 }
 
 impl Faces {
-    /// Sums up shares at the touched nodes of which all is made anew, in the order of the faces.
+    /// Sums up shares at the touched nodes whose sums are recomputed, in the order of the faces.
     fn sum_up(&self, mesh: &TetMesh, touched: &Touched, sums: &mut Vec<Vector3<f64>>) {
         sums.clear();
         sums.resize(touched.nodes().len(), Vector3::zeros());

@@ -25,7 +25,8 @@ use neighbours::Neighbours;
 use rows::{Gathering, Source};
 use touched::Touched;
 
-/// What following splits takes beside the model: it is made once, with room for a tenth more nodes, and allocates nothing until that is used up.
+/// State for following splits, beside the model: it is built once, with space for a tenth more nodes, and allocates
+/// nothing until that is used up.
 ///
 /// Nodes and tetrahedra have the same numbers in the body and in the model, so nothing may have been removed.
 #[derive(Debug)]
@@ -36,7 +37,7 @@ pub(crate) struct InPlace {
     gathering: Gathering,
     loads: LoadsInPlace,
     neighbours: Neighbours,
-    /// Stands in a body while its pattern changes.
+    /// Placeholder in a body while its pattern changes.
     no_pattern: Arc<Pattern>,
 }
 
@@ -80,12 +81,13 @@ impl InPlace {
         mesh.follow_split(&split_of(body), &self.follower);
     }
 
-    /// Looks what the last stroke of a body touched, which had so many nodes before.
+    /// Finds the nodes that the last stroke of a body touched, which had `nodes_before` nodes before.
     pub(crate) fn look(&mut self, body: &CuttableBody, nodes_before: usize) {
         self.touched.find(body, body.last_stroke(), nodes_before);
     }
 
-    /// Lets a model follow the last stroke of a body, which was looked at. Returns whether rows were laid out anew.
+    /// Lets a model follow the last stroke of a body, after [`InPlace::look`]. Returns true if all rows were laid out
+    /// again.
     pub(crate) fn follow(
         &mut self,
         model: ModelParts<'_>,

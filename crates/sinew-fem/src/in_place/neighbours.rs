@@ -10,13 +10,13 @@ use crate::graph::Graph;
 #[derive(Debug)]
 pub(super) struct Neighbours {
     counts: Vec<u32>,
-    /// The last look in which each node was seen.
+    /// The last count in which each node was seen.
     seen: Vec<u32>,
     look: u32,
 }
 
 impl Neighbours {
-    /// Those of a mesh, with room for some further nodes.
+    /// Counts the neighbours in a mesh, with space for `spare` further nodes.
     pub(super) fn new(mesh: &TetMesh, spare: usize) -> Result<Self, FemError> {
         let mut graph = Graph::of(mesh);
         let pattern = graph.pattern()?;

@@ -11,7 +11,7 @@ use crate::material::Material;
 use crate::tetra;
 use crate::volumes::flat;
 
-/// Stands for a tetrahedron without a shape.
+/// Placeholder for a tetrahedron without a shape.
 const NONE: u32 = u32::MAX;
 
 /// Rows of K that a split changes. Used again, it allocates nothing.
@@ -26,7 +26,7 @@ pub(super) struct Gathering {
     pub(super) rows: CutRows,
 }
 
-/// What the stiffness of a tetrahedron follows from.
+/// Geometry and moduli that determine the stiffness of a tetrahedron.
 #[derive(Clone, Copy, Debug)]
 struct Shape {
     volume: f64,
@@ -97,7 +97,7 @@ impl Row {
 }
 
 impl Gathering {
-    /// Room for rows of so many cells of a body of so many tetrahedra.
+    /// Scratch space for rows of `cells` cells of a body of `tets` tetrahedra.
     pub(super) fn with_room(cells: usize, tets: usize) -> Self {
         let shapes = tets.min(24 * cells);
         Self {

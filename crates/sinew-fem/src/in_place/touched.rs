@@ -34,7 +34,7 @@ impl Touched {
         }
     }
 
-    /// Finds them after a stroke on a body that had so many nodes.
+    /// Finds them after a stroke on a body that had `nodes_before` nodes.
     pub(super) fn find(&mut self, body: &CuttableBody, stroke: &Stroke, nodes_before: usize) {
         for node in self.nodes.drain(..) {
             self.marks[node as usize] = 0;
@@ -89,13 +89,13 @@ impl Touched {
         self.marks[node as usize] & MOVED != 0
     }
 
-    /// Whether the tetrahedra at a node are others, or have another shape: then all that is summed over them is another. At other touched
-    /// nodes only what couples them to split ones is.
+    /// True if the tetrahedra at a node are others, or have another shape: then all sums over them are recomputed. At
+    /// other touched nodes only the coupling to split ones changes.
     pub(super) fn is_made_anew(&self, node: u32) -> bool {
         self.marks[node as usize] & (SPLIT | RESHAPED) != 0
     }
 
-    /// Those of which all is made anew, increasing.
+    /// Nodes whose sums are recomputed, increasing.
     pub(super) fn made_anew(&self) -> impl Iterator<Item = u32> {
         let nodes = self.nodes.iter().copied();
         nodes.filter(|node| self.is_made_anew(*node))

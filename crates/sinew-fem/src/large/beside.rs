@@ -26,10 +26,10 @@ pub(super) struct StressBeside<'a, T> {
     /// Places of the chunk's tetrahedra.
     pub(super) slots: &'a Range<usize>,
     pub(super) displacement: &'a [[T; 4]],
-    /// Where the gradients of the displacement are kept, vector by vector, and whether they are known.
+    /// Buffer for the gradients of the displacement, vector by vector; `gradients_are_known` if it is filled already.
     pub(super) gradients: &'a mut [T],
     pub(super) gradients_are_known: bool,
-    /// Where the stress (Pa) goes, vector by vector.
+    /// Output: the stress (Pa), vector by vector.
     pub(super) stress: &'a mut [T],
     pub(super) with_energy: bool,
 }
@@ -89,7 +89,7 @@ pub(super) fn carried_energy<N: Number>(deformation: &Deformation<N>, carried: [
     half.mul_add(diagonal, rxy * xy + ryz * yz + rzx * zx)
 }
 
-/// The tangent of the stress beside the law's in tetrahedra side by side; nothing where there is none.
+/// The tangent of the stress beside the law's in tetrahedra side by side; empty if absent.
 pub(super) struct TangentBeside<'a, N> {
     fibres: Option<(&'a RegionFibres, FibrePoint<N>)>,
     factor_of_fibres: f64,

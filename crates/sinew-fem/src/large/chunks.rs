@@ -9,7 +9,7 @@ use sinew_sparse::simd::Real;
 pub(super) struct Slot {
     /// The tetrahedron of the mesh.
     pub(super) tet: u32,
-    /// Whether it only repeats the one before, without a volume.
+    /// True if the place only repeats the one before, without a volume.
     pub(super) is_padding: bool,
 }
 

@@ -31,10 +31,10 @@ pub(crate) trait Compiled: Debug + Send + Sync {
     /// The tangent that own blocks of nodes belong to.
     fn node_block_kind(&self) -> NodeBlock;
 
-    /// Energy density (J/m^3) of a tetrahedron by itself, by the gradient of the displacement.
+    /// Energy density (J/m^3) of a tetrahedron without averages, by the gradient of the displacement.
     fn energy(&self, h: Tensor<f64>) -> f64;
 
-    /// First Piola-Kirchhoff stress (Pa) of a tetrahedron by itself.
+    /// First Piola-Kirchhoff stress (Pa) of a tetrahedron without averages.
     fn stress(&self, h: Tensor<f64>) -> Tensor<f64>;
 
     /// Change of the stress (Pa) by a change of F.

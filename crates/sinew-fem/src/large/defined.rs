@@ -1,4 +1,4 @@
-//! Where laws, fibres and memory are defined.
+//! Domains of definition of laws, fibres and memory.
 
 use sinew_core::EvaluationError;
 use sinew_sparse::simd::{Number, Real};

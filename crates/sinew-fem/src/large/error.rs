@@ -2,7 +2,7 @@
 
 use sinew_core::EvaluationError;
 
-/// A ratio of volumes in words: to three places, where these say how large it is.
+/// Formats a ratio of volumes: to three places, where these say how large it is.
 fn in_words(volume_ratio: f64) -> String {
     if (1e-3..1e4).contains(&volume_ratio.abs()) || volume_ratio == 0.0 {
         format!("{volume_ratio:.3}")

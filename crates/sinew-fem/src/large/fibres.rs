@@ -1,7 +1,8 @@
 //! Fibres of a region.
 //!
-//! They see the strain of each tetrahedron by itself, also where the law sees averages: fibres resist a stretch along their own
-//! direction and no shear across it, which is what locks tetrahedra in bending, and their direction may be another in each.
+//! They see the strain of each single tetrahedron, also where the law sees averages: fibres resist a stretch along
+//! their own direction and no shear across it, which is what locks tetrahedra in bending, and their direction may be
+//! another in each.
 
 use std::sync::Arc;
 
@@ -24,7 +25,7 @@ pub(super) struct RegionFibres {
 pub(super) enum Directions<T = f64> {
     /// The same in all tetrahedra.
     Same([f64; 3]),
-    /// That of each tetrahedron, one array for each component.
+    /// One direction for each tetrahedron, one array for each component.
     Each(Arc<[Aligned<T>; 3]>),
 }
 
@@ -64,7 +65,7 @@ impl RegionFibres {
         self.fibres.at(deformation, self.directions.of(first))
     }
 
-    /// Whether they are defined for a deformation, in all lanes.
+    /// True if the fibres are defined for a deformation, in all lanes.
     #[inline(always)]
     pub(super) fn admits<N: Number>(&self, deformation: &Deformation<N>) -> bool {
         let smallest = N::of(SMALLEST_VOLUME_RATIO);

@@ -25,17 +25,17 @@ use crate::hyperelastic::prony::{deviatoric, first_piola};
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Evaluation<'a, T> {
     pub(super) regions: &'a [HyperelasticRegion],
-    /// What loops read of each region.
+    /// Data of each region that the loops read.
     pub(super) numbers: &'a [Numbers<T>],
     pub(super) gather: &'a Gather,
-    /// Where in the places it keeps what tasks read of each other.
+    /// Positions in `places` of the values that tasks exchange.
     pub(super) rooms: &'a Rooms,
     pub(super) places: Places<'a, T>,
     pub(super) past: Past<'a, T>,
-    /// Where stress is remembered, and no forces are computed: by one thread.
+    /// History variables to update, in which case no forces are computed; used by one thread only.
     pub(super) remembered: Option<Remembered<'a, T>>,
     pub(super) set: InstructionSet,
-    /// Whether it computes the energy and what else is found on the way.
+    /// True to compute the energy and the other findings.
     pub(super) with_energy: bool,
 }
 
@@ -106,9 +106,9 @@ impl<'a, T: Vectors> Forces<'a, T> {
 
 /// All loops over a region, for one law.
 ///
-/// The proof of all blocks below is the schedule: a task reads what its part did before or any part in a pass before, and
-/// nobody writes what another part of the pass reads ([`super::schedule::Schedule`]). Places of gradients, edges and corners are within rooms that
-/// were given away, and these within the arrays ([`Places::hold`]).
+/// The proof of all blocks below is the schedule: a task reads what its part did before or any part in a pass before,
+/// and nobody writes what another part of the pass reads ([`super::schedule::Schedule`]). Places of gradients, edges
+/// and corners are within assigned blocks, and these within the arrays ([`Places::hold`]).
 struct Sweep<'a, T, L> {
     region: &'a HyperelasticRegion,
     numbers: &'a Numbers<T>,
@@ -285,7 +285,7 @@ impl<T: Vectors, L: HyperelasticLaw> Sweep<'_, T, L> {
     fn remembering(&self) -> Option<Remembering<'_, T>> {
         let (memory, remembered) = (self.region.memory.as_ref()?, self.remembered?);
         let variables = remembered.internal;
-        // SAFETY: one thread remembers (`Evaluation::remembered`), and no two tasks at a time do.
+        // SAFETY: one thread updates the history variables (`Evaluation::remembered`), and no two tasks at a time do.
         let internal = unsafe { variables.write(memory.range()) };
         Some(Remembering::of(memory, remembered.dt, internal))
     }

@@ -1,11 +1,11 @@
-//! What force loops find on their way.
+//! Findings of force loops: energy, smallest volume ratio, inverted tetrahedra.
 
 use sinew_core::Deformed;
 use sinew_sparse::simd::Number;
 
 use super::rest::Rest;
 
-/// What is found, lane by lane.
+/// Findings, lane by lane.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Found<N> {
     /// Energy (J) of tetrahedra and edges.

@@ -116,7 +116,7 @@ impl Gather {
     pub(super) fn sum_all(&self, at_corners: &mut [[f64; 4]], out: &mut [[f64; 4]]) {
         assert!(self.room <= at_corners.len());
         let (at_corners, out) = (SharedSlice::of(at_corners), SharedSlice::of(out));
-        // SAFETY: both are borrowed for this call alone, and there is room for all places.
+        // SAFETY: both are borrowed for this call alone, and they have space for all places.
         unsafe { self.sum(0..self.nodes.len(), &self.corners, at_corners, out) }
     }
 }

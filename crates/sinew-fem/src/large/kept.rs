@@ -29,7 +29,7 @@ pub(super) fn store<N: Number>(tensor: Tensor<N>, to: &mut [Rows<N::Real>]) {
     N::store_rows(z, &mut rows[2..], 3);
 }
 
-/// The tensor whose entries stand one vector behind the other.
+/// The tensor whose entries are stored one vector behind the other.
 #[inline(always)]
 pub(super) fn load_entries<N: Number>(from: &[N::Real]) -> Tensor<N> {
     let from = &from[..9 * N::LANES];

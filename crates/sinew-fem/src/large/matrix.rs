@@ -23,10 +23,10 @@ pub(crate) struct Tangents<'a, 'o> {
     pub(super) sum: &'a mut Sum<'o>,
 }
 
-/// The matrix, and room for one part of it.
+/// The matrix, and scratch space for one part of it.
 pub(crate) struct Sum<'o> {
     cells: &'o Cells,
-    /// By which it is multiplied.
+    /// Factor of the tangent that is added.
     factor: f64,
     out: &'o mut BlockMatrix,
     average: Average,

@@ -1,8 +1,9 @@
 //! Memory of a region: stress that relaxes.
 //!
-//! With S0 the stress that relaxes, at once, and h_i the memories of its terms, a step makes of them `S = f S0 + R` at its end: f is a factor and R, which
-//! is symmetric, follows from what was remembered before the step. So during a step a tissue with memory is elastic: its stress is the derivative of
-//! `f psi + R : (F'F - I)/2`, which gives tangents and searches along lines. Only what is remembered takes an inverse of F, once a step.
+//! With S0 the stress that relaxes, at once, and h_i the memories of its terms, a step makes of them `S = f S0 + R` at
+//! its end: f is a factor and R, which is symmetric, follows from the history variables before the step. So during a
+//! step a tissue with memory is elastic: its stress is the derivative of `f psi + R : (F'F - I)/2`, which gives
+//! tangents and searches along lines. Only the update of the history variables takes an inverse of F, once a step.
 
 use std::ops::Range;
 
@@ -12,7 +13,7 @@ use crate::hyperelastic::prony::{Symmetric, Term, TermStep, relaxing, second_pio
 use crate::hyperelastic::{Bulk, Deformation, SMALLEST_VOLUME_RATIO, Tensor, semidefinite};
 use crate::tissue::{Memory, ViscousPart};
 
-/// What a body remembers, and since when.
+/// History variables of a body, and the time since their last update.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Past<'a, T = f64> {
     /// Internal variables; none where the body was at rest before.
@@ -29,8 +30,9 @@ impl<T> Past<'_, T> {
     };
 }
 
-/// What a region remembers: for each of its points S0 and the memory of each term, six numbers each. Points are the places of tetrahedra and,
-/// where shear is averaged over edges, these too. All first numbers of tetrahedra stand one behind the other, then all second ones, and so on.
+/// Layout of the history variables of a region: for each of its points S0 and the memory of each term, six numbers
+/// each. Points are the places of tetrahedra and, where shear is averaged over edges, these too. All first numbers of
+/// tetrahedra are consecutive, then all second ones, and so on.
 #[derive(Clone, Debug)]
 pub(super) struct RegionMemory {
     terms: Vec<Term>,
@@ -72,7 +74,7 @@ impl RegionMemory {
         self.first..self.first + self.variables()
     }
 
-    /// What a step of `dt` (s) makes of the terms.
+    /// The coefficients of the terms over a step of `dt` (s).
     fn steps(&self, dt: f64) -> Steps {
         let mut terms = [TermStep::default(); Memory::MOST_TERMS];
         for (step, term) in terms.iter_mut().zip(&self.terms) {
@@ -85,7 +87,7 @@ impl RegionMemory {
     }
 }
 
-/// What a step makes of the terms of a series.
+/// Coefficients of the terms of a series over one step.
 #[derive(Clone, Copy, Debug)]
 struct Steps {
     terms: [TermStep; Memory::MOST_TERMS],
@@ -113,12 +115,12 @@ pub(super) struct Relaxing<'a, T = f64> {
     steps: Steps,
     /// f.
     pub(super) factor: f64,
-    /// Of the region; empty where it was at rest before.
+    /// Internal variables of the region; empty where it was at rest before.
     internal: &'a [T],
 }
 
 impl<'a, T: Real> Relaxing<'a, T> {
-    /// The memory of a region at a time after what it remembers.
+    /// The memory of a region in an evaluation, the time `past.dt` after its history variables.
     pub(super) fn of(memory: Option<&'a RegionMemory>, past: Past<'a, T>) -> Self {
         let Some(memory) = memory else {
             return Self::none();
@@ -133,7 +135,7 @@ impl<'a, T: Real> Relaxing<'a, T> {
         }
     }
 
-    /// That of a region as if it had none.
+    /// An elastic region: no memory.
     pub(super) fn none() -> Self {
         Self {
             memory: None,
@@ -146,7 +148,7 @@ impl<'a, T: Real> Relaxing<'a, T> {
         }
     }
 
-    /// Whether there is any.
+    /// True if the region has memory.
     #[inline(always)]
     pub(super) fn is_there(&self) -> bool {
         self.memory.is_some()
@@ -182,7 +184,7 @@ impl<'a, T: Real> Relaxing<'a, T> {
         }
     }
 
-    /// What is left of a share of the local energy, and of the derivatives of the dilational one.
+    /// The remainder, after relaxation, of a share of the local energy, and of the derivatives of the dilational one.
     #[inline(always)]
     pub(super) fn left_of<N: Number>(&self, share: N, bulk: Bulk<N>, dilation: N) -> (N, Bulk<N>) {
         if !self.is_there() {
@@ -199,7 +201,7 @@ impl<'a, T: Real> Relaxing<'a, T> {
         (N::of(self.factor) * share, bulk)
     }
 
-    /// R (Pa) at points side by side; `None` where nothing is remembered.
+    /// R (Pa) at points side by side; `None` without history.
     #[inline(always)]
     pub(super) fn carried<N: Number<Real = T>>(
         &self,
@@ -226,7 +228,7 @@ impl<'a, T: Real> Relaxing<'a, T> {
         Some(carried)
     }
 
-    /// Whether it is defined for a deformation, in all lanes.
+    /// True if the memory is defined for a deformation, in all lanes.
     #[inline(always)]
     pub(super) fn admits<N: Number>(&self, deformation: &Deformation<N>) -> bool {
         !self.is_there() || N::all_le(N::of(SMALLEST_VOLUME_RATIO), deformation.volume_ratio)
@@ -262,7 +264,7 @@ impl RegionMemory {
     }
 }
 
-/// Internal variables of a body that are brought up to date, a time (s) after what stands in them.
+/// Internal variables of a body that are updated, `dt` (s) after the time that they hold.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Remembered<'a, T> {
     pub(super) internal: SharedSlice<'a, T>,
@@ -278,7 +280,7 @@ pub(super) struct Remembering<'a, T> {
 }
 
 impl<'a, T: Real> Remembering<'a, T> {
-    /// `dt` (s) after what stands in the internal variables of the region.
+    /// The memory of a region, to be updated `dt` (s) after the time that its internal variables hold.
     pub(super) fn of(memory: &'a RegionMemory, dt: f64, internal: &'a mut [T]) -> Self {
         Self {
             memory,
@@ -287,13 +289,13 @@ impl<'a, T: Real> Remembering<'a, T> {
         }
     }
 
-    /// Whether only deviatoric stress relaxes.
+    /// True if only deviatoric stress relaxes.
     #[inline(always)]
     pub(super) fn is_deviatoric(&self) -> bool {
         self.memory.is_deviatoric
     }
 
-    /// Remembers the first Piola-Kirchhoff stress (Pa) that relaxes, at points side by side.
+    /// Updates the history variables by the first Piola-Kirchhoff stress (Pa) that relaxes, at points side by side.
     #[inline(always)]
     pub(super) fn take<N: Number<Real = T>>(
         &mut self,

@@ -60,23 +60,23 @@ const NO_PLACE: u32 = u32::MAX;
 #[derive(Debug)]
 pub(crate) struct LargeDeformation {
     all: Arc<Regions>,
-    /// What force loops read of each region.
+    /// Data of each region that force loops read.
     numbers: Vec<Numbers<f64>>,
     nodes: usize,
     /// Places of tetrahedra, padding included.
     slots: usize,
-    /// Numbers that are remembered.
+    /// Number of internal (history) variables.
     variables: usize,
     /// The instructions that force loops are run with.
     set: InstructionSet,
     /// Place of each tetrahedron of the mesh among those of the regions.
     place_of_tet: Vec<u32>,
-    /// Room for evaluations, one for each that goes on at the same time.
+    /// Scratch space for evaluations, one for each that runs at the same time.
     pool: Mutex<Vec<Scratch>>,
 }
 
 impl LargeDeformation {
-    /// The regions, each with its tetrahedra; `None` where there are none.
+    /// The regions, each with its tetrahedra; `None` without any.
     pub(crate) fn new<'a>(
         mesh: &TetMesh,
         smoothing: &Smoothing,
@@ -120,7 +120,7 @@ impl LargeDeformation {
         })
     }
 
-    /// Does something with room that is used again, and with a field over all nodes in it.
+    /// Calls `with` with scratch space that is reused, which holds a field over all nodes.
     pub(crate) fn with_scratch<T>(&self, with: impl FnOnce(&mut Scratch) -> T) -> T {
         let pool = || self.pool.lock().unwrap_or_else(PoisonError::into_inner);
         let known = pool().pop();
@@ -182,7 +182,8 @@ impl LargeDeformation {
         evaluate_alone(self.all.alone(), &self.all.laws, &evaluation).map(drop)
     }
 
-    /// Its forces in double precision, by instructions of choice, in so many parts that threads compute at the same time.
+    /// Its forces in double precision, by instructions of choice, in `parts` parts that threads compute at the same
+    /// time.
     pub(crate) fn in_double(&self, parts: usize, set: InstructionSet) -> SharedForces<f64> {
         SharedForces::new(Arc::clone(&self.all), self.numbers.clone(), parts, set)
     }
@@ -234,7 +235,7 @@ impl LargeDeformation {
         }
     }
 
-    /// Adds so many times the tangent, or the viscosity, at the displacement in the scratch.
+    /// Adds `factor` times the tangent, or the viscosity, at the displacement in the scratch.
     pub(crate) fn add_tangent(
         &self,
         scratch: &mut Scratch,
@@ -402,7 +403,7 @@ mod tests {
         LargeDeformation::new(mesh, &smoothing, regions).unwrap()
     }
 
-    /// What is found, and the forces at the nodes.
+    /// Findings, and the forces at the nodes.
     fn evaluated(
         large: &LargeDeformation,
         field: impl Fn(u32) -> [f64; 3],
@@ -424,7 +425,7 @@ mod tests {
         })
     }
 
-    /// Where a node goes: bent, with strains of some 30 %, or besides with one corner pushed through the body.
+    /// Displacement of a node: bent, with strains of some 30 %, and if `is_pushed`, one corner pushed through the body.
     fn displacement(mesh: &TetMesh, is_pushed: bool, node: u32) -> [f64; 3] {
         if is_pushed && node == 0 {
             return [0.12; 3];
@@ -437,7 +438,7 @@ mod tests {
         ]
     }
 
-    /// Sizes that leave room at the end of vectors, chunks and edges.
+    /// Sizes that leave padding at the end of vectors, chunks and edges.
     #[test]
     fn every_instruction_set_gives_what_plain_numbers_give() {
         for cells in [1, 3, 5] {

@@ -42,7 +42,8 @@ impl OnLaw for Blocks<'_> {
     }
 }
 
-/// The loop over tetrahedra, for one law. `ALL` is whether it knows what stands beside the law, which is compiled for plain numbers only.
+/// The loop over tetrahedra, for one law. `ALL` is true if it includes the stress beside the law's, which is compiled
+/// for plain numbers only.
 struct Sweep<'a, 'b, L, const ALL: bool> {
     blocks: &'a mut Blocks<'b>,
     law: L,

@@ -48,8 +48,8 @@ impl OnLaw for Products<'_> {
     }
 }
 
-/// All loops over a region, for one law and one kind of tangent. `ALL` is whether they know projections and what stands beside the law: this
-/// is compiled for plain numbers only, as it would double what there is to compile.
+/// All loops over a region, for one law and one kind of tangent. `ALL` is true if they include projections and the
+/// stress beside the law's: this is compiled for plain numbers only, as it would double what there is to compile.
 struct Sweep<'a, L, const ALL: bool> {
     products: Products<'a>,
     law: L,
@@ -163,7 +163,7 @@ impl<'a, L: HyperelasticLaw, const ALL: bool> Sweep<'a, L, ALL> {
     }
 }
 
-/// What is left of the energy of tetrahedra side by side that are averaged with no other.
+/// The remainder, after relaxation, of the energy of tetrahedra side by side that are averaged with no other.
 #[inline(always)]
 pub(super) fn left_of_tets<N: Number<Real = f64>, L: HyperelasticLaw>(
     region: &HyperelasticRegion,
@@ -181,8 +181,8 @@ pub(super) fn left_of_tets<N: Number<Real = f64>, L: HyperelasticLaw>(
     relaxing.left_of(stiffness, bulk, law.dilation(at))
 }
 
-/// What is left of the own share that tetrahedra side by side have of the local energy, and of the dilational one by the mean dilation of their patches,
-/// whose own modulus is added elsewhere.
+/// The remainder, after relaxation, of the share of the local energy that tetrahedra side by side keep for themselves,
+/// and of the dilational one by the mean dilation of their patches, whose own modulus is added elsewhere.
 #[inline(always)]
 pub(super) fn left_of_smoothed<N: Number<Real = f64>, L: HyperelasticLaw>(
     region: &HyperelasticRegion,
@@ -289,7 +289,7 @@ impl<'a, N: Number<Real = f64>, L: HyperelasticLaw> EdgeTangent<'a, N, L> {
         Self::among::<true>(law, at, place, kind)
     }
 
-    /// As [`OwnTangent::among`].
+    /// Builds the edges' tangent, with the same meaning of `ALL` as [`OwnTangent::among`].
     #[inline(always)]
     fn among<const ALL: bool>(
         law: &'a L,

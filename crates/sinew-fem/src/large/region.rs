@@ -29,10 +29,10 @@ pub(crate) struct RegionLaw<'a> {
     pub(crate) directions: Option<&'a [[f64; 3]]>,
 }
 
-/// A region of hyperelastic tetrahedra, numbered by itself.
+/// A region of hyperelastic tetrahedra, with its own numbering.
 #[derive(Clone, Debug)]
 pub(crate) struct HyperelasticRegion {
-    /// What its energies are multiplied by; `None` where all tetrahedra are equally stiff.
+    /// Factors of its energies; `None` where all tetrahedra are equally stiff.
     stiffness: Option<Arc<Stiffness>>,
     pub(super) fibres: Option<RegionFibres>,
     pub(super) memory: Option<RegionMemory>,
@@ -134,7 +134,7 @@ impl HyperelasticRegion {
         }
     }
 
-    /// What force loops read of it.
+    /// Data of the region that force loops read.
     pub(super) fn numbers(&self) -> Numbers<f64> {
         Numbers {
             rest: Arc::clone(&self.rest),
@@ -145,7 +145,7 @@ impl HyperelasticRegion {
         }
     }
 
-    /// What energies of the law are multiplied by in tetrahedra side by side.
+    /// Factors of the law's energies in tetrahedra side by side.
     #[inline(always)]
     pub(super) fn stiffness_of_tets<N: Number<Real = f64>>(&self, first: usize) -> N {
         let stiffness = self.stiffness.as_ref();
@@ -202,18 +202,18 @@ impl HyperelasticRegion {
         })
     }
 
-    /// An edge by its place among vectors of edges: room behind the last one repeats it.
+    /// An edge by its place among vectors of edges: padding behind the last one repeats it.
     #[inline(always)]
     pub(super) fn edge_at(&self, place: usize) -> usize {
         place.min(self.edges.count().saturating_sub(1))
     }
 
-    /// Whether there is stress beside the law's: that of fibres, or what is left of earlier stress.
+    /// True if there is stress beside the law's: that of fibres, or the remainder of earlier stress.
     pub(super) fn has_beside(&self) -> bool {
         self.fibres.is_some() || self.memory.is_some()
     }
 
-    /// Whether tetrahedra take any mean with others.
+    /// True if tetrahedra take any mean with others.
     pub(super) fn is_smoothed(&self) -> bool {
         !self.patch_of.is_empty()
     }
@@ -238,13 +238,13 @@ impl HyperelasticRegion {
 /// Places of a region among those of all regions that need them.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct FirstPlaces {
-    /// Of its first tetrahedron, where patches take means.
+    /// Place of its first tetrahedron, where patches take means.
     pub(super) tets: usize,
-    /// Of its first internal variable.
+    /// Place of its first internal variable.
     pub(super) variables: usize,
 }
 
-/// What force loops read of a region, in their own precision.
+/// Data of a region that force loops read, in their own precision.
 #[derive(Clone, Debug)]
 pub(super) struct Numbers<T> {
     pub(super) rest: Arc<Rest<T>>,
@@ -252,9 +252,9 @@ pub(super) struct Numbers<T> {
     pub(super) edge_volumes: Arc<[T]>,
     /// The volume (m^3) of each patch.
     pub(super) patch_volumes: Arc<[T]>,
-    /// What energies of the law are multiplied by; `None` where all tetrahedra are equally stiff.
+    /// Factors of the law's energies; `None` where all tetrahedra are equally stiff.
     pub(super) stiffness: Option<Arc<Stiffness<T>>>,
-    /// The directions of fibres; `None` where there are none.
+    /// The directions of fibres; `None` without fibres.
     pub(super) directions: Option<Directions<T>>,
 }
 

@@ -11,8 +11,8 @@ use super::chunks::{LANES, Slot};
 use crate::hyperelastic::Tensor;
 use crate::tetra;
 
-/// The tetrahedra of a region at rest, in blocks of so many as the widest vector has lanes, so that a loop reads few streams of memory;
-/// "side by side" are as many as the number has lanes, all in one block.
+/// The tetrahedra of a region at rest, in blocks of as many as the widest vector has lanes, so that a loop reads few
+/// streams of memory; "side by side" are as many as the number has lanes, all in one block.
 #[derive(Debug)]
 pub(crate) struct Rest<T = f64> {
     nodes: Arc<Nodes>,
@@ -113,7 +113,7 @@ impl<T: Real> Rest<T> {
         self.tags.len()
     }
 
-    /// Whether a place is taken by a tetrahedron, not by padding.
+    /// True if a place is taken by a tetrahedron, not by padding.
     pub(super) fn is_taken(&self, tet: usize) -> bool {
         self.volume(tet) > T::default()
     }

@@ -1,4 +1,4 @@
-//! Where is kept what tasks read of each other.
+//! Positions of the values that tasks exchange.
 
 use std::collections::HashMap;
 
@@ -28,7 +28,7 @@ pub(super) struct RegionRooms {
     pub(super) corners: Vec<u32>,
     /// The first edge of each vector of edges.
     pub(super) edges: Vec<u32>,
-    /// Where the gradients at each edge begin in `gradients_at`, and the end of the last, again and again to fill a vector.
+    /// Start of the gradients at each edge in `gradients_at`, and the end of the last, repeated to fill a vector.
     pub(super) starts_at: Vec<u32>,
     /// The gradient of each tetrahedron at each edge, as the edges' sets have them.
     pub(super) gradients_at: Vec<u32>,
@@ -36,7 +36,7 @@ pub(super) struct RegionRooms {
     pub(super) edges_of: Vec<[u32; 6]>,
 }
 
-/// Room of one size that is given away, given back and given away again, the last first.
+/// Allocator of blocks of one size: a block that is given back is taken again, the last first.
 struct Blocks {
     size: usize,
     /// Rows that were ever given.
@@ -62,7 +62,7 @@ impl Blocks {
     }
 }
 
-/// What becomes free at the end of a stage of the first pass.
+/// Blocks released at the end of each stage of the first pass.
 #[derive(Default)]
 struct Freed(HashMap<usize, Vec<u32>>);
 
@@ -89,7 +89,7 @@ impl Freed {
 }
 
 impl Rooms {
-    /// Rooms for tasks at these times: vectors of edges of each region, forces of all chunks, and nodes.
+    /// Assigns blocks for tasks at these times: vectors of edges of each region, forces of all chunks, and nodes.
     pub(super) fn new(
         (regions, gather): (&[HyperelasticRegion], &Gather),
         all: &AllChunks,
@@ -210,7 +210,7 @@ impl RegionRooms {
     }
 }
 
-/// When the gradients of each chunk are read.
+/// Times at which the gradients of each chunk are read.
 fn readers_of_gradients(
     regions: &[HyperelasticRegion],
     all: &AllChunks,
@@ -229,7 +229,7 @@ fn readers_of_gradients(
     readers
 }
 
-/// When each vector of edges of each region is read.
+/// Times at which each vector of edges of each region is read.
 fn readers_of_edges(
     regions: &[HyperelasticRegion],
     all: &AllChunks,
@@ -248,7 +248,7 @@ fn readers_of_edges(
     regions.iter().map(of).collect()
 }
 
-/// When the forces of each chunk are read.
+/// Times at which the forces of each chunk are read.
 fn readers_of_corners(gather: &Gather, all: &AllChunks, nodes: &[When]) -> Vec<Vec<When>> {
     let mut readers = vec![Vec::new(); all.chunks.len()];
     for (index, when) in nodes.iter().enumerate() {

@@ -8,7 +8,8 @@ use super::region::HyperelasticRegion;
 use super::rooms::Rooms;
 use super::when::{AllChunks, FIRST, When};
 
-/// What is done for a part of a region. Ranges of the region's own chunks and edges, and of nodes in the order of [`Gather`].
+/// Kinds of work on a part of a region. Ranges of the region's own chunks and edges, and of nodes in the order of
+/// [`Gather`].
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Task {
     /// Takes the means of a chunk's patches, and keeps its gradients.
@@ -35,8 +36,8 @@ pub(super) struct Piece {
 /// the nodes. So every task reads what its own part did before it, or any part in a pass before, and nobody writes what another
 /// part of the same pass reads.
 ///
-/// What a part keeps from one task to another goes where something was that nobody needs any more: so little room is used again
-/// and again, and stays in the second cache, instead of streaming through it to memory and back.
+/// Values that a part keeps from one task to another overwrite values that are no longer needed: so a small buffer is
+/// reused again and again, and stays in the second cache, instead of streaming through it to memory and back.
 #[derive(Clone, Debug)]
 pub(crate) struct Schedule {
     passes: Vec<Vec<Vec<Piece>>>,
@@ -49,7 +50,7 @@ const NODES: usize = 3;
 const PASSES: usize = 4;
 
 impl Schedule {
-    /// The work on these regions in so many parts.
+    /// The work on these regions in `parts` parts.
     pub(super) fn new(regions: &[HyperelasticRegion], gather: &Gather, parts: usize) -> Self {
         let parts = parts.max(1);
         let all = AllChunks::new(regions, parts);
@@ -117,7 +118,7 @@ impl Schedule {
         }
     }
 
-    /// Where is kept what tasks read of each other.
+    /// Positions of the values that tasks exchange.
     pub(super) fn rooms(&self) -> &Rooms {
         &self.rooms
     }
@@ -146,7 +147,7 @@ impl Tasks {
         let counts: Vec<usize> = (0..PASSES).map(count).collect();
         let mut done = [0; PASSES];
         for (when, region, task) in self.0 {
-            // What follows the first pass is shared out anew.
+            // What follows the first pass is distributed again.
             let part = match when.pass {
                 FIRST => when.part,
                 pass => done[pass] * parts / counts[pass],

@@ -1,4 +1,4 @@
-//! Room for evaluations.
+//! Scratch space for evaluations.
 
 use sinew_sparse::simd::{Aligned, Real, Shared, SharedSlice};
 
@@ -7,7 +7,7 @@ use super::region::HyperelasticRegion;
 use super::rooms::Rooms;
 use crate::hyperelastic::Tensor;
 
-/// Room for one evaluation, used again by the next.
+/// Scratch space for one evaluation, reused by the next.
 #[derive(Debug)]
 pub(crate) struct Scratch {
     /// Displacement (m) of all mesh nodes, and a number to fill a row.
@@ -18,13 +18,13 @@ pub(crate) struct Scratch {
     pub(super) corners: Vec<[f64; 4]>,
     /// Their sums (N) at each node that has corners, in the order of [`super::gather::Gather`].
     pub(super) sums: Vec<[f64; 4]>,
-    /// What force loops keep.
+    /// Values that force loops keep.
     pub(super) kept: Kept<f64>,
     /// Gradient of the displacement in each tetrahedron of a region, where means are taken.
     pub(super) gradients: Vec<Rows<f64>>,
     /// Gradient of its change.
     pub(super) changes: Vec<Rows<f64>>,
-    /// Change of the stress (Pa) at each edge, then room to fill a vector.
+    /// Change of the stress (Pa) at each edge, then padding to fill a vector.
     pub(super) at_edges: Vec<Rows<f64>>,
     /// Dilation of each tetrahedron times its volume (m^3), and its change.
     pub(super) dilations_of_tets: [Vec<f64>; 2],
@@ -32,7 +32,7 @@ pub(crate) struct Scratch {
     pub(super) dilations: Vec<[f64; 2]>,
 }
 
-/// What force loops keep from one task to another. The threads of an evaluation share it.
+/// Values that force loops keep from one task to another. The threads of an evaluation share it.
 #[derive(Debug)]
 pub(super) struct Kept<T> {
     /// The mean dilation of the patch of each tetrahedron.
@@ -50,7 +50,7 @@ pub(super) struct Kept<T> {
     corners: Shared<[T; 4]>,
 }
 
-/// Where force loops keep what others read.
+/// Arrays through which the tasks of force loops exchange values.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Places<'a, T> {
     /// Displacement (m) of all mesh nodes.
@@ -61,14 +61,14 @@ pub(super) struct Places<'a, T> {
     pub(super) chunks: SharedSlice<'a, T>,
     /// Numbers of `chunks` for one part.
     pub(super) chunk: usize,
-    /// Those of gradients, before those of the stress beside the law's.
+    /// Numbers for gradients among them, before those for the stress beside the law's.
     pub(super) gradients_of_chunk: usize,
     pub(super) gradients: SharedSlice<'a, Rows<T>>,
     pub(super) at_edges: SharedSlice<'a, Rows<T>>,
 }
 
 impl<T: Copy> Places<'_, T> {
-    /// Whether all rooms are within them.
+    /// True if all assigned blocks are within the arrays.
     pub(super) fn hold(&self, rooms: &Rooms) -> bool {
         rooms.gradients_count <= self.gradients.count()
             && rooms.edges_count <= self.at_edges.count()
@@ -77,7 +77,7 @@ impl<T: Copy> Places<'_, T> {
 }
 
 impl<T: Real> Kept<T> {
-    /// Room for regions that are worked on in so many parts.
+    /// Arrays for regions that are worked on in `parts` parts.
     pub(super) fn new(regions: &[HyperelasticRegion], rooms: &Rooms, parts: usize) -> Self {
         Self::filled(regions, rooms, parts, T::default())
     }
@@ -135,7 +135,7 @@ impl<T: Real> Kept<T> {
 }
 
 impl Scratch {
-    /// Room for nodes of the mesh, and those in regions.
+    /// Scratch space for `nodes` nodes of the mesh, `taken` of which are in regions.
     pub(super) fn new(
         [nodes, taken]: [usize; 2],
         regions: &[HyperelasticRegion],

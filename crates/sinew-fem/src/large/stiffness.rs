@@ -6,7 +6,8 @@ use super::chunks::LANES;
 use super::rest::Rest;
 use crate::smoothing::Sets;
 
-/// What energies of a region's law are multiplied by. Fibres have moduli of their own, and what is remembered is a stress, which has its share.
+/// Factors of the energies of a region's law. Fibres have moduli of their own, and the history variables are stresses,
+/// which have their factor already.
 #[derive(Debug)]
 pub(super) struct Stiffness<T = f64> {
     /// In each tetrahedron.
@@ -18,7 +19,7 @@ pub(super) struct Stiffness<T = f64> {
 }
 
 impl Stiffness {
-    /// By that of each tetrahedron; sets have the mean of theirs by volume.
+    /// Factors by the stiffness of each tetrahedron; sets have the mean of theirs by volume.
     pub(super) fn new(tets: &[f64], rest: &Rest, [edges, patches]: [&Sets; 2]) -> Self {
         let means = |sets: &Sets| -> Vec<f64> {
             let mean = |set| rest.mean(sets.of(set), |tet| tets[tet]);
@@ -45,19 +46,19 @@ impl Stiffness {
 }
 
 impl<T: Real> Stiffness<T> {
-    /// That of tetrahedra side by side.
+    /// The factors of tetrahedra side by side.
     #[inline(always)]
     pub(super) fn of_tets<N: Number<Real = T>>(&self, first: usize) -> N {
         N::load(&self.tets[first..])
     }
 
-    /// That at edges side by side.
+    /// The factors at edges side by side.
     #[inline(always)]
     pub(super) fn at_edges<N: Number<Real = T>>(&self, first: usize) -> N {
         N::load(&self.edges[first..])
     }
 
-    /// That of a patch.
+    /// The factor of a patch.
     #[inline(always)]
     pub(super) fn of_patch(&self, patch: usize) -> T {
         self.patches[patch]

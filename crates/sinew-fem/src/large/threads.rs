@@ -19,7 +19,7 @@ use super::scratch::Kept;
 #[derive(Debug)]
 pub(crate) struct SharedForces<T> {
     all: Arc<Regions>,
-    /// What loops read of each region.
+    /// Data of each region that loops read.
     numbers: Vec<Numbers<T>>,
     schedule: Schedule,
     set: InstructionSet,

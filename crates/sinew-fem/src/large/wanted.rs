@@ -1,4 +1,4 @@
-//! What loops over tangents are asked for.
+//! Tangents and viscosities that loops compute.
 
 use sinew_core::TangentKind;
 
@@ -11,7 +11,8 @@ use crate::hyperelastic::{HyperelasticLaw, Viscous};
 pub(crate) enum Wanted {
     /// A tangent of a kind.
     Kind(TangentKind),
-    /// The exact tangent with fibres that are idle as if they were pulled, since they may be before the next look: it bounds a stable step.
+    /// The exact tangent with fibres that are idle as if they were pulled, since they may be before the next check: it
+    /// bounds a stable step.
     Stiffest,
     /// Viscosity for a factor of 1 s; of stress that relaxes, as it is at once.
     Viscosity,
@@ -32,7 +33,7 @@ impl Wanted {
         matches!(self, Self::Viscosity | Self::MostViscous)
     }
 
-    /// Whether idle fibres count as if they were pulled.
+    /// True if idle fibres count as if they were pulled.
     pub(super) fn idle_fibres_count(self) -> bool {
         matches!(self, Self::Stiffest | Self::MostViscous)
     }
@@ -49,7 +50,7 @@ impl Wanted {
         }
     }
 
-    /// Whether something beside the law has a part in it.
+    /// True if stress beside the law's contributes.
     pub(super) fn has_beside(self, region: &HyperelasticRegion) -> bool {
         match self.is_viscosity() {
             true => region.fibres.is_some(),

@@ -2,7 +2,7 @@
 
 use super::region::HyperelasticRegion;
 
-/// When a task can be done.
+/// The earliest time at which a task can be done.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct When {
     pub(super) pass: usize,
@@ -43,7 +43,8 @@ impl AllChunks {
         }
     }
 
-    /// When a task can be done that needs what was done with these chunks at these times; in `otherwise` where that is in two parts.
+    /// The earliest time for a task that reads results computed at the times `needed`; in pass `otherwise` if they are
+    /// of two parts.
     pub(super) fn after(&self, needed: impl Iterator<Item = When>, otherwise: usize) -> When {
         let all = needed.reduce(|a, b| When {
             pass: if a.part == b.part {
@@ -65,7 +66,7 @@ impl AllChunks {
         when
     }
 
-    /// When a tetrahedron's chunk is taken.
+    /// The time at which a tetrahedron's chunk is taken.
     pub(super) fn first(&self, place: usize) -> When {
         let stage = self.of_place[place] as usize;
         When {

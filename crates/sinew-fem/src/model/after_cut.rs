@@ -28,7 +28,7 @@ pub struct NodesCarried<'a> {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CutStateError {
-    /// Memory of regions whose numbers do not stand in the order of tetrahedra alone.
+    /// Memory of regions whose numbers are not in the order of tetrahedra alone.
     #[error(
         "tissue with memory (`prony`) can be cut where its element is p1, and none of its tetrahedra can be removed: what it remembers has another order otherwise"
     )]
@@ -39,18 +39,19 @@ pub enum CutStateError {
 }
 
 impl Model {
-    /// Whether no region averages strain over several tetrahedra.
+    /// True if no region averages strain over several tetrahedra.
     #[must_use]
     pub fn is_without_averages(&self) -> bool {
         self.body.smoothing.is_empty()
     }
 
-    /// Whether some component of a node (0-based) is held, or moved from outside.
+    /// True if some component of a node (0-based) is held, or moved from outside.
     pub(crate) fn is_supported(&self, node: u32) -> bool {
         self.body.cells.held_nodes.binary_search(&node).is_ok()
     }
 
-    /// Whether nothing moves a node (0-based) from outside in any direction, and it is not frozen away from its place at rest.
+    /// True if nothing moves a node (0-based) from outside in any direction, and it is not frozen away from its place
+    /// at rest.
     #[must_use]
     pub fn rests_in_place(&self, node: u32) -> bool {
         (0..3).all(|axis| self.motions.courses(node, axis).is_empty())
@@ -92,7 +93,7 @@ impl Model {
             self.carried(&field, nodes)
         };
         let internal = self.internal_variables();
-        // Memory stands in the order of tetrahedra, and these only go: as many numbers are the same ones.
+        // Memory is stored in the order of tetrahedra, which are only removed: as many numbers are the same ones.
         let keeps_order = self.is_without_averages();
         if internal != before.internal_variables() || internal > 0 && !keeps_order {
             return Err(CutStateError::Memory);

@@ -1,4 +1,4 @@
-//! What damping takes from a motion.
+//! Power that damping takes from a motion.
 
 use sinew_core::EvaluationError;
 use sinew_core::vectors::{dot, scale};

@@ -15,9 +15,9 @@ pub struct DeformedTet {
     pub stress: Option<[f64; 6]>,
     /// The angle of its rotation (rad); where it is linear as far as that is small, half of the curl of the displacement.
     pub rotation: f64,
-    /// Whether its law is one of large deformation.
+    /// True if its law is one of large deformation.
     pub is_hyperelastic: bool,
-    /// Whether its volume is 0 or below, or not a number.
+    /// True if its volume is 0 or below, or not a number.
     pub is_inverted: bool,
 }
 

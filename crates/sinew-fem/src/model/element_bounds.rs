@@ -11,8 +11,8 @@ use crate::tetra;
 const ROUNDING: f64 = 1e-12;
 
 impl Model {
-    /// Bounds by single tetrahedra, which hold after any cut along their faces; `None` where a region is hyperelastic, so that its stiffness
-    /// changes, or averages strain over tetrahedra that a cut separates. Looks at each tetrahedron.
+    /// Bounds by single tetrahedra, which hold after any cut along their faces; `None` where a region is hyperelastic,
+    /// so that its stiffness changes, or averages strain over tetrahedra that a cut separates. Checks each tetrahedron.
     #[must_use]
     pub fn element_bounds(&self) -> Option<ElementBounds> {
         if self.large.is_some() || !self.body.smoothing.is_empty() {
@@ -56,7 +56,7 @@ impl Model {
         frequency.unwrap_or(f64::INFINITY)
     }
 
-    /// What [`Model::tet_frequency`] follows from, by itself: it stays the same when the body is cut.
+    /// The data that determine [`Model::tet_frequency`], as a copy: they stay the same when the body is cut.
     pub(crate) fn tet_frequencies(&self) -> TetFrequencies {
         let regions = self.report.regions.iter();
         TetFrequencies {
@@ -76,7 +76,7 @@ pub(crate) struct TetFrequencies {
 }
 
 impl TetFrequencies {
-    /// That (1/s) of a tetrahedron (0-based) with these vertices (m), as by [`Model::tet_frequency`].
+    /// The largest frequency (1/s) of a tetrahedron (0-based) with these vertices (m), as by [`Model::tet_frequency`].
     pub(crate) fn of(&self, tet: usize, vertices: &[[f64; 3]; 4]) -> f64 {
         let region = self.region_of[tet] as usize;
         let frequency = self.materials[region].frequency(tet, vertices, self.densities[region]);
@@ -103,8 +103,8 @@ fn by_blocks(matrix: &[f64; 144]) -> Option<ElementMatrix> {
     Some(scaled)
 }
 
-/// Whether no eigenvalue is larger than this number, but for rounding. It takes a small part of the time that eigenvalues take, and most
-/// tetrahedra of a mesh are no worse than the worst of those before.
+/// True if no eigenvalue is larger than `bound`, but for rounding. It takes a small part of the time that eigenvalues
+/// take, and most tetrahedra of a mesh are no worse than the worst of those before.
 fn is_bounded(matrix: &ElementMatrix, bound: f64) -> bool {
     let room = bound * (1.0 + ROUNDING / 2.0);
     let rest = ElementMatrix::from_diagonal_element(room) - matrix;

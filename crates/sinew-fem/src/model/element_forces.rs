@@ -82,7 +82,7 @@ struct Sweep<T> {
     motions: Motions,
     /// Nodes that are moved, with the position of those that are cells.
     moved: Vec<(u32, u32)>,
-    /// What motions add to the displacement of cells (m), by position; empty where they add nothing.
+    /// Displacement of cells (m) that motions add, by position; empty where they add nothing.
     offsets: Vec<[T; 3]>,
     following: Following,
 }

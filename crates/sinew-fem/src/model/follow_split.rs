@@ -11,8 +11,8 @@ use crate::error::FemError;
 use crate::in_place::{InMotion, InPlace, ModelParts};
 
 impl Model {
-    /// Whether splits can be followed: in linear bodies of plain tetrahedra whose supports rest. Springs, hyperelastic regions, elements that
-    /// average strain and prescribed motions are made anew.
+    /// True if splits can be followed: in linear bodies of plain tetrahedra whose supports rest. Springs, hyperelastic
+    /// regions, elements that average strain and prescribed motions are rebuilt.
     pub(crate) fn can_follow_splits(&self) -> bool {
         let mut tets = self.region_of.iter().enumerate();
         self.large.is_none()
@@ -26,7 +26,7 @@ impl Model {
             })
     }
 
-    /// Makes room for [`spare_nodes`], so that following splits allocates nothing until it is used up.
+    /// Reserves space for [`spare_nodes`], so that following splits allocates nothing until it is used up.
     pub(crate) fn make_room_for_splits(&mut self) {
         let spare = spare_nodes(self.mesh.points.len());
         Arc::make_mut(&mut self.mesh).reserve(spare);
@@ -45,7 +45,7 @@ impl Model {
         body.linear_pattern = Arc::clone(&body.pattern);
     }
 
-    /// Follows the last stroke of the body, which was looked at. Returns whether rows were laid out anew.
+    /// Follows the last stroke of the body, after [`InPlace::look`]. Returns true if all rows were laid out again.
     pub(crate) fn follow_split(
         &mut self,
         in_place: &mut InPlace,
@@ -93,7 +93,8 @@ impl Model {
         }
     }
 
-    /// Carries a state of the model before over the last stroke, as [`Model::state_after_cut`] does; the body had so many nodes before.
+    /// Carries a state of the model before over the last stroke, as [`Model::state_after_cut`] does; the body had
+    /// `nodes_before` nodes before.
     pub(crate) fn carry_over_split(&self, state: &mut State, stroke: &Stroke, nodes_before: usize) {
         self.carry_values(&mut state.u, stroke, nodes_before);
         self.carry_values(&mut state.v, stroke, nodes_before);

@@ -16,8 +16,8 @@ use crate::motion::Field;
 
 /// A hyperelastic body at a trial point. Evaluations of models without such regions leave everything to the matrices.
 impl Model {
-    /// Does something with the hyperelastic regions and the displacement of all nodes at a trial point; nothing where
-    /// there are none.
+    /// Calls `with` with the hyperelastic regions and the displacement of all nodes at a trial point; does nothing
+    /// without such regions.
     fn at_trial<T: Default>(
         &self,
         (when, u): (LoadTime<'_>, &[f64]),
@@ -100,7 +100,7 @@ impl Model {
         })
     }
 
-    /// Adds so many times the own blocks (N/m) of hyperelastic regions to those of all cells.
+    /// Adds `factor` times the nodes' own blocks (N/m) of hyperelastic regions to those of all cells.
     fn add_large_blocks(
         &self,
         trial: &Trial<'_>,
@@ -235,7 +235,7 @@ impl ForceLaw for Model {
         is_sum.then_some(self)
     }
 
-    /// Of materials, elements and geometry.
+    /// Fingerprint of materials, elements and geometry.
     fn fingerprint(&self) -> u64 {
         let mut hash = Hash::new();
         for material in &self.materials {

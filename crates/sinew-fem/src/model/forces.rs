@@ -26,7 +26,7 @@ impl Model {
         Ok(out)
     }
 
-    /// [`Model::forces`] written over the content of `out`, which allocates nothing once `out` has room, unless
+    /// [`Model::forces`] written over the content of `out`, which allocates nothing once `out` has the capacity, unless
     /// many forces come in another order than that of their nodes.
     ///
     /// # Errors
@@ -75,7 +75,7 @@ impl Model {
     }
 }
 
-/// Adds up the values of each place, in the order in which they stand, into one; places increasing.
+/// Adds up the values of each place, in their order, into one; places increasing.
 fn add_up<T: Copy>(values: &mut Vec<(u32, T)>, add: impl Fn(&mut T, T)) {
     let place = |(place, _): &(u32, T)| *place;
     if !values.is_sorted_by_key(place) {

@@ -75,7 +75,7 @@ pub struct Model {
     /// Source of each load of the operators.
     load_items: Vec<Item>,
     report: ModelReport,
-    /// What touches it.
+    /// Contact, applied as a correction at the end of each step; `None` without any.
     contact: Option<Arc<dyn Contact>>,
 }
 
@@ -123,9 +123,9 @@ impl Model {
         Self::on_body(mesh, graph, body, (problem, frozen), region_of, kept)
     }
 
-    /// Assembles another problem on the mesh of this model in which the same components move by themselves, for
-    /// sweeps over materials, damping, loads and prescribed motions. The two models share the mesh and, where strain
-    /// is averaged over the same tetrahedra, the pattern of the matrices, so that an analysis of the pattern serves both. The
+    /// Assembles another problem on the mesh of this model in which the same components are free, for sweeps over
+    /// materials, damping, loads and prescribed motions. The two models share the mesh and, where strain is averaged
+    /// over the same tetrahedra, the pattern of the matrices, so that an analysis of the pattern serves both. The
     /// result is that of [`Model::build`] to the last bit.
     ///
     /// # Errors
@@ -159,8 +159,8 @@ impl Model {
         }
     }
 
-    /// Whether a problem couples nodes as this model: linear regions by matrices, others without, averages over the
-    /// same sets of tetrahedra.
+    /// True if a problem couples nodes as this model does: linear regions by matrices, others without, averages over
+    /// the same sets of tetrahedra.
     fn couples_as(&self, problem: &Problem, region_of: &[u32]) -> bool {
         let kind = |(is_large, element): (bool, Element)| {
             let by_edges = element.edge_share() > 0.0;
@@ -278,7 +278,7 @@ impl Model {
         self.body.cells.of_node(node)
     }
 
-    /// Whether each component is held although its cell moves, three a cell.
+    /// True for each component that is held although its cell moves, three a cell.
     #[must_use]
     pub fn pinned(&self) -> &[bool] {
         &self.body.cells.pinned

@@ -46,8 +46,8 @@ impl Model {
         Ok(self)
     }
 
-    /// The courses of a component (0, 1, 2 for x, y, z) of a mesh node (0-based) that is moved, or a constant one where it was frozen; empty
-    /// where the component is held at rest or moves by itself.
+    /// The courses of a component (0, 1, 2 for x, y, z) of a mesh node (0-based) that is moved, or a constant one where
+    /// it was frozen; empty where the component is held at rest or free.
     #[must_use]
     pub fn courses(&self, node: u32, axis: usize) -> &[Course] {
         self.motions.courses(node, axis)
@@ -192,8 +192,7 @@ impl Model {
         })
     }
 
-    /// Calls `take` with the parts that a field has at nodes of the mesh: those that move by themselves, and then those
-    /// that are moved.
+    /// Calls `take` with the parts that a field has at nodes of the mesh: the free ones, and then those that are moved.
     fn each_value(
         &self,
         when: LoadTime<'_>,

@@ -22,10 +22,9 @@ impl Model {
         &self.masses
     }
 
-    /// Writes the force (N) of the supports on the body at each node of the mesh, at a time (s), with
-    /// displacement `u` (m) and velocity `v` (m/s) at that time (see
-    /// [`sinew_core::State::velocity_at_t`]); zero in components that move by themselves. For a state of a run with stiffness damping see
-    /// [`Model::reactions_in`].
+    /// Writes the force (N) of the supports on the body at each node of the mesh, at a time (s), with displacement `u`
+    /// (m) and velocity `v` (m/s) at that time (see [`sinew_core::State::velocity_at_t`]); zero in free components. For
+    /// a state of a run with stiffness damping see [`Model::reactions_in`].
     ///
     /// At each held or moved component p it is `M_p (a_p + alpha v_p) + (K u + D v)_p - F_p(t)`: the force
     /// of its prescribed motion, the pull of all other components, less the model's own loads on p, so that all
@@ -94,9 +93,9 @@ impl Model {
         Ok(())
     }
 
-    /// The force (N) of the supports on the body at all nodes of a part of the mesh together, see
-    /// [`Model::reactions`]. Nodes that are neither held nor moved add nothing. Looks the nodes up on each
-    /// call: for every frame, use [`On::nodes`] once and then [`Model::reaction_of_nodes`].
+    /// The force (N) of the supports on the body at all nodes of a part of the mesh together, see [`Model::reactions`].
+    /// Nodes that are neither held nor moved add nothing. Searches the nodes on each call: for every frame, use
+    /// [`On::nodes`] once and then [`Model::reaction_of_nodes`].
     ///
     /// # Errors
     /// Same as [`Model::reactions`], and [`FieldError::Place`] if the mesh has no such part.
@@ -302,7 +301,7 @@ impl Model {
         }
     }
 
-    /// The components that are held; zero in those that move by themselves.
+    /// The components that are held; zero in free ones.
     pub(super) fn held_part(&self, node: u32, force: [f64; 3]) -> [f64; 3] {
         let cells = &self.body.cells;
         std::array::from_fn(|axis| match cells.free_dof(node, axis) {

@@ -36,9 +36,9 @@ impl Model {
         Ok(())
     }
 
-    /// Writes the stress (Pa) of each tetrahedron at a time (s), in the order of
-    /// [`Model::strain`]: that of the elastic law alone, without damping; Cauchy's in hyperelastic regions. Where regions average strain
-    /// ([`crate::Element`]) it follows from the averages, and room is allocated for them; otherwise nothing is.
+    /// Writes the stress (Pa) of each tetrahedron at a time (s), in the order of [`Model::strain`]: that of the elastic
+    /// law alone, without damping; Cauchy's in hyperelastic regions. Where regions average strain ([`crate::Element`])
+    /// it follows from the averages, and memory is allocated for them; otherwise nothing is.
     ///
     /// The stress of plain tetrahedra is most accurate averaged over neighbours; in nearly
     /// incompressible materials the pressure of a single one means little.

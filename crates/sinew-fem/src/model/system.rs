@@ -36,7 +36,7 @@ impl System for Model {
         }
     }
 
-    /// What stress that relaxes remembers.
+    /// Number of history variables of stress that relaxes.
     fn internal_variables(&self) -> usize {
         self.large.as_ref().map_or(0, |large| large.variables())
     }
@@ -80,8 +80,9 @@ impl System for Model {
         Some(stiffest.reduce(f64::max)? / softest.reduce(f64::min)?)
     }
 
-    /// The energy of the degrees of freedom, of stress that relaxes what stays for a long time, without the energy that supports in motion hold and store; `None` for
-    /// hyperelastic regions with such supports, where the two cannot be told apart, and outside a law's domain.
+    /// The energy of the degrees of freedom, of stress that relaxes what stays for a long time, without the energy that
+    /// supports in motion hold and store; `None` for hyperelastic regions with such supports, where the two cannot be
+    /// distinguished, and outside a law's domain.
     fn energy(&self, u: &[f64], v: &[f64]) -> Option<Energy> {
         let linear = self.operators.energy(u, v);
         if self.large.is_none() {

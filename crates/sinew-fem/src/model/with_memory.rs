@@ -1,4 +1,4 @@
-//! What a model tells of a state of which it remembers more than the displacement.
+//! Results of a model in a state with history variables.
 
 use sinew_core::LoadTime;
 

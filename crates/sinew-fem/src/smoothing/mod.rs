@@ -23,7 +23,7 @@ pub(crate) struct Smoothing {
     pub(crate) edges: Edges,
     /// The tetrahedra of each patch.
     pub(crate) patches: Sets,
-    /// The patch of each tetrahedron; empty where there are none.
+    /// The patch of each tetrahedron; empty without patches.
     patch_of_tet: Vec<u32>,
 }
 
@@ -44,7 +44,7 @@ impl Smoothing {
         }
     }
 
-    /// Whether there are no sets.
+    /// True if there are no sets.
     pub(crate) fn is_empty(&self) -> bool {
         self.patch_of_tet.is_empty()
     }

@@ -133,13 +133,13 @@ impl Growth<'_> {
     }
 }
 
-/// Whether the tetrahedra are, six after six, hexahedra cut around a diagonal, as those of the structured generators.
+/// True if the tetrahedra are, six after six, hexahedra cut around a diagonal, as those of the structured generators.
 fn is_grid(tets: &[[u32; 4]]) -> bool {
     let (sixes, rest) = tets.as_chunks::<SIX>();
     rest.is_empty() && !sixes.is_empty() && sixes.iter().all(fills_a_hexahedron)
 }
 
-/// Whether six tetrahedra have eight nodes, two of which are in all six.
+/// True if six tetrahedra have eight nodes, two of which are in all six.
 fn fills_a_hexahedron(six: &[[u32; 4]; SIX]) -> bool {
     let mut times: Vec<(u32, usize)> = Vec::with_capacity(8);
     for node in six.as_flattened() {

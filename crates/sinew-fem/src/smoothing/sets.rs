@@ -53,7 +53,8 @@ impl Sets {
         &self.tets[self.range(set)]
     }
 
-    /// Where the members of each set begin in lists that have a number for each member of each set, and the end of the last.
+    /// Offsets of the members of each set in lists that have a number for each member of each set, and the end of the
+    /// last.
     pub(crate) fn starts(&self) -> &[u32] {
         &self.starts
     }

@@ -21,7 +21,7 @@ pub(crate) struct SmoothedStrain {
 }
 
 impl SmoothedStrain {
-    /// The strain of a tetrahedron by itself.
+    /// The strain of a tetrahedron without averages.
     fn plain(strain: [f64; 6]) -> Self {
         Self {
             shear: strain,

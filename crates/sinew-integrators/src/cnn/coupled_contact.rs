@@ -79,7 +79,7 @@ pub(super) struct Coupled<'a> {
 }
 
 impl CoupledContact {
-    /// Room for contact on a body, beside so many rigid motions.
+    /// Scratch space for contact on a body, beside `motions` rigid motions.
     pub(super) fn new(contact: &dyn Contact, dofs: usize, motions: usize) -> Self {
         let cells = contact.cells();
         let mut place_of = vec![0; dofs / 3];
@@ -285,7 +285,7 @@ impl CoupledContact {
         given
     }
 
-    /// Notes where the step led contact's cells, and how rigid motions move them.
+    /// Stores the contact-free displacements and velocities of contact's cells, and how rigid motions move them.
     fn look(&mut self, coupled: Coupled<'_>, state: &State) {
         for (place, cell) in coupled.contact.cells().iter().enumerate() {
             let first = 3 * *cell as usize;

@@ -24,9 +24,9 @@ impl Explicit for ModifiedLeapfrog {
         plain.with_orders(4, 2).with_other_damping(1)
     }
 
-    /// `sqrt 12/w` undamped: `dt^2 w^2 (1 - dt^2 w^2/12)` reaches its largest value, 3, at `dt^2 w^2 = 6`
-    /// and returns to 0 at 12. Lagging damping d takes from the room below 4 that is left at 6, and
-    /// beyond that from the step: stable while `2 d dt` and that value together stay below 4.
+    /// `sqrt 12/w` undamped: `dt^2 w^2 (1 - dt^2 w^2/12)` reaches its largest value, 3, at `dt^2 w^2 = 6` and returns
+    /// to 0 at 12. Lagging damping d takes from the margin below 4 that is left at 6, and beyond that from the step:
+    /// stable while `2 d dt` and that value together stay below 4.
     fn stable_step(&self, spectrum: &Spectrum) -> StableStep {
         let (w, d) = (spectrum.omega_max, spectrum.damping_max);
         let with_damping = (1.0 / (2.0 * d)).max(lagged(w, d));

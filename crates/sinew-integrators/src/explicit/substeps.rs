@@ -22,8 +22,8 @@ const MOST_FIXED: u32 = 10_000;
 pub enum Substeps {
     /// This many parts, always.
     Fixed(u32),
-    /// The fewest parts that are no longer than nine tenths of the stable step: that of the matrices, or of a law's current stiffness,
-    /// which is looked at again and again.
+    /// The fewest parts that are no longer than nine tenths of the stable step: that of the matrices, or of a law's
+    /// current stiffness, which is checked again and again.
     Auto,
 }
 
@@ -49,10 +49,10 @@ impl Substeps {
         Self::parts(dt, limit).min(f64::from(u32::MAX)) as u32
     }
 
-    /// The same for a method, where there are so many that parts stay stable.
+    /// The same for a method, provided that the parts are stable.
     ///
     /// # Errors
-    /// [`SetupError::Unresolved`] where there are not, by the option that asked for them.
+    /// [`SetupError::Unresolved`] if they are not, naming the option that asked for them.
     pub(super) fn stable_parts_of(
         integrator: &'static str,
         dt: f64,
@@ -103,7 +103,8 @@ pub(super) fn whole(parts: f64) -> u32 {
     parts.ceil().clamp(1.0, f64::from(u32::MAX)) as u32
 }
 
-/// Parts after which damping that is not by mass alone, and the stable step of a law that tells no tangent, are found anew. Until then damping is taken to grow with the stiffness.
+/// Parts after which damping that is not by mass alone, and the stable step of a law that tells no tangent, are found
+/// again. Until then damping is taken to grow with the stiffness.
 const PARTS_BETWEEN_LOOKS: u32 = 40;
 
 /// Parts after which the fastest motion tells at the latest whether the stable step has shrunk.
@@ -201,10 +202,12 @@ impl Substepped {
     }
 }
 
-/// Parts by the current stiffness of a law, of what would take two at rest. They are a function of the state alone, in which they
-/// stand: after each step, and after four parts of a longer one, a product of the tangent brings the estimate of the fastest motion up to date ([`follow_largest_eigenvalue`]), about two forces. Until
-/// the next one the stable step is taken to shrink as it did since the last one. A step that turns out to be too long for the
-/// stiffness that it led to, or that the law refuses, is taken again in shorter parts, from the state before it: contact, memory and what it made of the energy are undone.
+/// Parts by the current stiffness of a law, of what would take two at rest. They are a function of the state alone, in
+/// which they are stored: after each step, and after four parts of a longer one, a product of the tangent brings the
+/// estimate of the fastest motion up to date ([`follow_largest_eigenvalue`]), about two forces. Until the next one the
+/// stable step is taken to shrink as it did since the last one. A step that turns out to be too long for the stiffness
+/// at its end, or that the law refuses, is taken again in shorter parts, from the state before it: contact, memory and
+/// what it made of the energy are undone.
 impl Substepped {
     fn run_by_current_stiffness(
         &mut self,
@@ -339,7 +342,7 @@ impl Substepped {
         Ok(parts)
     }
 
-    /// Looks at the stiffness after some of `parts` parts, and brings the cut up to date; the parts that the step needed.
+    /// Checks the stiffness after some of `parts` parts, and updates the cut; the parts that the step needed.
     fn parts_needed(
         &mut self,
         cut: &mut StepCut,
@@ -467,7 +470,7 @@ impl Substepped {
     }
 }
 
-/// The work of so many sweeps.
+/// The work of this number of sweeps.
 fn sweeps(sweeps: u64) -> StepReport {
     StepReport {
         sweeps,

@@ -43,8 +43,8 @@ pub struct ImplicitSteps<M> {
 }
 
 impl<M: OneAcceleration> ImplicitSteps<M> {
-    /// Factorises for a linear system and steps of `dt` (s), or makes room for Newton's method; the analysis of the
-    /// last factor is reused on the same pattern.
+    /// Factorises for a linear system and steps of `dt` (s), or allocates for Newton's method; the analysis of the last
+    /// factor is reused on the same pattern.
     pub(super) fn set_up(
         method: &M,
         system: &dyn System,

@@ -18,7 +18,7 @@ use crate::{Method, NumericalDissipation, OptionDefault, OptionHelp, OptionKind,
 /// On nonlinear laws the same equations are solved for a+ by Newton's method.
 ///
 /// The default, beta = 1/4 and gamma = 1/2, is stable at any step and conserves energy on linear systems; on nonlinear
-/// ones the energy may grow in long steps, which is told.
+/// ones the energy may grow in long steps, which is reported.
 #[derive(Clone, Copy, Debug)]
 pub struct Newmark {
     beta: f64,

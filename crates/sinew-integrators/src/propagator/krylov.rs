@@ -17,10 +17,10 @@ const CHAIN: usize = 3;
 const EVERY: usize = 3;
 /// Length of a rate below which squares underflow and nothing moves any more.
 const NOTHING: f64 = 1e-140;
-/// Change between two looks at the solution above which the estimate is not believed: in a space far
-/// too small for the step both the solution and its estimate mean nothing.
+/// Change between two checks of the solution above which the estimate is not believed: in a space far too small for the
+/// step both the solution and its estimate mean nothing.
 const STEADY: f64 = 1e-2;
-/// Part of a step below which it is not shortened: the space grows instead.
+/// Share of a step below which it is not shortened: the space grows instead.
 const SHORTEST: f64 = 0.5;
 
 /// `y' = L y + b` for y = (u, v) over a step: `y+ = y + dt phi_1(dt L) w0 + dt^2 phi_2(dt L) w1` with
@@ -89,7 +89,7 @@ impl Krylov {
         let damping = spectrum.mass_damping + spectrum.damping_max;
         let half = damping / 2.0;
         let fastest = half + (half * half + spectrum.omega_max.powi(2)).sqrt();
-        // A space of about omega dt + 6 is enough; room for twice that and for tight tolerances.
+        // A space of about omega dt + 6 is enough; capacity for twice that and for tight tolerances.
         let expected = fastest * dt + 6.0;
         let room = (2.0 * expected + 20.0) as usize;
         let n = operators.dofs();
@@ -240,7 +240,7 @@ impl Krylov {
                 .map(|(now, before)| (now - before).powi(2));
             let change = changes.sum::<f64>().sqrt() / size_now;
             let estimate = (dt * next * phi(m - 1, order + 1)).abs() / size_now;
-            // A space with only one look at it has nothing to compare with.
+            // A space with only one check of it has nothing to compare with.
             let steady = change <= STEADY || capacity <= EVERY;
             let met = complete || (steady && estimate <= self.resolution.tolerance);
             for (row, coefficient) in self.coefficients[..m].iter_mut().enumerate() {

@@ -34,9 +34,9 @@ use crate::{Method, OptionDefault, OptionHelp, OptionKind, OptionLabel, Scheme, 
 /// must fall on steps. The degree is chosen from the step to meet a tolerance, and each step is
 /// checked. [`PropagatorKind`] defines the error that the tolerance bounds.
 ///
-/// No undamped motion grows, for any tolerance, step and number of steps. Chebyshev's and
-/// Krylov's forms err towards less energy instead: a loose tolerance takes energy out, up to about twice
-/// the error of a step each time. The two-step form neither takes nor gives.
+/// No undamped motion grows, for any tolerance, step and number of steps. Chebyshev's and Krylov's forms err towards
+/// less energy instead: a large tolerance takes energy out, up to about twice the error of a step each time. The
+/// two-step form neither takes nor gives.
 #[derive(Debug)]
 pub struct Propagator {
     kind: PropagatorKind,
@@ -241,10 +241,10 @@ impl Method for Propagator {
         ]
     }
 
-    /// Options for an error of a run. Errors of steps add up; a tenth of the error leaves room for that and
-    /// costs few degrees. The two-step form's tolerance is one of frequencies: the phase error grows.
+    /// Options for an error of a run. Errors of steps add up; a tenth of the error leaves a margin for that and costs
+    /// few degrees. The two-step form's tolerance is one of frequencies: the phase error grows.
     ///
-    /// A fit to the loads estimates the error of a run; half of it leaves room for what the estimate leaves out.
+    /// A fit to the loads estimates the error of a run; half of it leaves a margin for what the estimate leaves out.
     fn options_for_error(error: f64) -> Vec<Options> {
         let fitted = (0.5 * error > LEAST_ESTIMATE)
             .then(|| of_fit("load").with_number(TOLERANCE, 0.5 * error));

@@ -2,14 +2,14 @@
 
 use std::f64::consts::PI;
 
-/// Points per degree among which the largest value of a polynomial is looked for.
+/// Points per degree among which the largest value of a polynomial is sought.
 pub(super) const POINTS_PER_DEGREE: usize = 32;
 
 /// Share of the largest value that a peak has at one of these points: cos(pi/64), rounded down.
 const SEEN_OF_A_PEAK: f64 = 0.99;
 
-/// The largest value of the absolute value of a polynomial, given as a function of the angle, between the
-/// angles 0 and pi, from this many points for the first look.
+/// The largest value of the absolute value of a polynomial, given as a function of the angle, between the angles 0 and
+/// pi, from this many points for the first search.
 pub(super) fn largest_value(function: impl Fn(f64) -> f64, points: usize) -> f64 {
     let width = PI / points as f64;
     let seen: Vec<f64> = (0..=points)
@@ -24,7 +24,7 @@ pub(super) fn largest_value(function: impl Fn(f64) -> f64, points: usize) -> f64
 }
 
 /// The least value of a polynomial, given as a function of the angle, between the angles 0 and pi, from this many
-/// points for the first look.
+/// points for the first search.
 pub(super) fn least_value(function: impl Fn(f64) -> f64, points: usize) -> f64 {
     let upside_down = |angle: f64| -function(angle);
     let places = tops(upside_down, points).into_iter();

@@ -12,8 +12,8 @@ pub(super) struct ChebyshevVectors {
 }
 
 impl ChebyshevVectors {
-    /// The sweeps for k = 1 up to, but not at, `terms`. x stands in `start`; `each(k, vector)` gives the
-    /// updates that use a vector.
+    /// The sweeps for k = 1 up to, but not at, `terms`. x is stored in `start`; `each(k, vector)` gives the updates
+    /// that use a vector.
     pub(super) fn sweeps<'a>(
         &'a self,
         start: Register,

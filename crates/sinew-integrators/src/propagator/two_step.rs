@@ -85,8 +85,8 @@ impl TwoStep {
         let degree = resolution.degree_for(&left_out, dt, |degree| left_out[degree])?;
         s.truncate(degree + 1);
         let swing = largest_swing(&s, interval, alpha) / 2.0;
-        // The first step is off by left_out, and a mode this near to 1 turns that into amplitude by the
-        // root of the room.
+        // The first step is off by left_out, and a mode this near to 1 turns that into amplitude by the root of the
+        // margin.
         let room = (0.1 * (swing - 1.0)).max(2.0 * left_out[degree].powi(2) + LEAST_ROOM);
         let scale = swing / (1.0 - room.min(MOST_ROOM));
         if scale > 1.0 {

@@ -1,4 +1,4 @@
-//! The way of a hand through time.
+//! Path of the user's tool pose in time.
 
 use std::collections::VecDeque;
 
@@ -10,7 +10,7 @@ pub(crate) struct Course {
 }
 
 impl Course {
-    /// A hand that rests from a time (s) on.
+    /// A pose that rests from a time (s) on.
     pub(crate) fn at_rest(t: f64, pose: [f64; 6]) -> Self {
         Self {
             corners: VecDeque::from([(t, pose)]),

@@ -79,10 +79,10 @@ const RESTS: f64 = 1e-3;
 /// Simulated time (s) after which what swings as widely as before does not settle.
 const PATIENCE: f64 = 3.0;
 
-/// Watches whether a body comes to rest after a hand has let it.
+/// Watches whether a body comes to rest after the user's last action or the last cut.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Settling {
-    /// Simulated time (s) at which the hand came to rest.
+    /// Simulated time (s) of the last disturbance: a steered tool, a command or a cut.
     since: f64,
     span_began: f64,
     sum: f64,
@@ -94,7 +94,7 @@ pub(crate) struct Settling {
 }
 
 impl Settling {
-    /// The hand moves at a time (s).
+    /// Notes a disturbance at a time (s).
     pub(crate) fn disturbed(&mut self, t: f64) {
         let largest = self.largest;
         *self = Self {
@@ -263,7 +263,7 @@ mod tests {
         for light in 0..3 {
             has_words(light, Light::GREY, "not measured");
         }
-        // The error is told by its number, whatever the colour.
+        // The error is reported by its number, whatever the colour.
         let largest = error_light(1.0).reason as usize;
         assert_eq!(words_of(2).len(), largest + 1);
     }

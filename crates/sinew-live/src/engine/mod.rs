@@ -36,10 +36,10 @@ use crate::protocol::{Event, Field, FrameHead, FrameWriter, Order, Shape};
 use crate::scene_values::SceneValues;
 use crate::server::Shared;
 
-/// Simulated time (s) in which a tool goes to where the hand is: a jump within one step would be a blow.
+/// Simulated time (s) in which a tool moves to the user's tool pose: a jump within one step would be a blow.
 const GLIDE: f64 = 0.004;
 
-/// Time for which it steps before it looks at commands and pictures again.
+/// Time for which it steps before it checks commands and pictures again.
 const LOOK: Duration = Duration::from_millis(10);
 
 /// Shortest time between two pictures, whatever pages ask for.
@@ -54,13 +54,14 @@ const FAR: Duration = Duration::from_secs(1);
 /// Longest wait where there is nothing to do.
 const IDLE: Duration = Duration::from_millis(100);
 
-/// Time without a cut after which the stable steps of a body that was cut are asked for: that may take longer than a cut.
+/// Wait after the last cut before stable steps are recomputed, which may take longer than a cut.
 const CALM: Duration = Duration::from_millis(500);
 
-/// Time between two looks at what journals lack.
+/// Time between two checks of missing journal entries.
 const BETWEEN_ENTRIES: Duration = Duration::from_secs(1);
 
-/// Most cuts that wait for a step, which takes all of them: a blade that goes on while time stops asks for as many as it likes.
+/// Most cuts that wait for a step, which takes all of them: a blade that keeps moving while time stops asks for as many
+/// as it likes.
 const MOST_CUTS: usize = 256;
 
 /// Most panes.
@@ -203,7 +204,7 @@ impl Engine {
         self.keep_up()
     }
 
-    /// Simulates until it is told to end.
+    /// Simulates until it is asked to end.
     pub(crate) fn run(mut self, shared: &Arc<Shared>, mut survey: Survey) -> Ended {
         let (mut waiting, mut is_done) = (Waiting::default(), true);
         self.pace = Pace::new(self.t());
@@ -365,7 +366,8 @@ impl Engine {
         });
     }
 
-    /// Keeps a command of a client until steps have taken it, in the place of those that they take no sooner: a client is told of its last one alone.
+    /// Keeps a command of a client until steps have taken it, in place of commands that are taken no sooner: a client
+    /// is notified of its last one only.
     fn is_under_way(&mut self, client: u32, id: u32, arrival: f64) {
         self.under_way
             .retain(|other| other.client != client || other.arrival < arrival);
@@ -495,7 +497,7 @@ impl Engine {
             }
         }
         let is_done = waiting.orders.is_empty();
-        // Those that came behind orders that are left go on waiting with them.
+        // Those that came behind orders that are left continue to wait with them.
         let poses = if is_done { waiting.poses.len() } else { 0 };
         for Request { client, id, what } in waiting.poses.drain(..poses) {
             if let Err(reason) = self.lead(client, id, what) {
@@ -524,7 +526,7 @@ impl Engine {
         };
     }
 
-    /// Leads a tool to a pose.
+    /// Steers a tool to a pose.
     fn lead(&mut self, client: u32, id: u32, place: Place) -> Result<(), String> {
         let Place { tool, pose } = place;
         let [x, y, z, a, b, c] = pose;
@@ -575,7 +577,7 @@ impl Engine {
         of_panes.chain(of_trusted).max().unwrap_or(0)
     }
 
-    /// Changes the method of a pane. One that had stopped begins anew, and so do all.
+    /// Changes the method of a pane. A pane that had stopped starts again from the beginning, and all others with it.
     fn change_method(
         &mut self,
         number: usize,
@@ -710,7 +712,7 @@ impl Engine {
         self.news.settings = true;
     }
 
-    /// Gives a tool another shape: another scene, whose motion begins anew by the methods as they are.
+    /// Gives a tool another shape: another scene, whose motion starts from the beginning with the current methods.
     fn reshape(&mut self, tool: usize, shape: Shape, shared: &Shared) -> Result<(), String> {
         let key = format!("tool.{}.shape", tool.saturating_add(1));
         let scene = self.scene.with(&key, &shape.to_toml());
@@ -738,7 +740,7 @@ impl Engine {
         self.go_back().and(trusted)
     }
 
-    /// Takes all panes back to the beginning; a sentence where one goes on by another method there.
+    /// Takes all panes back to the beginning; an error message if one continues with another method there.
     fn go_back(&mut self) -> Result<(), String> {
         let mut outcome = Ok(());
         for pane in &mut self.panes {

@@ -8,13 +8,13 @@ use sinew_integrators::{Entry, MACHINE_OPTIONS, OptionDefault, OptionHelp, Optio
 
 use crate::protocol::{NumberFacts, OptionFacts};
 
-/// Largest count that a hand is offered: more serve no method.
+/// Largest count that a user is offered: larger ones do not help any method.
 const LARGEST_COUNT: u32 = 64;
 
 /// Ends of a number above 0 without an end, a speed among others (m/s).
 const ABOVE_ZERO: [f64; 2] = [1e-3, 1e2];
 
-/// Smallest part of 1 that a hand is offered.
+/// Smallest part of 1 that a user is offered.
 const SMALLEST_PART: f64 = 1e-8;
 
 /// The options of an integrator that have a value also where none is given, as they are now. Those of machines change no motion.

@@ -36,7 +36,7 @@ pub(crate) struct Pane {
     first_factors: Vec<(Arc<str>, f64)>,
     /// The integrator and the step that it was given, which a reset keeps.
     method: (String, Options, f64),
-    /// Why it cannot go on.
+    /// Reason for which it cannot continue.
     pub(crate) stopped: Option<String>,
     /// Error of the trusted run, and time (s) by which that is behind.
     pub(crate) error: f64,
@@ -232,7 +232,8 @@ impl Pane {
         })
     }
 
-    /// Goes on by another method; one that stopped begins anew, as its session takes no other command.
+    /// Continues with another method; one that stopped starts from the beginning, as its session takes no other
+    /// command.
     fn switch(&mut self, method: (String, Options, f64)) -> Result<(), CommandError> {
         if self.stopped.is_some() {
             self.method = method;
@@ -364,7 +365,8 @@ impl Pane {
         self.stopped.is_some() || t + dt > until + SLACK * dt
     }
 
-    /// Steps up to a simulated time (s), but not beyond, as long as it `may` go on; a sentence where a command was refused.
+    /// Steps up to a simulated time (s), but not beyond, as long as it `may` continue; an error message if a command
+    /// was refused.
     pub(crate) fn follow(
         &mut self,
         until: f64,
@@ -483,7 +485,7 @@ impl Pane {
         self.measured.spent_since(begun);
     }
 
-    /// Looks whether its body is in itself.
+    /// Checks whether its body overlaps itself.
     fn look_for_overlap(&mut self) {
         if self.looked.is_due() {
             let begun = Instant::now();
@@ -492,7 +494,7 @@ impl Pane {
         }
     }
 
-    /// Looks whether its body is another one than pages have, which they then have to be shown.
+    /// Checks whether its body is another one than pages have, which they then have to be shown.
     pub(crate) fn see_body(&mut self, uncut: &Surface) -> bool {
         let Some(body) = body(&self.session) else {
             return false;
@@ -514,7 +516,8 @@ impl Pane {
         Some((body(&self.session)?, &self.shown.as_ref()?.surface))
     }
 
-    /// Writes it into a picture, with the depth of tools in the body at rest before all cuts, and where their hands are.
+    /// Writes it into a picture, with the depth of tools in the body at rest before all cuts, and the user's tool
+    /// poses.
     pub(crate) fn write(
         &mut self,
         frame: &mut FrameWriter,

@@ -9,7 +9,7 @@ use super::pane::Pane;
 use crate::protocol::Event;
 use crate::scene_values::SceneValues;
 
-/// Most folders that are looked through for a free name.
+/// Most folders that are checked for a free name.
 const MOST: u32 = 10_000;
 
 /// Reasons for which nothing is saved.

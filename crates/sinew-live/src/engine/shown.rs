@@ -11,10 +11,10 @@ use sinew_world::World;
 use crate::picture::{Colours, Seen, Surface, twins};
 use crate::protocol::{Field, NONE};
 
-/// Colours and energies take one part in so many of the time.
+/// Colours and energies take at most one part in `SHARE` of the time.
 const SHARE: u32 = 5;
 
-/// Looks for overlap do, which may be rare.
+/// Checks for overlap take at most one part in `SHARE_OF_OVERLAP` of the time, so they may be rare.
 const SHARE_OF_OVERLAP: u32 = 50;
 
 /// A task that is done as often as its share of time allows.

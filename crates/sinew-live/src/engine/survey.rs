@@ -80,7 +80,7 @@ fn survey(scene: &Simulation, system: &dyn System) -> Vec<IntegratorFacts> {
                     found = Some((integrator, options));
                     break;
                 }
-                // That of the plain method is told.
+                // The value of the plain method is reported.
                 Err(reason) => facts.refused = facts.refused.take().or(Some(reason)),
             }
         }

@@ -64,7 +64,7 @@ pub(crate) struct Trusted {
     /// Simulated time (s), as bits.
     t: Arc<AtomicU64>,
     commands: Due,
-    /// Room for displacements, which comes back when they have been compared.
+    /// Buffers for displacements, which come back when they have been compared.
     spare: Receiver<Vec<f64>>,
     /// True if the run is no longer needed.
     is_over: Arc<AtomicBool>,
@@ -96,7 +96,7 @@ impl Trusted {
         let t = Arc::new(AtomicU64::new(pane.t().to_bits()));
         let (compared, spare) = sync_channel(MOST_LOOKS);
         for _ in 0..MOST_LOOKS {
-            // There is room for all of them.
+            // The channel has space for all of them.
             let _ = compared.try_send(Vec::new());
         }
         let is_over = Arc::new(AtomicBool::new(false));

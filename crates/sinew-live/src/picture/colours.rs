@@ -85,7 +85,7 @@ impl Colours {
         fields
     }
 
-    /// Computes a field anew.
+    /// Recomputes a field.
     pub(crate) fn take(&mut self, field: Field, seen: &Seen<'_>) -> Result<(), FieldError> {
         match field {
             Field::Stress | Field::Strain | Field::EnergyDensity => {

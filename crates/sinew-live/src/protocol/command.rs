@@ -39,7 +39,7 @@ pub(crate) enum Order {
         /// Both ends (m) after.
         to: [[f64; 3]; 2],
     },
-    /// Another shape of a tool of one part, with which all begins anew.
+    /// Another shape of a tool of one part, with which everything starts from the beginning.
     Shape {
         /// Number of the tool.
         tool: usize,
@@ -71,7 +71,7 @@ pub(crate) enum Order {
         /// The number.
         number: Option<f64>,
     },
-    /// Time stops or goes on.
+    /// Time stops or continues.
     Pause {
         /// True if it stops.
         on: bool,

@@ -33,7 +33,7 @@ pub(crate) enum Event {
         /// Why.
         reason: String,
     },
-    /// A pane that cannot go on.
+    /// A pane that cannot continue.
     Stopped {
         /// The pane.
         pane: usize,
@@ -88,7 +88,7 @@ pub(crate) struct Scenery {
     pub(crate) tools: Vec<ToolFacts>,
     /// The loads that can be scaled.
     pub(crate) loads: Vec<LoadFacts>,
-    /// Three loads by which a hand pulls.
+    /// Three loads by which the user pulls.
     pub(crate) hand: Option<HandFacts>,
     /// Material parameters for Hertz's formula, if the body is of one isotropic material.
     pub(crate) hertz: Option<Hertz>,
@@ -127,7 +127,7 @@ pub(crate) struct LoadFacts {
     pub(crate) what: String,
 }
 
-/// Three loads along x, y and z by which a hand pulls at a place.
+/// Three loads along x, y and z by which the user pulls at a place.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct HandFacts {
     /// The loads, by their places in the list of loads.
@@ -226,7 +226,7 @@ pub(crate) struct OptionFacts {
     pub(crate) value: Option<f64>,
 }
 
-/// Numbers that a hand is offered.
+/// Numbers that a user is offered.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub(crate) struct NumberFacts {
     /// The least of them.

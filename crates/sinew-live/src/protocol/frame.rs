@@ -39,7 +39,7 @@ pub(crate) struct SurfaceShape<'a> {
     pub(crate) twins: &'a [u32],
 }
 
-/// Stands for a node or a point that another body or surface does not have.
+/// Marks a node or a point that another body or surface does not have.
 pub(crate) const NONE: u32 = u32::MAX;
 
 /// The surfaces of all panes, which hold for the pictures of this epoch.
@@ -107,13 +107,14 @@ pub(crate) struct PaneHead {
     pub(crate) load_work: f64,
     /// Time of a step (ms).
     pub(crate) ms_per_step: f64,
-    /// Relative distance from the trusted run; not a number where there is none.
+    /// Relative distance from the trusted run; not a number without a trusted run.
     pub(crate) error: f64,
     /// Time (s) by which the trusted run is behind.
     pub(crate) lag: f64,
     /// Share of velocities at their limit since the last picture.
     pub(crate) saturated: f64,
-    /// Kinetic energy of the last quarter of a second over that of the quarter before; not a number while the hand moves.
+    /// Kinetic energy of the last quarter of a second over that of the quarter before; not a number right after a
+    /// disturbance, as while a tool is steered.
     pub(crate) settling: f64,
     /// Colours of the three lights, two bits each.
     pub(crate) lights: u32,
@@ -171,7 +172,7 @@ pub(crate) struct ToolHead {
 pub(crate) struct FrameWriter(Vec<u8>);
 
 impl FrameWriter {
-    /// A picture of so many points in each pane, and so many tools in all of them, whose length is known beforehand.
+    /// A picture of `points` points in each pane, and `tools` tools in all of them, whose length is known beforehand.
     pub(crate) fn new(head: &FrameHead, points: &[usize], tools: usize) -> Self {
         let of_pane = |points: &usize| PANE + TOOL * tools + rounded_up(16 * points);
         let mut out = Vec::with_capacity(HEAD + points.iter().map(of_pane).sum::<usize>());

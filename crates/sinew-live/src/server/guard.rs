@@ -29,7 +29,7 @@ pub(crate) fn is_from_own_page(headers: &HeaderMap) -> bool {
     is_local(host) && own.is_some_and(|own| own.eq_ignore_ascii_case(host))
 }
 
-/// The value of a header that stands there once.
+/// The value of a header that occurs exactly once.
 fn single<'a>(headers: &'a HeaderMap, name: &str) -> Option<&'a str> {
     let mut values = headers.get_all(name).iter();
     let value = values.next()?.to_str().ok()?;

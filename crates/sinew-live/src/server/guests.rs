@@ -28,7 +28,7 @@ const MOST_STRANGERS: usize = 16;
 /// Time that a connection has to name the secret.
 const PATIENCE_WITH_STRANGERS: Duration = Duration::from_secs(3);
 
-/// A listener whose connections are counted and timed, so that idle ones leave room for pages.
+/// A listener whose connections are counted and timed, so that idle ones leave capacity for pages.
 #[derive(Debug)]
 pub(crate) struct Guests {
     listener: TcpListener,
@@ -114,7 +114,7 @@ impl Drop for Seat {
     }
 }
 
-/// The standing of a connection: a stranger, one that has named the secret, a page, or one that is to go.
+/// The status of a connection: a stranger, one that has named the secret, a page, or one that is to go.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Standing(Arc<Inner>);
 
@@ -173,8 +173,8 @@ impl Connected<IncomingStream<'_, Guests>> for Standing {
     }
 }
 
-/// A connection, which fails when it waits for longer than the patience: that with strangers from its beginning on, that with others anew from each answer that it
-/// took a part of.
+/// A connection, which fails when it waits for longer than the patience: the patience with strangers counts from the
+/// beginning of the connection, that with others again from each answer that it took a part of.
 #[derive(Debug)]
 pub(crate) struct Guest {
     stream: TcpStream,

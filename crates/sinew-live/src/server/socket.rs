@@ -37,7 +37,7 @@ pub(crate) async fn talk(mut stream: WebSocket, shared: Arc<Shared>, standing: S
     standing.stay();
     let greeting = Event::Scenery(Box::new(shared.scenery())).to_text();
     if stream.send(Message::Text(greeting.into())).await.is_ok() {
-        // Those who came before it was known have been told.
+        // Those who came before it was known have been notified.
         if let Some(integrators) = shared.integrators() {
             shared.clients.tell(id, &integrators);
         }

@@ -14,16 +14,16 @@ pub(crate) use patience::Patience;
 /// Chunks that are taken at a time, where each thread has as many.
 const BLOCK: usize = 4;
 
-/// Looks for work, or for its end, before a thread lets others run: some tens of microseconds.
+/// Checks for work, or for its end, before a thread lets others run: some tens of microseconds.
 const SPINS: u32 = 4_000;
 
 /// Times that the host lets others run before it sleeps.
 const YIELDS: u32 = 20;
 
-/// Threads that take part in sweeps for as long as a batch lasts. Every chunk is computed by one thread,
-/// whichever; each begins with its own share, so that its rows stay in its cache, and then takes what
-/// others have left. So a thread that gets no processor delays none but the chunks it is at. Where
-/// others cost more time than they save, the host goes on alone ([`Patience`]).
+/// Threads that take part in sweeps for as long as a batch lasts. Every chunk is computed by one thread, whichever;
+/// each begins with its own share, so that its rows stay in its cache, and then takes what others have left. So a
+/// thread that gets no processor delays none but the chunks it is at. Where others cost more time than they save, the
+/// host continues alone ([`Patience`]).
 pub(crate) struct Crew<'a> {
     work: &'a (dyn Fn(Range<usize>) -> Outcome + Sync),
     /// Chunks of the present sweep.
@@ -61,7 +61,7 @@ fn since(moment: Instant) -> f64 {
 }
 
 impl<'a> Crew<'a> {
-    /// Runs `body` with so many threads, itself included, for sweeps whose chunks are made by `work`.
+    /// Runs `body` with `threads` threads, the host included, for sweeps whose chunks are made by `work`.
     pub(crate) fn gather<R>(
         (threads, patience): (usize, &mut Patience),
         work: &'a (dyn Fn(Range<usize>) -> Outcome + Sync),
@@ -210,7 +210,7 @@ impl Drop for Done<'_> {
 }
 
 impl Host<'_> {
-    /// Makes a sweep over so many chunks that has been prepared. Sweeps of a kind take about the same time a chunk.
+    /// Makes a prepared sweep over `chunks` chunks. Sweeps of a kind take about the same time a chunk.
     pub(crate) fn sweep(&mut self, kind: usize, chunks: usize) -> Outcome {
         let crew = self.crew.filter(|_| !self.patience.is_alone(kind));
         if crew.is_none() && !self.patience.is_alone(kind) {

@@ -1,6 +1,6 @@
 //! Rule that decides if sweeps are shared with other threads.
 
-/// Kinds of sweeps whose times are told apart; further ones share these.
+/// Kinds of sweeps whose times are distinguished; further ones share these.
 const KINDS: usize = 8;
 
 /// Sweeps that are made alone to learn how long they take.
@@ -20,10 +20,10 @@ const MOST_GAINED: f64 = 32.0;
 /// Time (s) added to both limits: a few time slices of a scheduler, which may be as long as many sweeps.
 const SLICES: f64 = 0.01;
 
-/// The host's experience with the other threads of a crew, kept from batch to batch: on a machine that others use, or that gives
-/// fewer processors than it names, a thread that gets none for a while holds up the whole sweep. So sweeps
-/// with others are compared with what they take alone. What they lose is made up for by sweeps alone, so many that the loss is
-/// a small part of the whole time, whatever the reason.
+/// The host's experience with the other threads of a crew, kept from batch to batch: on a machine that others use, or
+/// that gives fewer processors than it names, a thread that gets none for a while holds up the whole sweep. So sweeps
+/// with others are compared with what they take alone. What they lose is made up for by enough sweeps alone that the
+/// loss is a small part of the whole time, whatever the reason.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Patience {
     /// Time of a chunk of each kind where the host is alone (s), and how often it was measured.
@@ -109,7 +109,8 @@ impl Patience {
 mod tests {
     use super::*;
 
-    /// Time of so many sweeps over that of as many alone, of which each takes 1 s, where `with_others` tells the time with others.
+    /// Time of `sweeps` sweeps over that of as many alone, of which each takes 1 s; `with_others` gives the time with
+    /// others.
     fn ratio(sweeps: u32, mut with_others: impl FnMut(u32) -> f64) -> f64 {
         let mut patience = Patience::default();
         let total: f64 = (0..sweeps)

@@ -35,7 +35,7 @@ pub enum AdviceError {
         /// CPU time taken (s).
         spent: f64,
     },
-    /// Errors are relative to the motion, and there is none.
+    /// Errors are relative to the motion, and nothing moves.
     #[error(
         "nothing moves in the first {duration} s of the scene, so that no error can be computed; {remedy}"
     )]

@@ -38,7 +38,7 @@ const TOLERANCES_OF_BUDGETS: [f64; 2] = [1e-3, 1e-6];
 /// Error below which runs are alike but for their cost where only a cost is given.
 const ROUNDING: f64 = 1e-10;
 
-/// Smallest error that is looked for where only a cost is given.
+/// Smallest error that is sought where only a cost is given.
 const LEAST_ERROR: f64 = 1e-12;
 
 /// Why a method is no candidate for the answer.
@@ -83,7 +83,7 @@ pub struct Advice {
     /// Instants (s) after that part at which loads jump or have kinks, increasing; no run saw what
     /// follows.
     pub unseen_changes: Vec<f64>,
-    /// The method of the reference and its check, in words.
+    /// Description of the method of the reference and its check.
     pub reference: String,
     /// The reference's own estimated relative error (fraction).
     pub reference_error: f64,
@@ -127,7 +127,7 @@ pub enum Answer {
     },
 }
 
-/// Looks for the cheapest method and step of a scene by pilot runs on one thread.
+/// Searches for the cheapest method and step of a scene by pilot runs on one thread.
 ///
 /// # Errors
 /// [`AdviceError`].

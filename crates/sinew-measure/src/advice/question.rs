@@ -99,7 +99,7 @@ pub fn check_budget(budget: f64) -> Result<(), QuestionError> {
 /// # Errors
 /// [`QuestionError::PilotSeconds`].
 pub fn check_pilot_seconds(seconds: f64) -> Result<(), QuestionError> {
-    // A Duration holds it with room to spare.
+    // A Duration holds it with a wide margin.
     if seconds > 0.0 && seconds <= 1e9 {
         return Ok(());
     }

@@ -116,7 +116,7 @@ fn hit(size: f64, is_volume: bool) -> String {
     format!("{} {}", three(size), if is_volume { "m3" } else { "m2" })
 }
 
-/// A subject in words.
+/// Description of a subject.
 fn named(subject: &Subject) -> String {
     match subject {
         Subject::Displacement => "displacement of all nodes".to_owned(),

@@ -59,7 +59,7 @@ pub enum ConvergeError {
         "the body may be cut ([cutting]), on each mesh otherwise: take the table out to measure the motion of the whole body"
     )]
     Cut,
-    /// Errors are relative to the motion, and there is none.
+    /// Errors are relative to the motion, and nothing moves.
     #[error("nothing moves in this scene, so that there is no error to estimate")]
     NothingMoves,
     /// A displacement could not be found at all nodes.

@@ -30,7 +30,7 @@ pub struct Level {
     pub steps: usize,
     /// Work of the runs of the scene's method, half steps included.
     pub work: StepReport,
-    /// Products that the reference took; 0 where there is none.
+    /// Products that the reference took; 0 without a reference.
     pub reference_sweeps: u64,
     /// Time (s) at which the run in steps of `dt` diverged.
     pub diverged_at: Option<f64>,
@@ -179,7 +179,7 @@ fn observe_run(
     (cut, is_halved): (usize, bool),
 ) -> Result<(Observed, RunReport), ConvergeError> {
     let mut integrator = simulation.integrator()?;
-    // A method that cuts steps by itself would cut half of one into half as many parts of the same length.
+    // A method that cuts steps automatically would cut half of one into half as many parts of the same length.
     let cut = match is_halved && !integrator.refine(2) {
         true => 2 * cut,
         false => cut,
@@ -201,7 +201,7 @@ fn observe_run(
     Ok((recorder.eye.seen, report))
 }
 
-/// Looks at the instants of a comparison.
+/// Observes the motion at the instants of a comparison.
 struct Instants<'a> {
     eye: Eye<'a>,
     every: usize,

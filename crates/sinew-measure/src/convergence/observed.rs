@@ -144,7 +144,7 @@ pub(super) struct Eye<'a> {
     probes: Vec<Vec<(u32, f64)>>,
     /// Displacement of all nodes (m).
     all: Vec<[f64; 3]>,
-    /// The instant (s) of the last look, and the impulses (N s) of tools until then.
+    /// The instant (s) of the last observation, and the impulses (N s) of tools until then.
     last: (f64, Vec<f64>),
     pub(super) seen: Observed,
 }
@@ -183,7 +183,8 @@ impl<'a> Eye<'a> {
         })
     }
 
-    /// Looks at the displacement `u` (m) of the degrees of freedom at a time (s), and at the impulses (N s) of tools until then, x, y, z of each.
+    /// Records the displacement `u` (m) of the degrees of freedom at a time (s), and the impulses (N s) of tools
+    /// until then, x, y, z of each.
     pub(super) fn look(
         &mut self,
         t: f64,

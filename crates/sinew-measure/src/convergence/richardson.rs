@@ -6,7 +6,7 @@
 /// `2 a` on meshes that are refined everywhere alike (Szabo and Babuska, Finite Element Analysis, 1991, chapter 10).
 const SMOOTH: f64 = 2.0;
 
-/// The order below which differences tell nothing: their sum would go on without end.
+/// The order below which differences tell nothing: their sum would diverge.
 const LEAST: f64 = 0.25;
 
 /// Differences (fraction) up to which solutions are the same: their own errors may be as large.

@@ -15,17 +15,17 @@ const DERIVATIVES: usize = 32;
 /// Share by which the ellipse is larger than the spectrum, whose ends are found from inside.
 const MARGIN: f64 = 0.01;
 
-/// Largest capacity times step. A longer step takes fewer products per second, and more looks.
+/// Largest capacity times step. A longer step takes fewer products per second, and more observations.
 const REACH: f64 = 32.0;
 
 /// Steps of a run, at least, so that a check has some to choose from; as long as they reach this far.
 const STEPS: f64 = 5.0;
 const LEAST_REACH: f64 = 10.0;
 
-/// Largest capacity times the time between two looks at the motion.
+/// Largest capacity times the time between two observations of the motion.
 const GAP: f64 = 4.0;
 
-/// Most looks at the motion in a step, its end included.
+/// Most observations of the motion in a step, its end included.
 const LOOKS: usize = 16;
 
 /// Numbers that are updated together, small enough for a cache.
@@ -51,7 +51,7 @@ pub(crate) struct Expansion<'a> {
     now: State,
     before: State,
     force: Vec<f64>,
-    /// The state at each look.
+    /// The state at each observation.
     looks: Vec<State>,
     /// Products with the matrices so far.
     pub(crate) sweeps: u64,
@@ -118,7 +118,7 @@ impl<'a> Expansion<'a> {
         reached
     }
 
-    /// The instants (s) at which a step from `start` looks at the motion.
+    /// The instants (s) at which a step from `start` observes the motion.
     fn instants(&self, start: f64, times: &[f64]) -> Vec<f64> {
         let passed = self.breakpoints.partition_point(|time| *time <= start);
         let stop = self.breakpoints.get(passed).copied();
@@ -196,7 +196,7 @@ impl<'a> Expansion<'a> {
         }
     }
 
-    /// `force = f F - K u - D v` of the polynomial at hand.
+    /// `force = f F - K u - D v` of the current polynomial.
     fn net_force(&mut self) {
         self.force.fill(0.0);
         for (load, factors) in self.operators.loads().iter().zip(&self.factors[0]) {
@@ -211,7 +211,7 @@ impl<'a> Expansion<'a> {
         self.sweeps += 1;
     }
 
-    /// Adds a term to the looks and makes the next one.
+    /// Adds a term to the observed states and makes the next one.
     fn advance(&mut self, n: usize, shares: &[(usize, f64)], is_last: bool, whole: f64) {
         let (first, second) = self.ellipse.recurrence(n);
         let shift = -self.ellipse.centre;

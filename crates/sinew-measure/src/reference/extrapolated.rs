@@ -13,7 +13,7 @@ use crate::cpu_time::thread_cpu_time;
 /// Largest difference from the second solution with which a reference is still called one.
 const ALLOWED: f64 = 1e-2;
 
-/// Steps by which the cost of a solution is told.
+/// Steps by which the cost of a solution is predicted.
 const TRIAL_STEPS: u32 = 2;
 
 /// A method whose error falls as a power of the step, and how far its steps are halved.
@@ -206,8 +206,9 @@ fn converge<'a>(
         .ok_or(ReferenceError::NotConverged { method })
 }
 
-/// The motion in a whole number of equal steps between each two instants, halved so many times; `None` where it cannot be followed. Each halving has
-/// exactly twice as many steps everywhere, without which Richardson's rule would take away another error than there is.
+/// The motion in a whole number of equal steps between each two instants, halved a given number of times; `None` where
+/// it cannot be followed. Each halving has exactly twice as many steps everywhere, without which Richardson's rule
+/// would take away another error than there is.
 fn follow<'a>(
     method: &mut Falling,
     system: &dyn System,

@@ -57,7 +57,7 @@ pub fn follow(system: &dyn System, start: &State, times: &[f64]) -> Result<Track
 }
 
 /// Like [`follow`], with a twentieth of the products: by Faber series in long steps, a fifth of them checked by the
-/// Taylor series. The largest displacement is looked for at fewer instants.
+/// Taylor series. The largest displacement is sought at fewer instants.
 ///
 /// # Errors
 /// [`ReferenceError`] when the system is not linear or the error to expect is above 1e-6.

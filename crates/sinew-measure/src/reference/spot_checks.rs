@@ -9,7 +9,7 @@ use super::Taylor;
 /// Share of the time that is solved again.
 const SHARE: f64 = 0.2;
 
-/// Solves steps of a reference again by the Taylor series, each from where the reference stood.
+/// Solves steps of a reference again by the Taylor series, each from the state of the reference.
 #[derive(Debug)]
 pub(super) struct SpotChecks<'a> {
     taylor: Taylor<'a>,

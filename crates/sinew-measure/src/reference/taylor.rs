@@ -94,7 +94,7 @@ impl<'a> Taylor<'a> {
         }
     }
 
-    /// The longest step (s) it takes by itself.
+    /// The longest step (s) that it takes automatically.
     #[must_use]
     pub fn longest_step(&self) -> f64 {
         self.longest_step

@@ -111,7 +111,7 @@ impl<'a> Sight<'a> {
         }
     }
 
-    /// Looks at the motion since the last look.
+    /// Takes the extremes of the motion since the last call.
     pub(super) fn pass(&mut self, state: &State) {
         let most = self.max_u.max(largest(&state.u));
         self.max_u = peak_between(&self.before, state, most);

@@ -9,9 +9,9 @@ use super::{CaseInfo, Row, RowOutcome};
 /// A number that should be there and is none.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Gap {
-    /// The field it should stand in.
+    /// The field that it belongs to.
     pub field: String,
-    /// The text that stands in its place, as in `inf`; none where nothing does.
+    /// The text that replaces it, such as `inf`; `None` without any.
     pub value: Option<String>,
     /// Why it cannot be shown.
     pub reason: &'static str,
@@ -156,7 +156,7 @@ impl CaseInfo {
     }
 }
 
-/// Reads a number, NaN for the `null` that stands in the place of one that could not be shown.
+/// Reads a number, NaN for the `null` that replaces one that could not be shown.
 pub(super) fn null_is_nan<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
     Ok(Option::deserialize(from)?.unwrap_or(f64::NAN))
 }

@@ -247,7 +247,7 @@ fn a_smaller_error_never_costs_less() {
     }
 }
 
-/// Parts that would save less than this are not looked for.
+/// Parts that would save less than this are not sought.
 const WORTH_IT_MARGIN: f64 = 0.021;
 
 #[test]

@@ -11,7 +11,7 @@ const RUNGS: [u32; 15] = [1, 2, 3, 4, 5, 6, 8, 10, 13, 16, 20, 32, 50, 64, 100];
 /// Refusals after which a candidate is left alone.
 const MOST_REFUSALS: usize = 8;
 
-/// Parts that save less than this share of the steps are not looked for.
+/// Parts that save less than this share of the steps are not sought.
 const WORTH_IT: f64 = 0.02;
 
 /// Order below which the error of an exact method is its own tolerance, not the step's.

@@ -80,7 +80,7 @@ fn sum(point: &[f64; 3], translation: &[f64; 3], axis: usize) -> f64 {
 /// The part that is the body, and its place.
 struct Body<'m> {
     part: &'m Part,
-    /// Sets that stand in the instance of the part.
+    /// Sets that are defined in the instance of the part.
     of_instance: &'m Part,
     translation: [f64; 3],
 }

@@ -13,7 +13,7 @@ pub(super) struct Instance {
     pub(super) translation: [f64; 3],
     /// Lines of data that have been read: the first one is a translation, the second a turn.
     pub(super) lines: usize,
-    /// Nodes, elements and sets that stand inside the instance.
+    /// Nodes, elements and sets that are defined inside the instance.
     pub(super) own: Part,
 }
 

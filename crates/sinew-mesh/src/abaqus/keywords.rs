@@ -26,7 +26,7 @@ pub(super) struct Model {
     has_told_nodes: bool,
 }
 
-/// The keyword whose block a line stands in.
+/// The keyword whose block a line belongs to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Place {
     Outside,
@@ -61,7 +61,7 @@ pub(super) fn read(bytes: &[u8], remarks: &mut Remarks) -> Result<Model, Fault> 
     let mut place = Place::Outside;
     let mut block = Block::Skipped;
     let mut is_first = true;
-    // The element whose nodes go on with the next line.
+    // The element whose nodes continue on the next line.
     let mut open: Option<OpenElement> = None;
     while let Some(line) = reader.next()? {
         match line {
@@ -519,7 +519,7 @@ fn members(data: Data<'_>, is_range: bool) -> Result<Vec<Member>, Fault> {
     }
 }
 
-/// A label or the name of a set; what stands before a point is the name of the instance.
+/// A label or the name of a set; the text before a point is the name of the instance.
 fn member(field: Token<'_>) -> Result<Member, Fault> {
     let is_label = |text: &[u8]| !text.is_empty() && text.iter().all(u8::is_ascii_digit);
     let behind_point = field

@@ -4,7 +4,7 @@ use crate::reading::cursor::{Cursor, LONGEST, Token, quoted};
 use crate::reading::fault::Fault;
 use crate::reading::number;
 
-/// A line of data or of a keyword, which may go on over several lines of the file.
+/// A line of data or of a keyword, which may continue over several lines of the file.
 pub(super) enum Line<'a> {
     Keyword(Keyword),
     /// Fields between commas.
@@ -164,7 +164,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// A keyword's line, and those on which it goes on behind a comma.
+    /// A keyword's line, and those on which it continues behind a comma.
     fn keyword(&mut self, text: &[u8], offset: usize) -> Keyword {
         let mut text = text.to_vec();
         while text.ends_with(b",") && !self.cursor.is_at_end() {
@@ -197,7 +197,7 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// The parts between commas that stand in no quotation marks.
+/// The parts between commas that are not in quotation marks.
 fn split_outside_quotes(text: &str) -> Vec<&str> {
     let mut is_quoted = false;
     let comma = |c: char| {

@@ -57,12 +57,12 @@ pub(super) struct Surface {
 /// Faces or nodes of a surface.
 pub(super) struct SurfaceRow {
     pub(super) member: Member,
-    /// The name of the face, in capitals; empty if there is none.
+    /// The name of the face, in capitals; empty if absent.
     pub(super) face: String,
 }
 
 impl Part {
-    /// Adds members to the set of elements with this name, which is new if there is none.
+    /// Adds members to the set of elements with this name, which is new if absent.
     pub(super) fn add_to_element_set(
         &mut self,
         name: &str,
@@ -72,7 +72,7 @@ impl Part {
         add(&mut self.element_sets, name, is_internal, members);
     }
 
-    /// Adds members to the set of nodes with this name, which is new if there is none.
+    /// Adds members to the set of nodes with this name, which is new if absent.
     pub(super) fn add_to_node_set(&mut self, name: &str, is_internal: bool, members: Vec<Member>) {
         add(&mut self.node_sets, name, is_internal, members);
     }
@@ -83,9 +83,9 @@ impl Part {
     }
 }
 
-/// The place of the set of a name, which is added if there is none.
+/// The place of the set of a name, which is added if absent.
 fn place_of(sets: &mut Vec<Set>, name: &str) -> usize {
-    // Line after line goes on with the same set.
+    // Successive lines often continue the same set.
     let last = sets.len().saturating_sub(1);
     let is_named = |set: &Set| set.name.eq_ignore_ascii_case(name);
     if sets.last().is_some_and(is_named) {
@@ -112,7 +112,7 @@ fn add(sets: &mut Vec<Set>, name: &str, is_internal: bool, members: Vec<Member>)
 }
 
 impl Set {
-    /// Adds a member, to the last range where it goes on with it.
+    /// Adds a member, to the last range if it continues it.
     fn add(&mut self, member: Member) {
         match (self.members.last_mut(), member) {
             (Some(Member::Labels([_, last, 1])), Member::Labels([first, next, 1]))

@@ -162,7 +162,7 @@ impl<'a> Groups<'a> {
         }
     }
 
-    /// The tag of the group of a name and dimension, which is new if there is none.
+    /// The tag of the group of a name and dimension, which is new if absent.
     fn tag_of(&mut self, mesh: &mut Mesh, dim: u8, name: &str) -> i32 {
         let known = mesh.physical_names.iter();
         let known =
@@ -339,7 +339,7 @@ struct Resolver<'r> {
 }
 
 impl<'r> Resolver<'r> {
-    /// A resolver for a mesh with so many nodes or elements.
+    /// A resolver for a mesh with `count` nodes or elements.
     fn with_room(count: usize, index: &'r TagIndex) -> Resolver<'r> {
         Resolver {
             index,

@@ -179,7 +179,7 @@ pub struct MeshCheck {
 }
 
 impl Mesh {
-    /// Looks for problems that make a simulation fail or mislead. Changes nothing.
+    /// Checks for problems that make a simulation fail or mislead. Changes nothing.
     ///
     /// Nodes at the same place within a part are not reported, because cuts and contact surfaces consist of them.
     ///

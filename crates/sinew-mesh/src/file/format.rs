@@ -1,4 +1,4 @@
-//! Formats of mesh files that this crate reads, told by the extension of a file's name.
+//! Formats of mesh files that this crate reads, identified by the extension of a file's name.
 
 use std::path::Path;
 

@@ -43,8 +43,8 @@ pub fn read_mesh(bytes: &[u8], format: MeshFormat) -> Result<Mesh, MeshError> {
 ///
 /// # Errors
 ///
-/// If the path is not a readable file, or its contents are wrong; every message starts with the path, and goes on with the
-/// line where there is one: `file.msh:57 (byte 2310): ...`.
+/// If the path is not a readable file, or its contents are wrong; every message starts with the path, and continues
+/// with the line if known: `file.msh:57 (byte 2310): ...`.
 pub fn read_mesh_file(path: impl AsRef<Path>) -> Result<Mesh, MeshFileError> {
     let path = path.as_ref();
     let bytes = bytes_of(path)?;

@@ -16,7 +16,7 @@ pub enum NotAMesh {
 }
 
 impl NotAMesh {
-    /// The kind of a file, told by its first bytes or else by its name.
+    /// The kind of a file, identified by its first bytes or else by its name.
     pub(super) fn of(path: &Path, bytes: &[u8]) -> Option<NotAMesh> {
         told_by_bytes(bytes).or_else(|| told_by_name(path))
     }

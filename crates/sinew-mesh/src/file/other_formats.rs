@@ -1,4 +1,4 @@
-//! Mesh formats of other programs, told by the extension of a file's name, and the way from them to .msh.
+//! Mesh formats of other programs, identified by the extension of a file's name, and the way from them to .msh.
 
 use std::path::Path;
 

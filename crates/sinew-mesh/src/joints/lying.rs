@@ -17,7 +17,7 @@ const COARSEST: f64 = 0.02;
 /// Rounding of barycentric coordinates.
 const ROUNDING: f64 = 1e-6;
 
-/// Points of a face that are looked for on others, by barycentric coordinates.
+/// Points of a face that are sought on others, by barycentric coordinates.
 const SAMPLES: [[f64; 3]; 4] = {
     const THIRD: f64 = 1.0 / 3.0;
     const FAR: f64 = 2.0 / 3.0;

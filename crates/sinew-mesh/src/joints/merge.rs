@@ -91,7 +91,7 @@ impl Mesh {
                     let own = sorted([row[a], row[b]]);
                     let merged = sorted(own.map(|node| sets.root(node)));
                     let known = on_edge.entry(merged).or_default();
-                    // Edges of the same corners are the lips of a cut.
+                    // Edges of the same corners belong to the two faces of a cut.
                     let other = known.iter().find(|(corners, _)| *corners != own);
                     if let Some((_, other)) = other {
                         sets.join(*other, row[middle]);

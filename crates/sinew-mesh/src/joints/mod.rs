@@ -69,7 +69,7 @@ impl TetMesh {
 
     /// Finds where tetrahedra hang together, and where they only seem to: parts that touch without common nodes, hinges, faces that do not match.
     ///
-    /// The lips of cuts, which lie on each other node by node within a part, are none of them.
+    /// The two faces of a cut, which lie on each other node by node within a part, do not count.
     ///
     /// ```
     /// use sinew_mesh::TetMesh;

@@ -2,7 +2,8 @@
 
 use std::collections::HashMap;
 
-/// For each node, the first one at its place, itself where there is none: no coordinate differs by more than `rounding` (m). Nodes that are not `wanted` stand for themselves.
+/// For each node, the first one at its place, or the node itself if there is no other: no coordinate differs by more
+/// than `rounding` (m). Nodes that are not `wanted` map to themselves.
 pub(crate) fn same_places(points: &[[f64; 3]], wanted: &[bool], rounding: f64) -> Vec<u32> {
     let cell = 4.0 * rounding;
     let mut first: Vec<u32> = (0u32..).take(points.len()).collect();

@@ -7,14 +7,14 @@ pub(crate) struct Sets {
 }
 
 impl Sets {
-    /// One set for each of so many numbers.
+    /// One set for each of `count` numbers.
     pub(crate) fn new(count: usize) -> Self {
         Self {
             parent: (0u32..).take(count).collect(),
         }
     }
 
-    /// The number that stands for the set of another: the least of it.
+    /// The number that represents the set of another: the least of it.
     pub(crate) fn root(&mut self, mut of: u32) -> u32 {
         while self.parent[of as usize] != of {
             let above = self.parent[of as usize];

@@ -212,7 +212,7 @@ fn keep_first<T>(rows: &mut Vec<T>, is_repeated: &[bool]) {
 
 fn next_index(count: usize, tables: Tables) -> Result<u32, Fault> {
     match u32::try_from(count) {
-        // The last value stands for "no node" elsewhere.
+        // The last value means "no node" elsewhere.
         Ok(index) if index < u32::MAX => Ok(index),
         _ => Err(Fault::unsupported(
             0,

@@ -33,7 +33,7 @@ pub(super) struct RawBlock {
 /// The groups of a block's elements, as the file gives them.
 #[derive(Debug)]
 pub(super) enum RawGroups {
-    /// Version 4: by the entity of the block, which stands at `offset`.
+    /// Version 4: by the entity of the block, which is at `offset`.
     OfEntity { entity: Entity, offset: usize },
     /// Versions 1 and 2: each by its own row.
     OfEach {

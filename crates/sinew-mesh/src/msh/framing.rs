@@ -5,14 +5,14 @@ use crate::reading::fault::Fault;
 use crate::reading::number;
 use crate::reading::remarks::Remarks;
 
-/// A count that stands on a line of its own, as text even in binary files.
+/// A count on a line of its own, as text even in binary files.
 pub(super) fn count_line(cursor: &mut Cursor<'_>, what: &str) -> Result<u64, Fault> {
     let count = number::unsigned(cursor.token(what)?, what)?;
     cursor.line_end(what)?;
     Ok(count)
 }
 
-/// Takes the `$End...` line. `after` names what stood before it.
+/// Takes the `$End...` line. `after` names what comes before it.
 ///
 /// Nothing but this line may follow the declared rows: more rows would be lost silently. If the file ends here, it may
 /// have been cut inside the last number, unless a line break closed that number's row.

@@ -161,7 +161,7 @@ impl<'a> Cursor<'a> {
         rest.get(..length).unwrap_or_default().trim_ascii()
     }
 
-    /// Moves past the end of this line, on which only blanks may stand before it.
+    /// Moves past the end of this line, on which only blanks may come before it.
     pub(crate) fn line_end(&mut self, after: &str) -> Result<(), Fault> {
         let offset = self.offset;
         match self.line() {
@@ -183,7 +183,7 @@ impl<'a> Cursor<'a> {
     }
 }
 
-/// The digits that eight bytes start with, read as a number, and how many there are. All bytes are looked at together
+/// The digits that eight bytes start with, read as a number, and how many there are. All bytes are processed together
 /// (Lemire 2018, "Quickly parsing eight digits").
 #[inline]
 fn short_number(bytes: [u8; 8]) -> (u64, usize) {

@@ -12,7 +12,7 @@ pub(crate) struct TagIndex {
 enum Lookup {
     /// The tags are `least`, `least + 1` and so on.
     Consecutive,
-    /// `table[tag - least]` is the index plus one; 0 means there is none.
+    /// `table[tag - least]` is the index plus one; 0 means that the tag is absent.
     Table(Vec<u32>),
     Map(HashMap<u64, u32>),
 }

@@ -38,8 +38,8 @@ pub enum Condition {
         /// The greatest distance from it, on either side.
         within: f64,
     },
-    /// A corner of a boundary triangle that looks in a direction. With this condition, only such triangles are selected,
-    /// not all whose nodes are.
+    /// A corner of a boundary triangle that faces in a direction. With this condition, only such triangles are
+    /// selected, not all whose nodes are.
     Facing {
         /// The direction, of any length above 0.
         normal: [f64; 3],
@@ -73,7 +73,7 @@ impl Condition {
         Self::Box { low, high }
     }
 
-    /// A corner of a boundary triangle that looks in the direction of `normal`, within an angle (degrees).
+    /// A corner of a boundary triangle that faces in the direction of `normal`, within an angle (degrees).
     #[must_use]
     pub fn facing(normal: [f64; 3], angle: f64) -> Self {
         Self::Facing { normal, angle }

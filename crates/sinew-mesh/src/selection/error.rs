@@ -14,7 +14,7 @@ pub enum SelectionError {
     Nothing {
         /// The kind of member: node, boundary triangle or tetrahedron.
         wanted: &'static str,
-        /// The selection in words.
+        /// Description of the selection.
         selection: String,
         /// Least coordinates of the body (m).
         low: [f64; 3],
@@ -26,7 +26,7 @@ pub enum SelectionError {
     NoCell {
         /// The kind of cell: boundary triangle or tetrahedron.
         wanted: &'static str,
-        /// The selection in words.
+        /// Description of the selection.
         selection: String,
         /// Number of nodes that are selected.
         nodes: usize,
@@ -77,7 +77,7 @@ pub enum SelectionError {
         name: String,
         /// The values that were asked for.
         values: DataValues,
-        /// The values that there are, in words.
+        /// Description of the values that exist.
         known: String,
     },
 }

@@ -15,7 +15,7 @@ impl Selection {
     ///
     /// # Errors
     ///
-    /// [`SelectionError`] when there are none, or a tag is unknown.
+    /// [`SelectionError`] when no node meets them, or a tag is unknown.
     pub fn nodes(&self, mesh: &TetMesh) -> Result<Vec<u32>, SelectionError> {
         let boundary = self.boundary_if_it_matters(mesh);
         let mut met = self.met_by(mesh, &boundary, First::Nodes)?;
@@ -41,7 +41,7 @@ impl Selection {
     ///
     /// # Errors
     ///
-    /// [`SelectionError`] when there are none, or a tag is unknown.
+    /// [`SelectionError`] when no triangle meets them, or a tag is unknown.
     pub fn triangles(&self, mesh: &TetMesh) -> Result<Vec<[u32; 3]>, SelectionError> {
         let boundary = mesh.boundary(None);
         let met = self.met_by(mesh, &boundary, First::Tets)?;
@@ -72,7 +72,7 @@ impl Selection {
     ///
     /// # Errors
     ///
-    /// [`SelectionError`] when there are none, or a tag is unknown.
+    /// [`SelectionError`] when no tetrahedron meets them, or a tag is unknown.
     pub fn tets(&self, mesh: &TetMesh) -> Result<Vec<u32>, SelectionError> {
         let met = self.met_by(mesh, &self.boundary_if_it_matters(mesh), First::Tets)?;
         let of_tets = self.met_tets(mesh, First::Tets)?;

@@ -49,7 +49,7 @@ impl Selection {
 }
 
 impl fmt::Display for Selection {
-    /// The conditions in words; two selections of the same words are equal.
+    /// Description of the conditions; two selections with the same description are equal.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (index, condition) in self.conditions.iter().enumerate() {
             if index > 0 {

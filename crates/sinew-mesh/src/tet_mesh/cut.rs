@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use super::surface::OUTWARD_FACES;
 use super::{Group, GroupMembers, TetData, TetMesh};
 
-/// Stands for a node or a tetrahedron that is not there.
+/// Marks a node or a tetrahedron that is absent.
 const NONE: u32 = u32::MAX;
 
 /// The mesh of a body that was cut, and where its parts come from.
@@ -146,8 +146,8 @@ impl CutMesh {
         kept.map(|(node, _)| node).collect()
     }
 
-    /// The nodes that stand for these nodes of the uncut mesh, those that are gone left out: each itself, or its first copy where it
-    /// has lost its own tetrahedra.
+    /// The nodes that replace these nodes of the uncut mesh, those that are gone left out: each itself, or its first
+    /// copy where it has lost its own tetrahedra.
     #[must_use]
     pub fn without_copies(&self, uncut: &TetMesh, nodes: &[u32]) -> Vec<u32> {
         let mut seen = vec![false; uncut.points.len()];
@@ -338,7 +338,7 @@ pub(super) mod tests {
         assert_eq!(cut.mesh.data[0].values, [3.0, 4.0]);
         let faces = cut.mesh.group("faces").expect("it is kept");
         assert_eq!(faces.members, GroupMembers::Triangles(vec![[0, 3, 2]]));
-        // A node that is gone is stood for by its copy.
+        // A node that is gone is replaced by its copy.
         assert_eq!(cut.without_copies(&mesh, &[0, 2]), [2]);
         assert_eq!(whole.mesh.volume(1), cut.mesh.volume(0));
     }

@@ -34,7 +34,7 @@ impl TetMesh {
     ///
     /// # Errors
     ///
-    /// If there are none, and the error lists the names; or if there are several, such as time steps.
+    /// If absent, and the error lists the names; or if there are several, such as time steps.
     pub fn data(&self, name: &str) -> Result<&TetData, TetDataError> {
         let found: Vec<&TetData> = self.data.iter().filter(|data| data.name == name).collect();
         match found[..] {
@@ -60,7 +60,7 @@ fn listed(known: &[(String, usize)]) -> String {
     if known.is_empty() {
         return "the mesh has none".to_owned();
     }
-    // By name, so that time steps of one view stand once.
+    // By name, so that time steps of one view occur once.
     let known: BTreeMap<&String, usize> =
         known.iter().map(|(name, width)| (name, *width)).collect();
     let names = known.iter().map(|(name, width)| match width {

@@ -2,7 +2,7 @@
 
 use super::{Group, GroupMembers, TetMesh};
 
-/// A name leads to no group, or to several.
+/// A name that matches no group, or several.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum FindGroupError {
@@ -38,7 +38,7 @@ impl TetMesh {
     ///
     /// # Errors
     ///
-    /// If there is none (the error lists the names and suggests the nearest), or one in each of several dimensions.
+    /// If absent (the error lists the names and suggests the nearest), or one in each of several dimensions.
     pub fn group(&self, name: &str) -> Result<&Group, FindGroupError> {
         let mut named: Vec<&Group> = self.named(name).collect();
         named.sort_by_key(|group| group.dim);
@@ -57,7 +57,7 @@ impl TetMesh {
     ///
     /// # Errors
     ///
-    /// If there is none; the error lists the names and suggests the nearest.
+    /// If absent; the error lists the names and suggests the nearest.
     pub fn group_of_dim(&self, name: &str, dim: u8) -> Result<&Group, FindGroupError> {
         self.named(name)
             .find(|group| group.dim == dim)

@@ -183,7 +183,7 @@ impl TetMesh {
 
     /// The node nearest to a point, and its distance; of equally near nodes, the lowest.
     ///
-    /// Looks at every node. In a mesh without nodes, or for a point that is not finite, the answer is node 0 at infinity.
+    /// Checks every node. In a mesh without nodes, or for a point that is not finite, the answer is node 0 at infinity.
     #[must_use]
     pub fn nearest_node(&self, point: [f64; 3]) -> (u32, f64) {
         let mut nearest = (0, f64::INFINITY);
@@ -201,7 +201,7 @@ impl TetMesh {
     /// where none holds it, the one in whose coordinates it is least outside, with a share below 0. Of several alike, the
     /// first.
     ///
-    /// Looks at every tetrahedron. `None` in a mesh without tetrahedra, and for a point that is not finite.
+    /// Checks every tetrahedron. `None` in a mesh without tetrahedra, and for a point that is not finite.
     #[must_use]
     pub fn tet_at(&self, point: [f64; 3]) -> Option<(u32, [f64; 4])> {
         let mut best: Option<(u32, [f64; 4])> = None;

@@ -1,12 +1,12 @@
-//! The volume in which the lips of cuts overlap.
+//! The volume in which the faces of cuts overlap.
 
 use super::{CutMesh, cross, dot, sub};
 
 type Corners = [[f64; 3]; 4];
 
 impl CutMesh {
-    /// The volume (m^3) in which tetrahedra at the lips of cuts overlap, where the nodes of the mesh lie at these places (m): each pair of tetrahedra by itself.
-    /// Those that are turned inside out count nothing.
+    /// The volume (m^3) in which tetrahedra at the faces of cuts overlap, with the nodes of the mesh at these places
+    /// (m): the sum over pairs of tetrahedra. Those that are turned inside out count nothing.
     ///
     /// Of two tetrahedra one is cut by the planes of the other (Sutherland and Hodgman 1974).
     #[must_use]

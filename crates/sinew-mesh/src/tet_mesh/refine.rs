@@ -54,10 +54,11 @@ impl TetMesh {
     /// (Bey 1995), so refining again makes no worse shapes than refining once. A cube of
     /// [`Split::Kuhn`](crate::structured::Split::Kuhn) becomes the one with twice as many cells.
     ///
-    /// Old nodes come first and keep their tags; tetrahedra are numbered anew, the eight of tetrahedron `t` being `8 t..8 t + 8`.
-    /// The eight have the data of the one, and new nodes the mean of those at the ends of their edge, or none where these are different
-    /// labels. All groups stay: tetrahedra become eight, triangles four, lines two. Triangles and lines whose edges are none of the
-    /// tetrahedra stay as they are, which [`TetMesh::notes`] tells. Curved surfaces stay as flat as they were.
+    /// Old nodes come first and keep their tags; tetrahedra are renumbered, the eight of tetrahedron `t` being
+    /// `8 t..8 t + 8`. The eight have the data of the one, and new nodes the mean of those at the ends of their edge,
+    /// or none where these are different labels. All groups stay: tetrahedra become eight, triangles four, lines two.
+    /// Triangles and lines whose edges are none of the tetrahedra stay as they are, which [`TetMesh::notes`] tells.
+    /// Curved surfaces stay as flat as they were.
     ///
     /// # Errors
     ///
@@ -254,7 +255,7 @@ fn refined_members(members: &GroupMembers, midpoints: &Midpoints) -> (GroupMembe
     (members, whole)
 }
 
-/// The tags of the `old` nodes and new ones after the greatest of them; all anew if there is no room for that.
+/// The tags of the `old` nodes and new ones after the greatest of them; all are renumbered if such tags would overflow.
 fn tags_with_new(tags: &[u64], old: usize, all: usize) -> Vec<u64> {
     let greatest = tags.iter().max().copied().unwrap_or(0);
     let new = (all - old) as u64;

@@ -103,7 +103,7 @@ impl CutMesh {
         }
     }
 
-    /// Makes room for so many further nodes.
+    /// Reserves space for `nodes` further nodes.
     pub fn reserve(&mut self, nodes: usize) {
         self.mesh.reserve(nodes);
         self.nodes.reserve(nodes);
@@ -158,7 +158,7 @@ impl TetMesh {
         first.collect()
     }
 
-    /// Makes room for so many further nodes.
+    /// Reserves space for `nodes` further nodes.
     pub fn reserve(&mut self, nodes: usize) {
         self.points.reserve(nodes);
         self.node_tags.reserve(nodes);

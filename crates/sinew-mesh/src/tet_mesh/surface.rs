@@ -95,7 +95,7 @@ impl TetMesh {
             .iter()
             .map(|&triangle| (sorted(triangle), None))
             .collect();
-        // Most faces of a large mesh have a corner away from all triangles, and are not looked up.
+        // Most faces of a large mesh have a corner away from all triangles, and need no look-up.
         let mut is_corner = vec![false; self.points.len()];
         for &node in triangles.iter().flatten() {
             if let Some(is_corner) = is_corner.get_mut(node as usize) {

@@ -131,7 +131,8 @@ fn blocks_by_groups<'a>(
     (blocks, places)
 }
 
-/// Gives the cells of lower dimension tags that no tetrahedron has, or new tags to all cells if there is no room.
+/// Gives the cells of lower dimension tags that no tetrahedron has, or new tags to all cells if such tags would
+/// overflow.
 fn number_the_rest(cells: &mut [CellBlock], first_tet_block: usize) {
     let (lower, tets) = cells.split_at_mut(first_tet_block);
     let greatest = tets

@@ -136,7 +136,7 @@ fn add_fields(
 /// Largest whole number up to which all are numbers of f64.
 const EXACT: f64 = 9_007_199_254_740_992.0;
 
-/// The values with NaN, which stands for no value, in the place of infinite ones.
+/// The values, with infinite ones replaced by NaN, which means no value.
 fn checked(mut values: Vec<f64>, name: &str, is_integer: bool, remarks: &mut Remarks) -> Vec<f64> {
     if is_integer && values.iter().any(|value| value.abs() > EXACT) {
         remarks.general(format!(

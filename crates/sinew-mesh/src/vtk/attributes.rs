@@ -214,7 +214,7 @@ fn count(cursor: &mut Cursor<'_>, what: &str) -> Result<u64, Fault> {
     number::unsigned(cursor.token(what)?, what)
 }
 
-/// A name, in which `%20` and its like stand for the characters that a word cannot have.
+/// A name, in which `%20` and its like encode the characters that a word cannot have.
 fn name(cursor: &mut Cursor<'_>) -> Result<String, Fault> {
     let word = cursor.token("the name of the data")?.text;
     let mut plain = Vec::with_capacity(word.len());

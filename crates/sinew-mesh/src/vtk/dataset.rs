@@ -1,4 +1,4 @@
-//! The grid: points, cells, their types, and what stands between them.
+//! The grid: points, cells, their types, and what is between them.
 
 use super::attributes::{self, Holder};
 use super::numbers::{Numbers, ValueType, times};

@@ -69,7 +69,7 @@ impl Numbers {
                 let is_single = kind == ValueType::Number(Scalar::F32);
                 words(cursor, count, |token, what| {
                     let value = number::double(token, what)?;
-                    // The number that the text stands for has single precision.
+                    // The number that the text represents has single precision.
                     Ok(if is_single {
                         f64::from(value as f32)
                     } else {
@@ -189,7 +189,7 @@ fn bytes<'a>(cursor: &mut Cursor<'a>, count: u64, size: u64) -> Result<&'a [u8],
         })
 }
 
-/// The numbers that so many points or cells have.
+/// The numbers of `count` points or cells with `components` numbers each.
 pub(super) fn times(count: u64, components: u64, offset: usize) -> Result<u64, Fault> {
     count.checked_mul(components).ok_or_else(|| {
         let problem = format!("{components} numbers for each of {count} are too many");

@@ -61,9 +61,9 @@ pub struct Array<'a> {
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub enum Values<'a> {
-    /// Floating-point numbers; NaN stands for a missing value.
+    /// Floating-point numbers; NaN means a missing value.
     F64(Cow<'a, [f64]>),
-    /// Floating-point numbers in half the room.
+    /// Floating-point numbers in single precision.
     F32(Cow<'a, [f32]>),
     /// Flags and small counts.
     U8(Cow<'a, [u8]>),
@@ -92,7 +92,7 @@ impl<'a> Array<'a> {
         }
     }
 
-    /// Numbers in half the room, `components` for each point or cell in turn. Takes a slice or a `Vec`.
+    /// Numbers in single precision, `components` for each point or cell in turn. Takes a slice or a `Vec`.
     #[must_use]
     pub fn of_singles(
         name: &'a str,

@@ -6,7 +6,7 @@ use crate::tables::PROBES;
 /// Distance over the size of the coordinates within which two places are the same.
 const SAME: f64 = 1e-9;
 
-/// Compares the places of probes of the same name, which stand above the table in lines such as
+/// Compares the places of probes of the same name, which are above the table in lines such as
 /// `# tip: node 9 at 0.1 0.2 0.3 m, ..`.
 pub(super) fn probes(comparison: &mut Comparison, one: &str, other: &str) {
     let others: Vec<(&str, &str)> = other.lines().filter_map(described).collect();
@@ -34,7 +34,7 @@ pub(super) fn probes(comparison: &mut Comparison, one: &str, other: &str) {
     }
 }
 
-/// A probe's name and its place in words.
+/// A probe's name and the description of its place.
 fn described(line: &str) -> Option<(&str, &str)> {
     line.strip_prefix("# ")?.split_once(':')
 }

@@ -15,7 +15,7 @@ const SEEN: f64 = 0.02;
 /// Share of the body's size that a displacement is drawn with where it could not be seen.
 const DRAWN: f64 = 0.08;
 
-/// The direction in which pictures look.
+/// The viewing direction of pictures.
 const AWAY: [f64; 3] = [1.0, 1.0, -1.0];
 
 /// The body at rest and at its largest motion.

@@ -15,19 +15,19 @@ pub(crate) struct TableDescription {
     pub(crate) keys: &'static [&'static dyn Described],
     /// The number of its keys that must be given, beside those that are required.
     pub(crate) needs: Needs,
-    /// Tables as a user writes them, in which every key stands at least once.
+    /// Tables as a user writes them, in which every key occurs at least once.
     pub(crate) examples: &'static [&'static str],
 }
 
 impl TableDescription {
-    /// The keys, with those that stand in the place of another ([`Described::parts`]).
+    /// The keys, with those that replace another ([`Described::parts`]).
     pub(crate) fn all_keys(&self) -> Vec<&'static dyn Described> {
         let keys = self.keys.iter();
         let keys = keys.flat_map(|key| key.parts().map_or_else(|| vec![*key], |parts| parts.keys));
         keys.collect()
     }
 
-    /// The examples, with those of keys that stand in the place of another.
+    /// The examples, with those of keys that replace another.
     pub(crate) fn all_examples(&self) -> Vec<&'static str> {
         let parts = self.keys.iter().filter_map(|key| key.parts());
         let more = parts.flat_map(|parts| parts.examples);
@@ -66,7 +66,7 @@ pub(crate) trait Described: Sync {
     /// All that there is to say about it.
     fn describe(&self) -> KeyDescription;
 
-    /// The keys in whose place it stands; `None` for a key of its own.
+    /// The keys that it replaces; `None` for a key of its own.
     fn parts(&self) -> Option<Parts> {
         None
     }
@@ -87,7 +87,7 @@ pub(crate) struct KeyDescription {
     pub(crate) meaning: String,
     /// Its unit; empty where it has none.
     pub(crate) unit: &'static str,
-    /// The values that fit, in words.
+    /// Description of the values that fit.
     pub(crate) expected: String,
     /// The values that fit, as data.
     pub(crate) shape: Shape,
@@ -104,7 +104,7 @@ pub(crate) enum Stated {
     Required,
     /// It must be given where another key is one of these words.
     RequiredWith(&'static str, Vec<&'static str>),
-    /// This, in words.
+    /// The behaviour, as a description.
     InWords(&'static str),
     /// This value, in TOML.
     Default(String),

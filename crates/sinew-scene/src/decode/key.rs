@@ -27,7 +27,7 @@ impl<V: Copy> Key<V, Required> {
 }
 
 impl<V: Copy> Key<V, Optional> {
-    /// A key that may be left out; what holds then stands in `otherwise`.
+    /// A key that may be left out; `otherwise` describes the behaviour then.
     pub(crate) const fn optional(
         name: &'static str,
         meaning: &'static str,

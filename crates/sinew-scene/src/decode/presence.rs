@@ -6,7 +6,7 @@ use crate::error::SceneError;
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Required;
 
-/// A key that may be left out; what holds then, in words.
+/// A key that may be left out, with a description of the behaviour then.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Optional(pub(crate) &'static str);
 

@@ -390,7 +390,7 @@ impl<'a> Table<'a> {
         self.place.error(Some(span), fault)
     }
 
-    /// The error for a value of a key that fits by itself, and not together with the others.
+    /// The error for a value of a key that fits on its own, but not together with the others.
     pub(crate) fn value_misfit(&self, key: &'static str, expected: &str) -> SceneError {
         match self.given(key) {
             Some(value) => self.misfit(key, value, expected.to_owned(), Misfit::Value),

@@ -15,7 +15,7 @@ pub(crate) enum Misfit {
     Formula,
 }
 
-/// The type of a value in words.
+/// Description of the type of a value.
 pub(crate) fn kind(value: &DeValue<'_>) -> &'static str {
     match value {
         DeValue::String(_) => "a string",

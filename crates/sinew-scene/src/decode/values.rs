@@ -7,9 +7,9 @@ use toml::de::DeValue;
 use super::description::{Shape, TableDescription};
 use super::value::{Misfit, boolean, count_within, finite, list, satisfying, text};
 
-/// A kind of values, in words and as data.
+/// A kind of values, as a description and as data.
 pub(crate) trait Kind: Copy + Sync {
-    /// The values that fit, in words that follow "expected".
+    /// Description of the values that fit, to follow "expected".
     fn expected(&self) -> String;
 
     /// The values that fit, as data.
@@ -45,7 +45,7 @@ pub(crate) struct Number {
 }
 
 impl Number {
-    /// A number between two bounds, which `expected` says in words.
+    /// A number between two bounds, which `expected` describes.
     pub(crate) const fn between(expected: &'static str, low: Bound<f64>, high: Bound<f64>) -> Self {
         Self {
             expected,
@@ -157,7 +157,7 @@ impl Written for Flag {
 /// A string that is not blank.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Text {
-    /// The strings that fit, in words.
+    /// Description of the strings that fit.
     pub(crate) expected: &'static str,
     /// A regular expression for them.
     pub(crate) pattern: Option<&'static str>,
@@ -248,7 +248,7 @@ impl<T: Copy + PartialEq + Sync> Written for Words<T> {
 /// A list of any length.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct List<V> {
-    /// The lists that fit, in words.
+    /// Description of the lists that fit.
     pub(crate) expected: &'static str,
     /// Each item.
     pub(crate) of: V,
@@ -282,7 +282,7 @@ impl<V: Values> Values for List<V> {
 /// A list of pairs of numbers.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Pairs {
-    /// The lists that fit, in words.
+    /// Description of the lists that fit.
     pub(crate) expected: &'static str,
     /// Each number of a pair.
     pub(crate) of: Number,
@@ -324,7 +324,7 @@ impl Values for Pairs {
 /// Three values, along x, y and z.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Vector<V = Number, T = f64> {
-    /// The triples that fit, in words.
+    /// Description of the triples that fit.
     pub(crate) expected: &'static str,
     /// Each value.
     pub(crate) of: V,

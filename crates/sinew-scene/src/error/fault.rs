@@ -5,7 +5,7 @@ use super::override_error::OverrideError;
 use super::words::{did_you_mean, quoted, quoted_or_none, shortened};
 use crate::formula::FormulaError;
 
-/// Steps of a run, at most: whole numbers beyond are not told apart.
+/// Steps of a run, at most: larger whole numbers cannot be distinguished.
 pub(crate) const MOST_STEPS: f64 = 1.0 / f64::EPSILON;
 
 /// A mistake in a scene.
@@ -185,7 +185,7 @@ pub enum Fault {
     /// A method that cannot be set up for the scene.
     #[error(transparent)]
     SetUp(sinew_core::SetupError),
-    /// A step longer than the duration where steps go on beyond that.
+    /// A step longer than the duration where steps continue beyond that.
     #[error("dt = {dt} s is longer than the duration, {duration} s: expected a step within it")]
     LongStep {
         /// The step (s).
@@ -199,7 +199,7 @@ pub enum Fault {
          expected a step with a margin, or element = \"p1\""
     )]
     NoStepOverCuts,
-    /// More steps than can be told apart.
+    /// More steps than can be distinguished.
     #[error(
         "dt = {dt:e} s: a duration of {duration:e} s takes {:.3e} steps, more than can be counted ({MOST_STEPS:.0e}); \
          expected a longer step or a shorter duration", duration / dt

@@ -138,7 +138,7 @@ pub enum OutputError {
     Unsuitable {
         /// The path.
         path: PathBuf,
-        /// Its kind in words.
+        /// Description of its kind.
         kind: &'static str,
     },
     /// A path that now names something other than when the run began.
@@ -183,7 +183,7 @@ impl OutputError {
     }
 }
 
-/// The process in words.
+/// Description of the process.
 fn process(id: Option<u32>) -> String {
     id.map_or_else(String::new, |id| format!(" (process {id})"))
 }

@@ -14,7 +14,7 @@ pub(super) struct Identity(u64, u64);
 pub(super) struct Identity(PathBuf);
 
 impl Identity {
-    /// Identity of the file at a path; `None` where there is none.
+    /// Identity of the file at a path; `None` if absent.
     pub(super) fn of(path: &Path) -> Option<Self> {
         let metadata = fs::metadata(path).ok()?;
         Self::from_metadata(&metadata, path)

@@ -45,7 +45,7 @@ impl State {
 }
 
 impl Manifest {
-    /// The manifest in a folder; `None` where there is none, or another program's.
+    /// The manifest in a folder; `None` if absent, or another program's.
     pub(super) fn read(folder: &Path) -> Result<Option<Self>, OutputError> {
         let path = folder.join(MANIFEST);
         let is_file = path.symlink_metadata().map(|found| found.is_file());

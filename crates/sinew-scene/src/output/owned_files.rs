@@ -13,7 +13,7 @@ use super::target::{Target, folder_of};
 use super::whole_file::{WholeFile, sync_folder};
 
 impl OwnedFolder {
-    /// The content of a file; `None` where there is none.
+    /// The content of a file; `None` if absent.
     ///
     /// # Errors
     /// [`OutputError`].
@@ -26,7 +26,7 @@ impl OwnedFolder {
         }
     }
 
-    /// A file to be read; `None` where there is none.
+    /// A file to be read; `None` if absent.
     ///
     /// # Errors
     /// [`OutputError`].

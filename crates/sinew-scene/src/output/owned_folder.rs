@@ -191,10 +191,10 @@ impl OwnedFolder {
         Ok(folder)
     }
 
-    /// Opens the folder of an earlier result of this kind to go on with it.
+    /// Opens the folder of an earlier result of this kind to continue it.
     ///
     /// # Errors
-    /// [`OutputError::NoResult`] where there is none, and [`OutputError::Busy`].
+    /// [`OutputError::NoResult`] if absent, and [`OutputError::Busy`].
     pub fn reopen(path: &Path, kind: &'static str) -> Result<Self, OutputError> {
         let manifest = Manifest::read(path)?.filter(|manifest| manifest.kind == kind);
         if manifest.is_none() {

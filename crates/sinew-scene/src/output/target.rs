@@ -155,7 +155,7 @@ fn resolved(path: &Path) -> PathBuf {
     path
 }
 
-/// The kind of a thing that accepts no stream, in words.
+/// Description of the kind of a thing that accepts no stream.
 #[cfg(unix)]
 fn unsuitable(kind: &FileType) -> Option<&'static str> {
     use std::os::unix::fs::FileTypeExt;

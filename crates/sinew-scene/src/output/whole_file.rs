@@ -127,7 +127,7 @@ pub(super) fn is_left_behind(name: &str) -> bool {
     })
 }
 
-/// Removes temporary files that processes left in a folder which are gone, as far as that can be told and done.
+/// Removes temporary files that processes left in a folder which are gone, as far as that can be known and done.
 pub(super) fn remove_left_behind(folder: &Path) {
     let Ok(entries) = fs::read_dir(folder) else {
         return;

@@ -12,12 +12,13 @@ use super::inside::SurfacePoint;
 /// The corners of a tetrahedron's faces, each opposite the corner of the same place.
 pub(super) const FACES: [[usize; 3]; 4] = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];
 
-/// Stands for the outside.
+/// Marks the outside.
 const OUTSIDE: u32 = u32::MAX;
 
 /// Tetrahedra and their neighbours, by which the surface is found from within.
 ///
-/// A distance is that along straight ways through tetrahedra that are joined to the one at hand: so it means the same where a body has folded into itself, and the point lies on its surface.
+/// A distance is that along straight ways through tetrahedra that are joined to the current one: so it means the same
+/// where a body has folded into itself, and the point lies on its surface.
 #[derive(Debug)]
 pub(super) struct Depths {
     /// The tetrahedron behind each face.
@@ -109,8 +110,8 @@ impl Depths {
         self.layers[tet as usize]
     }
 
-    /// The distance (m) of a point in a tetrahedron from the surface, if it is larger than `least` (m): from all triangles of the surface that do not hold the point. None
-    /// after so many looks at tetrahedra.
+    /// The distance (m) of a point in a tetrahedron from the surface, if it is larger than `least` (m): from all
+    /// triangles of the surface that do not hold the point. `None` once `looks` checks of tetrahedra are used up.
     pub(super) fn beyond(
         &mut self,
         (mesh, places): (&TetMesh, &[Vector]),

@@ -8,7 +8,7 @@ pub(super) type Bounds = [Vector; 2];
 /// Entries for each box beyond which cells are made larger: a few long boxes among small ones fill many cells.
 const ENTRIES: usize = 16;
 
-/// The bounds of some points, wider by `room` on all sides.
+/// The bounds of some points, wider by a margin `room` on all sides.
 pub(super) fn bounds(points: &[Vector], room: f64) -> Bounds {
     let mut bounds = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
     for point in points {
@@ -87,7 +87,7 @@ impl Grid {
                 *start += 1;
             });
         }
-        // Each start stands where the next bucket begins.
+        // Each start points to the beginning of the next bucket.
         self.starts.rotate_right(1);
         self.starts[0] = 0;
     }

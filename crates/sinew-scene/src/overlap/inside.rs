@@ -8,7 +8,7 @@ use super::grid::{Bounds, Grid, bounds, longest};
 /// Share of a tetrahedron's volume by which a point on its face may count as outside, and is taken in.
 const ON_FACE: f64 = 1e-9;
 
-/// Comparisons for each tetrahedron after which no more are looked at: far more than any but tangled bodies take.
+/// Comparisons per tetrahedron after which the search ends: far more than any but tangled bodies take.
 const COMPARISONS: usize = 200;
 
 /// A point of the surface: a node, or one between nodes.
@@ -16,7 +16,7 @@ const COMPARISONS: usize = 200;
 pub(super) struct SurfacePoint {
     /// Its place (m).
     pub(super) at: Vector,
-    /// The nodes between which it lies; some of them may stand here twice.
+    /// The nodes between which it lies; some of them may occur twice here.
     pub(super) between: [u32; 3],
 }
 
@@ -39,7 +39,7 @@ impl SurfacePoint {
 pub(super) struct Placed<'a> {
     mesh: &'a TetMesh,
     places: &'a [Vector],
-    /// The tetrahedra looked at.
+    /// The tetrahedra that are searched.
     tets: Vec<u32>,
     /// One flag per node: true if it has an inverted tetrahedron.
     is_crushed: Vec<bool>,
@@ -76,7 +76,8 @@ impl<'a> Placed<'a> {
 
     /// The points, by their places among those given, that lie in tetrahedra which do not hold them, with these tetrahedra.
     ///
-    /// Points at tetrahedra that are inside out count in other parts only: in their own they are where crushing led them, which is told as such.
+    /// Points at tetrahedra that are inside out count in other parts only: in their own part, crushing is the cause,
+    /// which is reported as such.
     pub(super) fn find(
         &self,
         points: &[SurfacePoint],

@@ -16,7 +16,7 @@ const TOUCHES: f64 = 1e-6;
 /// Comparisons for each edge of the surface after which a state is given up: one in which everything is near everything is no longer a body.
 const COMPARISONS: usize = 1000;
 
-/// Tetrahedra that the measuring of depths may look at, as a multiple of their number, or of 1000.
+/// Most tetrahedra that are checked to measure depths, as a multiple of their number, or of 1000.
 const LOOKS: usize = 20;
 
 /// A point of the surface that is in a tetrahedron which does not hold it.
@@ -43,7 +43,7 @@ pub(super) struct OverlapSearch {
     parts: usize,
     /// The largest extent (m) of the body at rest.
     size: f64,
-    /// Depth (m) up to which points may be in tetrahedra at the lips of cuts; none where lips are nothing of their own.
+    /// Tolerance for points in tetrahedra at cut faces; `None` if cut faces are treated as any other surface.
     lips: Option<Lips>,
     /// Made where a point was found inside.
     depths: Option<Depths>,
@@ -51,7 +51,7 @@ pub(super) struct OverlapSearch {
     grid: Grid,
 }
 
-/// Lips of cuts that keep each other apart, node by node.
+/// Cut faces that keep each other apart, node by node.
 pub(super) struct Lips {
     /// One flag per node: true if cuts duplicated it, so that other nodes have the same origin.
     pub(super) is_copied: Vec<bool>,
@@ -271,7 +271,7 @@ impl OverlapSearch {
         mut found: Vec<(u32, u32)>,
         touching: f64,
     ) -> Option<Inside> {
-        // What lies on the surface of the tetrahedron that it is in is no deeper than that; so do lips at rest.
+        // What lies on the surface of the tetrahedron that it is in is no deeper than that; so do cut faces at rest.
         found.retain(|(number, tet)| {
             let nodes = self.mesh.tets[*tet as usize];
             let at = points[*number as usize].at;
@@ -287,7 +287,7 @@ impl OverlapSearch {
         let mesh = &*self.mesh;
         let depths = self.depths.get_or_insert_with(|| Depths::new(mesh));
         let mut looks = LOOKS * mesh.tets.len().max(1000);
-        // Once the deepest is known, others are soon told from it.
+        // Once the deepest is known, others are soon ruled out.
         found.sort_by_key(|(point, tet)| (std::cmp::Reverse(depths.layer(*tet)), *point, *tet));
         let mut deepest: Option<Inside> = None;
         for (number, tet) in found {

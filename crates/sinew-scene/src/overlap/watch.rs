@@ -12,7 +12,8 @@ use super::search::{Lips, OverlapSearch};
 use crate::number::{short, vector};
 use crate::simulation::BodyModel;
 
-/// Share of an edge by which lips of a cut that keep each other apart may overlap unsaid: they do so node by node, and a cut is rough between its nodes.
+/// Share of an edge by which faces of a cut that keep each other apart may overlap without a report: they do so node by
+/// node, and a cut is rough between its nodes.
 const LIPS: f64 = 0.5;
 
 /// Two parts of a body, or two surfaces of one part, that are in each other.
@@ -50,12 +51,12 @@ impl fmt::Display for Overlap {
 
 /// A watch for parts and surfaces of a body that pass through each other: the deepest that it has seen.
 ///
-/// A look costs some tenths of a microsecond for each triangle of the surface, unless surfaces touch.
+/// A check costs some tenths of a microsecond for each triangle of the surface, unless surfaces touch.
 pub struct OverlapWatch {
     body: Arc<BodyModel>,
-    /// Made at the first look.
+    /// Made at the first check.
     search: Option<OverlapSearch>,
-    /// Room for the state at hand.
+    /// Buffers for the current state.
     displacements: Vec<Vector>,
     places: Vec<Vector>,
     deepest: Option<Overlap>,
@@ -94,7 +95,7 @@ impl OverlapWatch {
         self.deepest
     }
 
-    /// Looks at a state.
+    /// Checks a state.
     ///
     /// # Errors
     /// [`FieldError`] for a state of another body.
@@ -110,7 +111,7 @@ impl OverlapWatch {
         known
     }
 
-    /// Looks at displacements (m) of all nodes at a time (s).
+    /// Checks displacements (m) of all nodes at a time (s).
     pub fn look(&mut self, t: f64, displacements: &[[f64; 3]]) {
         let body = &*self.body;
         let mesh = &body.mesh;
@@ -137,7 +138,8 @@ impl OverlapWatch {
     }
 }
 
-/// The lips of cuts that keep each other apart, and nodes at which tetrahedra came off each other where others were taken away.
+/// The cut faces that keep each other apart, and nodes at which tetrahedra came off each other where others were taken
+/// away.
 fn lips(body: &BodyModel) -> Option<Lips> {
     let cut = &body.cut.as_ref()?.cut;
     let pairs = body.tools.as_ref().map_or(0, |tools| tools.lip_pairs());

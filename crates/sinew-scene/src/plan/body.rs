@@ -361,7 +361,7 @@ fn described(load: &LoadSpec) -> String {
     format!("{kind} on {} {ramp}", load.on)
 }
 
-/// Resultants of a load, with the name of the nodes that do not move by themselves.
+/// Resultants of a load, with the name of the nodes that are not free.
 fn resultant(facts: &LoadFacts, supports: &str) -> String {
     let lost: [f64; 3] = std::array::from_fn(|i| facts.asked[i] - facts.acting[i]);
     let (asked, acting, lost) = (length(facts.asked), length(facts.acting), length(lost));

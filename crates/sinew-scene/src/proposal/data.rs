@@ -23,7 +23,7 @@ const STIFFNESS: [&str; 8] = [
 /// Data that are proposed as Young's modulus.
 pub(super) struct Stiffness {
     pub(super) name: String,
-    /// Their least and greatest value, in words.
+    /// Description of their range, from the least to the greatest value.
     pub(super) reach: String,
 }
 

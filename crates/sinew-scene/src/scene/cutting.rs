@@ -22,7 +22,7 @@ pub struct Cutting {
     pub blade: Blade,
     /// The tool (0-based) that removes the tetrahedra inside it.
     pub remove: Option<usize>,
-    /// Treatment of pieces that nothing holds.
+    /// Treatment of parts that a cut disconnects from all supports.
     pub pieces: LoosePieces,
     /// Interaction of the two faces of a cut.
     pub lips: Lips,
@@ -39,7 +39,7 @@ pub enum Blade {
     Tool(usize),
 }
 
-/// Treatment of pieces that nothing holds or moves.
+/// Treatment of disconnected parts that no support holds or moves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LoosePieces {
     /// They continue to move.

@@ -6,7 +6,7 @@ use crate::decode::value::{Misfit, finite, list, text};
 use crate::decode::{Kind, Shape, Values};
 use crate::formula::Formula;
 
-/// Three numbers or formulas, along x, y and z; the text says in words which fit.
+/// Three numbers or formulas, along x, y and z; the text describes which fit.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Field(pub(super) &'static str);
 

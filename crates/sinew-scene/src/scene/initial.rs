@@ -14,21 +14,21 @@ use crate::formula::Formula;
 pub enum Initial {
     /// Displacements (m) of the nodes of a group.
     Displacement {
-        /// The group; `None` stands for the whole body.
+        /// The group; `None` means the whole body.
         group: Option<String>,
         /// Displacement (m) along x, y and z, of the place at rest.
         value: [Formula; 3],
     },
     /// Velocities (m/s) of the nodes of a group.
     Velocity {
-        /// The group; `None` stands for the whole body.
+        /// The group; `None` means the whole body.
         group: Option<String>,
         /// Velocity (m/s) along x, y and z, of the place at rest.
         value: [Formula; 3],
     },
     /// u_i = strain_i (x_i - origin_i) for all nodes of a group.
     Stretch {
-        /// The group; `None` stands for the whole body.
+        /// The group; `None` means the whole body.
         group: Option<String>,
         /// Strain along x, y, z.
         strain: [f64; 3],

@@ -28,7 +28,7 @@ pub struct RunSettings {
     pub dt: TimeStep,
     /// The most memory (MB) that factors may take; if none is given, the free memory of the computer.
     pub memory: Option<f64>,
-    /// True if the user intends that nothing holds the body or a part of it.
+    /// True if the user intends that the body or a part of it has no support.
     pub free_flight: bool,
     /// The integrator's own options.
     pub options: Options,

@@ -75,7 +75,7 @@ pub(super) const OPTIONAL_GROUP: Key<GroupName, Optional> = Key::optional(
     "the whole body",
 );
 
-/// A place that stands for a group of nodes or of triangles.
+/// A place that represents a group of nodes or of triangles.
 pub(super) const WHERE: Key<Where, Optional> = Key::optional(
     "where",
     "The part of the body by where it lies or by data of the mesh, in place of a group.",
@@ -87,7 +87,7 @@ pub(super) const WHERE: Key<Where, Optional> = Key::optional(
     "see `group`",
 );
 
-/// A place that stands for a group of tetrahedra.
+/// A place that represents a group of tetrahedra.
 pub(super) const WHERE_OF_TETRAHEDRA: Key<Where, Optional> = Key::optional(
     "where",
     "The part of the body by where it lies or by data of the mesh, in place of a group; `\"rest\"` is all that no other region has.",

@@ -2,7 +2,7 @@
 
 use crate::Pattern;
 
-/// An undirected graph without loops. A vertex stands for `weight` cells, an edge for `edge_weight` pairs of neighbours.
+/// An undirected graph without loops. A vertex represents `weight` cells, an edge `edge_weight` pairs of neighbours.
 pub(super) struct Graph {
     start: Vec<usize>,
     ends: Vec<u32>,

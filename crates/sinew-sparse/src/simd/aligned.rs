@@ -19,7 +19,7 @@ pub struct Aligned<T> {
 }
 
 impl<T: Copy> Aligned<T> {
-    /// So many of this value. As with vectors of the standard library, more than any memory holds is a panic.
+    /// `count` copies of this value. As with vectors of the standard library, more than any memory holds is a panic.
     #[must_use]
     pub fn filled(value: T, count: usize) -> Self {
         const { assert!(align_of::<T>() <= 64, "values that fit a line") };
@@ -28,7 +28,7 @@ impl<T: Copy> Aligned<T> {
         let mut lines = vec![Line([MaybeUninit::uninit(); 64]); lines];
         let first = lines.as_mut_ptr().cast::<T>();
         for place in 0..count {
-            // SAFETY: the lines have room for `count` values, and begin where one may.
+            // SAFETY: the lines have space for `count` values, and begin where one may.
             unsafe { first.add(place).write(value) };
         }
         Self {
@@ -51,7 +51,7 @@ impl<T: Copy> Deref for Aligned<T> {
 
     #[inline(always)]
     fn deref(&self) -> &[T] {
-        // SAFETY: so many values were written when this was made.
+        // SAFETY: `count` values were written when this was made.
         unsafe { std::slice::from_raw_parts(self.lines.as_ptr().cast(), self.count) }
     }
 }
@@ -59,7 +59,7 @@ impl<T: Copy> Deref for Aligned<T> {
 impl<T: Copy> DerefMut for Aligned<T> {
     #[inline(always)]
     fn deref_mut(&mut self) -> &mut [T] {
-        // SAFETY: so many values were written when this was made.
+        // SAFETY: `count` values were written when this was made.
         unsafe { std::slice::from_raw_parts_mut(self.lines.as_mut_ptr().cast(), self.count) }
     }
 }

@@ -45,7 +45,7 @@ impl<T: Copy> At<T> {
         Self::new(values.as_ptr().cast_mut(), 0, values.len())
     }
 
-    /// The address so many numbers further; it may lie outside, where nothing is used through it.
+    /// The address `count` numbers further; it may lie outside, where nothing is used through it.
     #[inline(always)]
     #[must_use]
     pub(crate) fn add(self, count: usize) -> Self {
@@ -55,7 +55,7 @@ impl<T: Copy> At<T> {
         }
     }
 
-    /// The address so many numbers further, or back.
+    /// The address `count` numbers further, or back.
     #[inline(always)]
     #[must_use]
     pub(crate) fn offset(self, count: isize) -> Self {
@@ -65,7 +65,7 @@ impl<T: Copy> At<T> {
         }
     }
 
-    /// This address, of which only so many numbers may be used from it on.
+    /// This address, of which only `count` numbers may be used from it on.
     #[inline(always)]
     #[must_use]
     pub(crate) fn first(self, count: usize) -> Self {
@@ -118,7 +118,7 @@ impl<T: Real> At<T> {
         unsafe { value.store(self.pointer) }
     }
 
-    /// The numbers at this address and the indices that stand at `index`.
+    /// The numbers at this address and the indices that are stored at `index`.
     #[inline(always)]
     pub(crate) unsafe fn gather<V: Lanes<T>>(self, index: At<u32>) -> V {
         index.check(0, T::LANES);

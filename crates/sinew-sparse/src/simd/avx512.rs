@@ -26,7 +26,7 @@ unsafe fn pair(low: *const [f64; 4], high: *const [f64; 4]) -> __m512d {
     }
 }
 
-/// Writes two rows that stand side by side.
+/// Writes two rows that are stored side by side.
 ///
 /// # Safety
 /// As for the methods of [`Lanes`].
@@ -52,7 +52,7 @@ unsafe fn quarter(rows: &[*const [f32; 4]; MOST], first: usize) -> __m512 {
     }
 }
 
-/// Writes rows that stand side by side, each `stride` rows after the one before.
+/// Writes rows that are stored side by side, each `stride` rows after the one before.
 ///
 /// # Safety
 /// As for the methods of [`Lanes`].

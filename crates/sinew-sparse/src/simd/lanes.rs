@@ -47,7 +47,7 @@ pub(crate) trait Lanes<T: Real>: Copy {
                 column[lane] = unsafe { (*row)[axis] };
             }
         }
-        // SAFETY: each column has room for the largest vector.
+        // SAFETY: each column has space for the largest vector.
         unsafe {
             [
                 Self::load(columns[0].as_ptr()),
@@ -60,7 +60,7 @@ pub(crate) trait Lanes<T: Real>: Copy {
     #[inline(always)]
     unsafe fn to_rows([x, y, z]: [Self; 3], to: *mut [T; 4], stride: usize) {
         let mut columns = [[T::default(); MOST]; 3];
-        // SAFETY: each column has room for the largest vector, and `to` for all rows.
+        // SAFETY: each column has space for the largest vector, and `to` for all rows.
         unsafe {
             x.store(columns[0].as_mut_ptr());
             y.store(columns[1].as_mut_ptr());
@@ -69,7 +69,7 @@ pub(crate) trait Lanes<T: Real>: Copy {
         let [x, y, z] = columns;
         let rows = x.into_iter().zip(y).zip(z).take(T::LANES);
         for (lane, ((x, y), z)) in rows.enumerate() {
-            // SAFETY: `to` has room for all rows.
+            // SAFETY: `to` has space for all rows.
             unsafe { *to.add(lane * stride) = [x, y, z, T::default()] }
         }
     }

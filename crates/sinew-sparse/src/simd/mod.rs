@@ -1,8 +1,8 @@
 //! Vectors of numbers that one instruction works on, for each instruction set.
 //!
 //! Kernels are written once over a trait of vectors and compiled once for each [`InstructionSet`]; which one runs is
-//! chosen when the program runs, so that a portable build uses what the machine has. All code that
-//! touches a kernel's memory by address stands here and in [`crate::sweep`].
+//! chosen when the program runs, so that a portable build uses what the machine has. All code that touches a kernel's
+//! memory by address is here and in [`crate::sweep`].
 
 mod aligned;
 mod at;

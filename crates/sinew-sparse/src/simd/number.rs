@@ -40,7 +40,7 @@ pub trait Number:
     /// The first numbers of a slice, which has at least one for each lane.
     fn load(from: &[Self::Real]) -> Self;
 
-    /// Writes the lanes to the beginning of a slice, which has room for them.
+    /// Writes the lanes to the beginning of a slice, which has space for them.
     fn store(self, to: &mut [Self::Real]);
 
     /// The first three numbers of each of some rows: lane by lane those at `places`, of which there is one for each lane. That they are within `from` is

@@ -22,7 +22,7 @@ unsafe impl<T: Send + Sync> Send for Shared<T> {}
 unsafe impl<T: Send + Sync> Sync for Shared<T> {}
 
 impl<T: Copy> Shared<T> {
-    /// So many of this number, to be shared.
+    /// `count` copies of this number, to be shared.
     #[must_use]
     pub fn filled(value: T, count: usize) -> Self {
         let mut owner = Aligned::filled(value, count);
@@ -98,7 +98,7 @@ impl<'a, T: Copy> SharedSlice<'a, T> {
     /// Nobody writes any of them as long as the slice is used.
     ///
     /// # Panics
-    /// Where there are not so many.
+    /// If the range goes beyond the numbers.
     #[inline(always)]
     #[must_use]
     pub unsafe fn read(self, range: Range<usize>) -> &'a [T] {
@@ -125,7 +125,7 @@ impl<'a, T: Copy> SharedSlice<'a, T> {
     /// Nobody else uses any of them as long as the slice is used.
     ///
     /// # Panics
-    /// Where there are not so many.
+    /// If the range goes beyond the numbers.
     #[inline(always)]
     #[must_use]
     #[allow(clippy::mut_from_ref, reason = "that is what the promise is for")]

@@ -147,7 +147,7 @@ impl<T: Real, V: Lanes<T>> Vector<T, V> {
     #[inline(always)]
     fn lanes(self) -> [T; MOST] {
         let mut lanes = [T::default(); MOST];
-        // SAFETY: see `Vector`; there is room for the largest vector.
+        // SAFETY: see `Vector`; there is space for the largest vector.
         unsafe { self.0.store(lanes.as_mut_ptr()) };
         lanes
     }
@@ -222,7 +222,7 @@ impl<T: Real, V: Lanes<T>> Number for Vector<T, V> {
     #[inline(always)]
     fn store(self, to: &mut [T]) {
         let to = &mut to[..T::LANES];
-        // SAFETY: see `Vector`; the slice has room for each lane.
+        // SAFETY: see `Vector`; the slice has space for each lane.
         unsafe { self.0.store(to.as_mut_ptr()) }
     }
 

@@ -129,7 +129,7 @@ impl<T: Precision, const L: usize> Place<'_, T, L> {
             .map(|layer| layer.add(self.first).first(self.vectors * T::LANES))
     }
 
-    /// Position 0 in each layer of a vector, for all positions and the room around them.
+    /// Position 0 in each layer of a vector, for all positions and the padding around them.
     #[inline(always)]
     fn whole(&self, field: Field) -> [At<T>; L] {
         std::array::from_fn(|layer| self.fields.at(field as usize, layer))

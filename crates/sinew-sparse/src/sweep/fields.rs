@@ -14,14 +14,14 @@ struct Line([u8; 64]);
 
 /// Vectors with one value for each position and layer, by number, all zero at first.
 ///
-/// Each layer of a vector is contiguous, with room before the first and after the last position that
-/// stays zero, so that kernels may read there.
+/// Each layer of a vector is contiguous, with padding before the first and after the last position that stays zero, so
+/// that kernels may read there.
 pub struct Fields<T> {
     lines: Box<[UnsafeCell<Line>]>,
     layers: usize,
     /// Positions in front of position 0.
     front: usize,
-    /// Positions, the room before and after them included.
+    /// Positions, the padding before and after them included.
     stride: usize,
     positions: usize,
     number: PhantomData<T>,
@@ -76,8 +76,8 @@ impl<T: Real> Fields<T> {
         self.front
     }
 
-    /// Position 0 of a layer of a vector, with the room around its positions. Values may be written through it
-    /// while no other thread uses them.
+    /// Position 0 of a layer of a vector, with the padding around its positions. Values may be written through it while
+    /// no other thread uses them.
     #[inline(always)]
     pub(super) fn at(&self, field: usize, layer: usize) -> At<T> {
         assert!(layer < self.layers, "a layer by its number");

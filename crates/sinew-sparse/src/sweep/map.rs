@@ -8,8 +8,8 @@ pub type Field = u32;
 /// `rho = f - sum of factor A x + sum of (plain + per_mass m) r`, `q = rho`, `M^-1 rho` or
 /// `P^-1 rho`, and then, in order, `target <- sum of weight r + of_q q`, bounded.
 ///
-/// Products read neighbours; everything else a position does by itself. No vector that a product reads
-/// may be a target.
+/// Products read neighbours; everything else uses the values of one position. No vector that a product reads may be a
+/// target.
 #[derive(Clone, Debug)]
 pub struct CellMap<T> {
     /// The forces f, where there are any.

@@ -18,9 +18,8 @@ pub struct Numbering {
 }
 
 impl Numbering {
-    /// Cells one after the other by reverse Cuthill-McKee (Liu and Sherman, SIAM J. Numer. Anal. 13,
-    /// 1976), which keeps neighbours near each other; of each 256, those with as many neighbours
-    /// stand together.
+    /// Cells one after the other by reverse Cuthill-McKee (Liu and Sherman, SIAM J. Numer. Anal. 13, 1976), which keeps
+    /// neighbours near each other; of each 256, those with as many neighbours are stored together.
     #[must_use]
     pub fn near_neighbours(pattern: &Pattern, lanes: usize) -> Self {
         let mut order = reverse_cuthill_mckee(pattern);

@@ -6,15 +6,15 @@ use crate::simd::Real;
 /// Entries of a block of three layers.
 const MOST_ENTRIES: usize = 9;
 
-/// Digits (relative) from which entries are rounded each by itself: what rounding adds to a sum of them is
-/// then far below any error that is measured.
+/// Digits (relative) from which each entry is rounded separately: what rounding adds to a sum of them is then far below
+/// any error that is measured.
 const FINE: f64 = 1e-12;
 
-/// Room for a diagonal entry that is larger than before by what all others of its row lost.
+/// Margin for a diagonal entry that becomes larger than before by what all others of its row lost.
 const ROOM: f64 = 1.0 + 1e-4;
 
-/// The units of the cells of a matrix in few digits: powers of two of which numbers up to the largest entry of a cell's row are
-/// multiples. There are none where digits are fine.
+/// The units of the cells of a matrix in few digits: powers of two of which numbers up to the largest entry of a cell's
+/// row are multiples. Empty where digits are fine.
 #[derive(Clone, Debug)]
 pub(super) struct Units(Vec<f64>);
 
@@ -39,14 +39,14 @@ impl Units {
         }
     }
 
-    /// The unit of the block between two cells, the larger of theirs; 0 where there are none.
+    /// The unit of the block between two cells, the larger of theirs; 0 without units.
     pub(super) fn between(&self, cell: usize, other: usize) -> f64 {
         let of = |cell: usize| self.0.get(cell).copied().unwrap_or(0.0);
         of(cell).max(of(other))
     }
 }
 
-/// Rounds a row of blocks, each to its unit, and keeps its sum: `write(block, entry, value)` is told each entry.
+/// Rounds a row of blocks, each to its unit, and keeps its sum: `write(block, entry, value)` receives each entry.
 ///
 /// A translation of the whole body strains nothing, since the blocks of a row add up to zero. Entries that are
 /// rounded one by one add up to something else: springs to the ground, whose stiffness is a rounding error of the

@@ -11,7 +11,7 @@ use crate::simd::{At, Lanes, Real};
 /// A matrix as kernels read it.
 #[derive(Clone, Debug)]
 pub enum Rows<T> {
-    /// Every row by itself.
+    /// Every row stored separately.
     General(Sell<T>),
     /// Templates on a lattice.
     Lattice(Lattice<T>),

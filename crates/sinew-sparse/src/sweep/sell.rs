@@ -12,10 +12,9 @@ use crate::simd::{At, Lanes, Real};
 /// Bytes above which a matrix lies in memory rather than in a cache.
 const IN_CACHE: usize = 32 << 20;
 
-/// A block matrix in sliced ELLPACK form, SELL-C-sigma (Kreutzer et al., SIAM J. Sci. Comput. 36,
-/// 2014): as many rows as a vector has lanes stand side by side, entry by entry, so that one instruction works
-/// on all of them. Short rows of a slice are filled up with zeros; sorting rows by length, which the
-/// numbering did, keeps those few.
+/// A block matrix in sliced ELLPACK form, SELL-C-sigma (Kreutzer et al., SIAM J. Sci. Comput. 36, 2014): as many rows
+/// as a vector has lanes are stored side by side, entry by entry, so that one instruction works on all of them. Short
+/// rows of a slice are filled up with zeros; sorting rows by length, which the numbering did, keeps those few.
 #[derive(Clone, Debug)]
 pub struct Sell<T> {
     layers: usize,
@@ -71,8 +70,9 @@ impl<T: Real> Sell<T> {
         sell
     }
 
-    /// Takes the rows of some cells again; whether it can, for they must have room in its slices, and the numbering as many positions as that with which it was
-    /// made. Where digits are few, their neighbours' rows follow, so that the matrix stays symmetric.
+    /// Takes the rows of some cells again; returns false if they do not fit into its slices, or if the numbering has
+    /// another number of positions than that with which it was made. Where digits are few, their neighbours' rows
+    /// follow, so that the matrix stays symmetric.
     #[must_use]
     pub fn take_rows(
         &mut self,

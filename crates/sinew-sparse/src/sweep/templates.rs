@@ -11,7 +11,7 @@ use crate::simd::Real;
 /// Share of the spacing by which a cell may miss its place.
 const OFF_PLACE: f64 = 1e-4;
 
-/// Most places for each cell: vectors have room for empty ones too.
+/// Most places for each cell: vectors have space for empty ones too.
 const MOST_PLACES: f64 = 12.0;
 
 /// Difference between entries that counts as rounding of the same template, as a share of the largest
@@ -47,8 +47,8 @@ pub struct Grid {
 }
 
 impl Grid {
-    /// The lattice of cells at these points, for kernels with so many lanes; `None` where they are on
-    /// none, or too far apart.
+    /// The lattice of cells at these points, for kernels with `lanes` lanes; `None` where they are on none, or too far
+    /// apart.
     #[must_use]
     pub fn find(points: &[[f64; 3]], lanes: usize) -> Option<Self> {
         let axes = [0, 1, 2].map(|axis| places(points, axis));

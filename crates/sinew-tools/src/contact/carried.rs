@@ -93,7 +93,8 @@ impl Tools {
         own[1..=listed.len()].copy_from_slice(&listed);
     }
 
-    /// Keeps of each pair of lips the way (m) from the one to the other as the step began that led to the state.
+    /// Stores for each pair of cut-face nodes the vector (m) from the one to the other at the beginning of the step
+    /// that ended in the state.
     pub(super) fn keep_pairs(
         &self,
         state: &State,

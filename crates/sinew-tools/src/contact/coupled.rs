@@ -14,7 +14,7 @@ use super::tools::Tools;
 use crate::shape::TriangleTouch;
 use crate::vector::{Vector, add, between, scaled, sub};
 
-/// Most rounds of looking for contacts and solving for their forces: what one surface pushes back may meet another there.
+/// Most rounds of finding contacts and solving for their forces: what one surface pushes back may meet another there.
 const MOST_ROUNDS: usize = 8;
 
 /// Share of a pass within which a contact has been there at its beginning.
@@ -23,7 +23,7 @@ const BEGINNING: f64 = 1e-6;
 /// Most contacts of a triangle with a part of a tool in a step.
 const MOST_ON_TRIANGLE: usize = 4;
 
-/// Rounds in which a body that is turned by its contacts is looked at where it ends.
+/// Rounds in which the end position of a body that is turned by its contacts is checked.
 const ROUNDS_OF_BODIES: usize = 2;
 
 impl Tools {
@@ -166,7 +166,8 @@ impl Search<'_> {
         swing(self.ways.meeting, kept, sub(to, from))
     }
 
-    /// Adds what is new; whether there is anything. At first, triangles that touch at the beginning: the others may not come to touch at all once these do not give way.
+    /// Adds new contacts; returns true if there are any. At first, triangles that touch at the beginning: the others
+    /// may not come to touch at all once these do not give way.
     fn all(&self, room: &mut Room, is_first: bool) -> bool {
         let count = |links: &Links| links.all.len() + links.lips.len();
         let before = count(&room.links);
@@ -174,7 +175,7 @@ impl Search<'_> {
         for near in 0..room.near.len() {
             let place = room.near[near] as usize;
             if !room.links.is_linked(place) {
-                // What a tool pushes at a lip may push the other lip.
+                // A node at a cut face that a tool pushes may push the opposite face.
                 let is_lip = self.tools.is_lip[place];
                 let tools = if is_lip { u64::MAX } else { self.tools.linking };
                 self.at_node(room, place, tools);
@@ -195,7 +196,7 @@ impl Search<'_> {
         self.tools.lips.find_normals(at, &mut links.normals);
     }
 
-    /// Adds the pairs of lips that come together.
+    /// Adds the pairs of cut-face nodes that come together.
     fn of_lips(&self, links: &mut Links) {
         let [_, share] = self.ways.shares;
         for (number, pair) in (0..).zip(&self.tools.lips.pairs) {

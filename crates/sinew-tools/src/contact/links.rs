@@ -48,7 +48,7 @@ pub(super) struct Link {
     /// Depth (m) of that place inside the tool.
     below: f64,
     rule: Rule,
-    /// The surface as it is seen from where the step led, without any force.
+    /// The contact surface relative to the contact-free trial position of the step, without any force.
     constraint: Constraint,
     /// From the tool's origin to the contact (m).
     arm: Vector,
@@ -77,7 +77,7 @@ pub(super) struct Links {
     last: Vec<Option<u32>>,
     last_on: Vec<Option<u32>>,
     is_linked: Vec<bool>,
-    /// Pairs of lips that meet.
+    /// Pairs of cut-face nodes in contact.
     pub(super) lips: Vec<LipLink>,
     /// The normals of cut faces as the step begins, times twice their area (m^2).
     pub(super) normals: Vec<[Vector; 2]>,
@@ -88,7 +88,7 @@ pub(super) struct Links {
 }
 
 impl Links {
-    /// Room for so many cells and triangles, and for lips.
+    /// Scratch space for `cells` cells and `triangles` triangles, and for the cut faces.
     pub(super) fn of([cells, triangles]: [usize; 2], lips: &Lips) -> Self {
         Self {
             all: Vec::with_capacity(cells),
@@ -141,7 +141,7 @@ impl Links {
         self.meets[pair as usize]
     }
 
-    /// Adds a pair of lips.
+    /// Adds a pair of cut-face nodes.
     pub(super) fn add_lips(&mut self, link: LipLink) {
         self.meets[link.pair as usize] = true;
         link.nodes
@@ -221,8 +221,9 @@ impl Links {
         self.all.push(link);
     }
 
-    /// Looks at each contact as it is where tools and tissue have been moved to so far: where nodes stood without contact is asked for by place, and so is what friction works along of each
-    /// (m) in a step of `dt` (s).
+    /// Re-evaluates each contact at the positions that tools and tissue have been moved to so far. `stood` gives the
+    /// contact-free position of a node by its place, and `swing` the displacement (m) along which its friction works in
+    /// a step of `dt` (s).
     pub(super) fn look(
         &mut self,
         tools: &[ToolStep],
@@ -249,8 +250,10 @@ impl Links {
         }
     }
 
-    /// Solves for all forces by projected Gauss and Seidel's iteration (Jourdan, Alart and Jean 1998): each contact exactly for the forces of the others, in turn. Each tool
-    /// gets what was left of its contacts, as the lips of cuts together do: the largest change of a displacement in the last sweep, as a share of the largest displacement by a contact.
+    /// Solves for all forces by projected Gauss and Seidel's iteration (Jourdan, Alart and Jean 1998): each contact
+    /// exactly for the forces of the others, in turn. Each tool gets the residual of its contacts, as all cut faces
+    /// together do: the largest change of a displacement in the last sweep, as a share of the largest displacement by a
+    /// contact.
     pub(super) fn solve(&mut self, tools: &mut [ToolStep]) {
         self.lip_residual = 0.0;
         if self.is_empty() {

@@ -1,13 +1,14 @@
-//! The lips of cuts, which do not pass each other.
+//! Contact between the faces of cuts, which do not pass each other.
 //!
-//! A cut makes two nodes of one. While their lips still face each other, one may not go beyond the other along the mean normal of the faces around them:
-//! a unilateral constraint between two nodes, whose response is the sum of theirs. There is no friction, and both are pushed by opposite forces.
+//! A cut makes two nodes of one. While their faces still face each other, one may not go beyond the other along the
+//! mean normal of the faces around them: a unilateral constraint between two nodes, whose response is the sum of
+//! theirs. There is no friction, and both are pushed by opposite forces.
 
 use super::node::{Compliance, HELD};
 use super::tool::Corner;
 use crate::vector::{Vector, add, cross, dot, length, scaled, sub};
 
-/// Cosine of the angle between a lip and the mean of both beyond which they no longer face each other.
+/// Cosine of the angle between a cut face's normal and the mean of both, below which the two no longer face each other.
 const FACING: f64 = 0.5;
 
 /// The two faces that a cut made of one, which lie on each other at rest.
@@ -48,7 +49,7 @@ pub(super) struct LipLink {
     normal: Vector,
     /// The distance (m) along the normal that contact leaves them at least.
     floor: f64,
-    /// The distance (m) along the normal to which the step led them.
+    /// The contact-free distance (m) along the normal at the end of the step.
     gap: f64,
     /// Closing of that distance per unit force (m/N).
     response: f64,
@@ -57,7 +58,7 @@ pub(super) struct LipLink {
 }
 
 impl Lips {
-    /// The lips that cut faces make, on touched cells that rest at these places (m).
+    /// The pairs of nodes of cut faces, on touched cells that rest at these places (m).
     pub(super) fn of(faces: Vec<CutFace>, rest: impl Fn(u32) -> Vector) -> Self {
         let at = |corner: Corner| corner.at(&rest);
         let mut ends = Vec::new();

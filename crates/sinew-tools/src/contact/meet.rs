@@ -121,7 +121,7 @@ impl Contact for Tools {
     }
 }
 
-/// Displacement (m) of a cell by its velocity in the step that led to a state.
+/// Displacement (m) of a cell by its velocity in the step that ended in a state.
 pub(super) fn way_of(meeting: &Meeting<'_>, state: &State, cell: u32) -> Vector {
     along_axes(&state.v, cell).map(|velocity| meeting.way(velocity))
 }

@@ -44,8 +44,9 @@ impl Met {
         (self.count, self.residual) = (0, 0.0);
     }
 
-    /// Finds what a node meets on its way (m) to where it is pushed, among some tools, one bit each, and has not met before; whether there is anything new.
-    /// The gap is taken where the step led it. With what friction works along of the node (m), and the length (s) of the step.
+    /// Finds new contacts of a node on its way (m) to where it is pushed, with the tools whose bits are set in `tools`;
+    /// returns true if there are any. The gap is taken at `end`, its contact-free position after the step. `swing` is
+    /// the displacement (m) of the node along which friction works, `dt` (s) the length of the step.
     pub(super) fn touches(
         &mut self,
         steps: &[ToolStep],

@@ -1,14 +1,17 @@
 //! Contact of nodes with rigid tools: unilateral constraints in the step's own metric.
 //!
-//! A node whose way over a step meets a tool is kept in the half-space that touches the tool where they first met, by the force that the step itself
-//! answers with the missing displacement: `lambda = max(0, -(g + dt n . (v* - w))) / (dt^2 n . P^-1 n)`, g being the gap before the step,
-//! v* the velocity to which the step led and w that of the tool. P has one block for each node, so that nodes do not act on each other within a step: the
-//! linear complementarity problem of all contacts is solved exactly, node by node and in any order. No stiffness is added, and with the energy
-//! of the staggered step, `E+ - E- <= W` where W is the work of the tools.
+//! A node whose way over a step meets a tool is kept in the half-space that touches the tool where they first met, by
+//! the force that the step itself answers with the missing displacement:
+//! `lambda = max(0, -(g + dt n . (v* - w))) / (dt^2 n . P^-1 n)`, g being the gap before the step, v* the contact-free
+//! velocity after the step and w that of the tool. P has one block for each node, so that nodes do not act on each
+//! other within a step: the linear complementarity problem of all contacts is solved exactly, node by node and in any
+//! order. No stiffness is added, and with the energy of the staggered step, `E+ - E- <= W` where W is the work of the
+//! tools.
 //!
-//! A tip that is finer than the surface meets triangles as well as nodes: a point of a triangle moves by the weights of its corners, so that contacts which share a node act on each
-//! other. A tool that is a body of its own moves as one more body with its own P, and couples its contacts: they are solved by an iteration, in a fixed order.
-//! So are the lips of cuts, of which one node pushes the other.
+//! A tool smaller than the surface triangles meets triangles as well as nodes: a point of a triangle moves by the
+//! weights of its corners, so that contacts which share a node act on each other. A tool that is a body of its own
+//! moves as one more body with its own P, and couples its contacts: they are solved by an iteration, in a fixed order.
+//! So are the faces of cuts, of which one node pushes the other.
 
 mod body_step;
 mod carried;

@@ -18,7 +18,8 @@ pub(super) const CONVERGED: f64 = 1e-13;
 /// Residual above which an iteration has failed.
 const WEDGED: f64 = 1e-3;
 
-/// Violation of constraints, as a share of that without forces, up to which a node has room between them.
+/// Violation of constraints, as a share of that without forces, up to which the constraints of a node count as
+/// compatible.
 const MEANT_TO_FIT: f64 = 1e-9;
 
 /// Nodal compliance: displacement per unit force over one step.
@@ -29,12 +30,13 @@ pub(super) struct Compliance {
     free: [bool; 3],
 }
 
-/// A surface that a node must not pass: `gap + normal . d >= 0` for its displacement d (m) from where the step led it.
+/// A surface that a node must not pass: `gap + normal . d >= 0` for its displacement d (m) from its contact-free
+/// position after the step.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Constraint {
     /// The unit normal, away from the tool.
     pub(super) normal: Vector,
-    /// Distance (m) of where the step led from the plane through the first contact, negative beyond it.
+    /// Distance (m) of the contact-free position from the plane through the first contact, negative beyond it.
     pub(super) gap: f64,
     /// The displacement (m) that takes the node where the tool has carried the place at which it was touched.
     pub(super) stick: Vector,
@@ -188,7 +190,7 @@ impl Compliance {
             }
             several => {
                 let left = self.of_several(several, forces);
-                // Where there is no room, cones would push each other on without end.
+                // If the constraints are not compatible, cones would push each other on without end.
                 let rubs = several.iter().any(|one| one.friction > 0.0);
                 if rubs && left <= MEANT_TO_FIT {
                     self.rub(several, forces)
@@ -390,7 +392,7 @@ mod tests {
         assert!(x * left[0] + y * left[1] > 0.0);
     }
 
-    /// A motion that turns about in each step would be fed by friction that looks at the velocity after the step alone.
+    /// A motion that turns about in each step would be fed by friction that uses the velocity after the step alone.
     #[test]
     fn friction_does_no_work_whatever_the_motion_was_before() {
         let compliance = compliance([true; 3]);

@@ -41,7 +41,7 @@ pub(super) const OF_VELOCITY: usize = 3;
 /// Numbers of a cell that may be held.
 pub(super) const OF_HELD: usize = 4;
 
-/// Numbers of the lips of cuts together, and of each pair.
+/// Numbers of all cut faces together, and of each pair.
 pub(super) const OF_LIPS: usize = 3;
 pub(super) const OF_PAIR: usize = 3;
 
@@ -80,7 +80,7 @@ pub(super) struct Record<'a> {
     pub(super) velocities: &'a mut [[f64; OF_VELOCITY]],
     /// Tool that holds each cell, from 1 on, or 0, and the place (m) in that tool's frame; empty if no tool ever holds.
     pub(super) held: &'a mut [[f64; OF_HELD]],
-    /// One row for all cut faces together; empty if there are none.
+    /// One row for all cut faces together; empty without cut faces.
     pub(super) lips: &'a mut [[f64; OF_LIPS]],
     /// Vector (m) between the two nodes of each pair at cut faces, at the beginning of the last step.
     pub(super) pairs: &'a mut [[f64; OF_PAIR]],
@@ -99,7 +99,7 @@ pub(super) struct Counts {
     pub(super) rubs: bool,
     /// True if any tool ever holds.
     pub(super) holds: bool,
-    /// Pairs of nodes at the lips of cuts.
+    /// Pairs of nodes at cut faces.
     pub(super) pairs: usize,
 }
 
@@ -115,7 +115,7 @@ impl Counts {
         first..first + 1 + self.cells
     }
 
-    /// Places of the numbers of pairs of lips.
+    /// Places of the numbers of pairs of cut-face nodes.
     pub(super) fn of_pairs(&self) -> Range<usize> {
         let first = self.of_lips().end;
         first..first + self.pairs * OF_PAIR
@@ -128,7 +128,7 @@ impl Counts {
         first..first + self.cells * held
     }
 
-    /// Places of the numbers of lips.
+    /// Places of the numbers of cut faces.
     pub(super) fn of_lips(&self) -> Range<usize> {
         let first = self.of_held().end;
         first..first + if self.pairs > 0 { OF_LIPS } else { 0 }
@@ -237,7 +237,7 @@ pub(super) struct Body {
     pub(super) path: Twist,
     /// Kinetic and elastic energy (J), in the middle of the last step.
     pub(super) energy: f64,
-    /// The work (J) of the hand on its path since the motion began.
+    /// The work (J) that drives the tool's path, since the motion began.
     pub(super) hand_work: f64,
 }
 

@@ -55,11 +55,11 @@ pub struct BodyReport {
     pub spin: [f64; 3],
     /// Its kinetic energy and that of its coupling (J) then.
     pub energy: f64,
-    /// The work (J) of the hand that moves its path, since the motion began: that of the coupling's force on the hand.
+    /// The work (J) that drives the tool's path, since the motion began: that of the coupling's force along the path.
     pub hand_work: f64,
 }
 
-/// The lips of cuts after a step.
+/// Cut faces after a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LipsReport {
     /// Pairs of nodes that pushed each other.
@@ -118,7 +118,7 @@ impl Tools {
         }
     }
 
-    /// The lips of cuts after the last step of a state; zeros where there are none.
+    /// Cut faces after the last step of a state; zeros without any.
     #[must_use]
     pub fn lips_report(&self, state: &State) -> LipsReport {
         let numbers = state.contact.get(self.counts.of_lips());

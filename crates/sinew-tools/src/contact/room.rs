@@ -1,4 +1,4 @@
-//! Room for a meeting of tools and cells, used again by the next.
+//! Scratch space for a contact step, reused by the next.
 
 use sinew_core::{Meeting, ShowCells, Shown, State};
 
@@ -37,7 +37,8 @@ pub(super) struct Room {
 }
 
 impl Room {
-    /// Room for tools, and cells, and for so many cells and triangles that may be part of contacts that act on each other, lips among them.
+    /// Scratch space for these tools and cells; `linked` are the numbers of cells and triangles that may take part in
+    /// coupled contacts, cut faces among them.
     pub(super) fn of(
         tools: &[Tool],
         linked: [usize; 2],
@@ -186,7 +187,7 @@ fn size(cells: &[TouchedCell]) -> f64 {
     edges.fold(0.0, f64::max)
 }
 
-/// True if the path of a cell, in a step that led to a state, meets a box (m).
+/// True if the path of a cell, in the step that ended in a state, meets a box (m).
 #[inline]
 fn is_near(
     TouchedCell { cell, rest, .. }: &TouchedCell,

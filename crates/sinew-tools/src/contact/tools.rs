@@ -28,7 +28,7 @@ pub struct Tools {
     pub(super) counts: Counts,
     /// The tools whose contacts act on each other, one bit each.
     pub(super) linking: u64,
-    /// The lips of cuts.
+    /// The faces of cuts.
     pub(super) lips: Lips,
     /// One flag per cell: true if it is part of a pair of cut-face nodes.
     pub(super) is_lip: Vec<bool>,
@@ -179,7 +179,7 @@ impl Tools {
         }
     }
 
-    /// These tools on a body with cut faces, whose lips do not pass each other. Corners are places among the touched cells.
+    /// These tools on a body with cut faces, which do not pass each other. Corners are places among the touched cells.
     ///
     /// # Errors
     /// [`ToolsError::NoLip`] for a corner beyond these.

@@ -107,7 +107,7 @@ mod tests {
 
     #[test]
     fn a_line_through_the_seam_is_never_lost() {
-        // Slopes at which the round end is too near to a tangent of the line to be told from it.
+        // Slopes at which the round end is too near to a tangent of the line to be distinguished from it.
         for slope in [1e-6, 1e-8, 1e-9, 1e-10] {
             for above in [0.0, 1e-18, 1e-17, 1e-13, 1e-10] {
                 // In the plane y = 0, down and inwards, through (R, HALF + above).

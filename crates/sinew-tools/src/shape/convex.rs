@@ -267,7 +267,7 @@ mod tests {
             Convex::sphere(0.1).unwrap().half_width_across([1.0; 3]),
             0.1
         );
-        // The least over all directions across, by looking at many.
+        // The least over all directions across, by testing many.
         for direction in [[1.0, 2.0, 3.0], [-0.1, 0.3, 0.02], [1.0, 1.0, 0.0]] {
             let first = cross(direction, [0.3, -0.5, 0.8]);
             let first = scaled(first, 1.0 / length(first));

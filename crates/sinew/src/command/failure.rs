@@ -219,7 +219,7 @@ pub(crate) enum Failure {
     Interrupted {
         /// Time (s).
         t: f64,
-        /// Way to continue the run, as the rest of the message; empty if there is none.
+        /// Way to continue the run, as the rest of the message; empty if absent.
         remedy: String,
     },
     /// Results that differ by more than was allowed.
@@ -281,7 +281,7 @@ impl From<sinew_live::LiveError> for Failure {
 }
 
 impl Failure {
-    /// The failure of a world that stands at `t` (s).
+    /// The failure of a world whose time is `t` (s).
     pub(crate) fn of_advance(error: AdvanceError, t: f64) -> Self {
         match error {
             AdvanceError::Step(WorldStepError::Step(error)) => Self::Run(error.into()),

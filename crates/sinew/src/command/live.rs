@@ -13,7 +13,7 @@ use super::Failure;
 use super::interruption::Interruption;
 use super::scene_with::Values;
 
-/// The scene without a name: the paper's cube, and a hand that pulls at its top.
+/// The scene without a name: the paper's cube, at whose top the user pulls.
 const CUBE: &str = include_str!("live/cube.toml");
 
 /// The methods that stand side by side without a scene: the paper's, and the one that bears its step.
@@ -91,7 +91,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
 }
 
-/// The hand of the scene without a name.
+/// The loads by which the user pulls in the scene without a name.
 fn hand() -> Hand {
     Hand {
         loads: ["hand-x", "hand-y", "hand-z"].map(str::to_owned),

@@ -64,7 +64,7 @@ impl Values {
         }
     }
 
-    /// Reads a scene that stands in no file with them.
+    /// Reads a scene that comes from no file with them.
     #[cfg(feature = "live")]
     pub(crate) fn apply(&self, source: &SceneSource) -> Result<Scene, Failure> {
         self.check()?;

@@ -10,8 +10,8 @@ use crate::hard::methods::{block, chebyshev, cnn, energy, gauss_seidel};
 use crate::report::three;
 use crate::results::Mark;
 
-/// The largest excess of the energy over E0 and the work so far, as a share of them, among the
-/// methods that promise there is none.
+/// The largest excess of the energy over E0 and the work so far, as a share of them, among the methods that promise no
+/// excess.
 pub(crate) fn check(asked: Asked, case: &Case) -> Result<Mark, HardError> {
     let dt = case.simulation().dt();
     let critical = case.critical_step().ok_or(HardError::NothingVibrates)?;
@@ -41,7 +41,7 @@ pub(crate) fn check(asked: Asked, case: &Case) -> Result<Mark, HardError> {
     Ok(asked.measured(worst.figure, three, worst.by).noting(note))
 }
 
-/// An excess in words.
+/// Description of an excess.
 fn without_bound_or(excess: f64) -> String {
     if excess.is_finite() {
         three(excess)

@@ -1,4 +1,4 @@
-//! The place of rest: a damped body comes to rest where K u = F, whatever stands in the place of the mass.
+//! The place of rest: a damped body comes to rest where K u = F, whatever replaces the mass.
 
 use sinew_core::{Outcome, Run, simulate};
 use sinew_measure::{Case, MethodChoice};
@@ -11,7 +11,7 @@ use crate::hard::methods::{block, chebyshev, cut};
 use crate::report::{short, three};
 use crate::results::Mark;
 
-/// Steps between two looks at the distance, and most of these.
+/// Steps between two checks of the distance, and most of these.
 const ROUND: usize = 1000;
 const MOST_ROUNDS: usize = 200;
 

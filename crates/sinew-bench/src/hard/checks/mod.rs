@@ -18,7 +18,7 @@ use sinew_measure::MethodChoice;
 use crate::hard::error::HardError;
 use crate::report::milliseconds;
 
-/// A method at a step, in words.
+/// Description of a method at a step.
 pub(crate) fn at(method: &str, dt: f64) -> String {
     format!("{method}, {} ms", milliseconds(dt))
 }

@@ -39,7 +39,7 @@ impl Planned {
         }
     }
 
-    /// The run in words.
+    /// Description of the run.
     pub(crate) fn label(&self) -> String {
         format!("{}, {} ms", self.method.label(), milliseconds(self.dt))
     }
@@ -78,7 +78,7 @@ impl Followed {
     }
 }
 
-/// The energy of a run under loads, step by step, where supports stand still.
+/// The energy of a run under loads, step by step, where supports do not move.
 struct Ledger<'a> {
     system: &'a dyn System,
     before: Option<(State, f64)>,
@@ -183,7 +183,7 @@ pub(crate) fn reference(
     Ok(specimen.by_central_difference(dt, steps as usize, instants)?)
 }
 
-/// Follows a method over `duration` (s), with displacements at so many equal instants.
+/// Follows a method over `duration` (s), with displacements at `instants` equal instants.
 ///
 /// # Errors
 /// [`HardError`] where there is no such method; that it refuses the body or a state is no error.

@@ -15,7 +15,7 @@ pub(super) const LITTLE: f64 = 0.05;
 /// Requirement for a run that reaches its end.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Demand {
-    /// The figure in words.
+    /// Description of the figure.
     pub(crate) what: &'static str,
     pub(crate) figure: f64,
     /// The largest figure that is right.
@@ -39,15 +39,15 @@ pub(crate) struct Tally {
     /// Figures over their limits.
     worst: Worst,
     right: usize,
-    /// Ends that are told, in words.
+    /// Descriptions of ends that are reported.
     told: Vec<String>,
     /// Descriptions of errors that must not occur.
     faults: Vec<String>,
 }
 
 impl Tally {
-    /// Judges a run: it meets a demand, or says by itself that it does not. One that has to come to its end and is refused is a fault,
-    /// and so is a refusal without a name.
+    /// Judges a run: it meets a demand, or reports itself that it does not. One that has to come to its end and is
+    /// refused is a fault, and so is a refusal without a name.
     pub(crate) fn judge(&mut self, about: &str, planned: &Planned, run: &Followed, demand: Demand) {
         let label = format!("{about}: {}", planned.label());
         match &run.refusal {

@@ -63,7 +63,7 @@ pub(super) fn draw_legend(svg: &mut Svg, left: f64, top: f64) {
             width: 20.0,
             height: 18.0,
         };
-        // Only failures have a colour of their own; other signs stand on that of their error.
+        // Only failures have a colour of their own; other signs are drawn on that of their error.
         let ink = match verdict {
             RowVerdict::Unbounded | RowVerdict::Diverged | RowVerdict::Refused => {
                 svg.rect(sample, Paint::Data(verdict::tint(verdict)));

@@ -96,7 +96,7 @@ pub(crate) fn add_node_group(mesh: &mut TetMesh, name: &str, belongs: impl Fn([f
     });
 }
 
-/// Whether a node lies strictly inside the bounding box of a structured mesh.
+/// True if a node lies strictly inside the bounding box of a structured mesh.
 pub(crate) fn is_inside(mesh: &TetMesh, node: usize) -> bool {
     let (low, high) = mesh.bounding_box();
     let point = mesh.points[node];

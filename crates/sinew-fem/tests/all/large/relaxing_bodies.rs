@@ -223,7 +223,7 @@ fn a_stress_that_is_held_relaxes_as_its_series_whatever_the_step() {
     }
 }
 
-/// Where only deviatoric stress relaxes, pressure does not; both are seen in a body of uniform strain.
+/// If only deviatoric stress relaxes, pressure does not; both are seen in a body of uniform strain.
 #[test]
 fn pressure_stays_where_only_deviatoric_stress_relaxes() {
     let mesh = uneven_cube();

@@ -15,7 +15,7 @@ fn block() -> (TetMesh, Model) {
     (mesh, model)
 }
 
-/// Which components of a node are held, by its place.
+/// The components of a node that are held, by its place.
 fn held_axes(mesh: &TetMesh, node: usize) -> [bool; 3] {
     let height = mesh.points[node][2];
     if height == 0.0 {

@@ -734,7 +734,7 @@ fn data_that_cannot_give_a_property_are_refused_by_name_and_tag() {
     );
 }
 
-/// What is wrong outside a region does not matter to it.
+/// Invalid values outside a region do not affect it.
 #[test]
 fn data_count_in_the_regions_that_name_them_only() {
     let mut mesh = uneven_cube();

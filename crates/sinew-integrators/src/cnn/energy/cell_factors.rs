@@ -12,7 +12,7 @@ pub(super) struct CellFactors {
 }
 
 impl CellFactors {
-    /// Room for the blocks of so many degrees of freedom.
+    /// Storage for the blocks of `dofs` degrees of freedom.
     pub(super) fn new(layers: usize, dofs: usize) -> Self {
         Self {
             layers,

@@ -22,12 +22,13 @@ pub(super) const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
 /// A displacement over a step that is improved by nonlinear conjugate gradients with the cells' own blocks for a preconditioner.
 ///
-/// Directions are those of Polak and Ribiere, never negative (Gilbert and Nocedal, SIAM J. Optim. 2, 1992). They begin anew with every step,
-/// so that nothing is remembered.
+/// Directions are those of Polak and Ribiere, never negative (Gilbert and Nocedal, SIAM J. Optim. 2, 1992). They
+/// restart with every step, so that no history is kept.
 ///
-/// They set out from where the velocity at the start of the step leads, if the potential is not higher there than at the start: what moves on as it did is found at once, and no stiffness of a block brakes it.
-/// Parts that may move as rigid bodies are led to the least of the potential over such motions, which the elastic energy does not feel, and the blocks are then those of a [`Deflation`](sinew_cnn::Deflation): so
-/// sweeps find what is left.
+/// They start from the displacement by the velocity at the start of the step, if the potential is not higher there than
+/// at the start: what moves on as it did is found at once, and no stiffness of a block brakes it. Parts that may move
+/// as rigid bodies are moved to the minimum of the potential over such motions, which the elastic energy does not feel,
+/// and the blocks are then those of a [`Deflation`](sinew_cnn::Deflation): so sweeps find what is left.
 pub(super) struct Descent {
     /// The displacement over the step (m).
     pub(super) moved: Vec<f64>,
@@ -38,7 +39,7 @@ pub(super) struct Descent {
     /// The cells' own blocks (N/m) of the potential's second derivative without inertia, row by row.
     pub(super) own: Vec<f64>,
     pub(super) blocks: CellFactors,
-    /// Own blocks of stiffness damping in the step (N s/m); empty where there is none.
+    /// Own blocks of stiffness damping in the step (N s/m); empty without such damping.
     viscous_blocks: Vec<f64>,
     gradient: Vec<f64>,
     gradient_before: Vec<f64>,
@@ -115,7 +116,7 @@ impl Descent {
         self.reached.energy = start.energy;
     }
 
-    /// Lowers the potential by so many sweeps from the start of the step.
+    /// Runs `sweeps` descent sweeps from the start of the step.
     ///
     /// # Errors
     /// [`EvaluationError`] when the law has no tangent where it has a force.
@@ -161,8 +162,9 @@ impl Descent {
             .add_viscous_blocks(&law.damped(), 1.0, &mut self.viscous_blocks)
     }
 
-    /// Goes where the velocity at the start of the step leads, and parts that may move as rigid bodies to the least of the potential over such motions, where it is
-    /// lower there; or these alone. Whether it went anywhere. Then takes rigid motions out of the blocks.
+    /// Moves by the velocity at the start of the step, and parts that may move as rigid bodies to the minimum of the
+    /// potential over such motions, where it is lower there; or these alone. Then takes rigid motions out of the
+    /// blocks. Returns true if anything moved.
     fn lead(
         &mut self,
         law: &Law<'_>,
@@ -264,7 +266,7 @@ impl Descent {
         Ok(())
     }
 
-    /// Factorises these blocks, so many times, with the inertia.
+    /// Factorises these blocks, `factor` times, with the inertia.
     pub(super) fn factorise(&mut self, quadratic: &Quadratic<'_>, factor: f64) {
         let entries = self.blocks.entries_mut().iter_mut();
         entries

@@ -30,9 +30,9 @@ pub use self::kind::Kind;
 ///   171, 1999; for tissue Kane et al., Int. J. Numer. Meth. Eng. 49, 2000), or
 /// * [`Kind::Trapezoidal`], with `m = 4/dt^2`, `d = 2/dt` and `b = M (4 v/dt + a) + D v + F`: Newmark's method with beta = 1/4 and gamma = 1/2.
 ///
-/// From y = 0 on it is lowered by so many sweeps of nonlinear conjugate gradients; each solves with every cell's own block of the
-/// potential's second derivative, as a network does, and is halved until the law takes the point and the potential has fallen.
-/// The step's length along a direction takes one tangent product.
+/// From y = 0 on it is lowered by a given number of sweeps of nonlinear conjugate gradients; each solves with every
+/// cell's own block of the potential's second derivative, as a network does, and is halved until the law takes the
+/// point and the potential has fallen. The step's length along a direction takes one tangent product.
 ///
 /// # Why the energy does not rise
 ///
@@ -55,7 +55,8 @@ pub use self::kind::Kind;
 ///
 /// # Order
 ///
-/// Parts that may move as rigid bodies are led to the least of the potential over such motions first, by finite turns, so that no sweep is needed for what moves as a whole ([`sinew_cnn::RigidMotions`]).
+/// Parts that may move as rigid bodies are moved to the minimum of the potential over such motions first, by finite
+/// rotations, so that no sweep is needed for what moves as a whole ([`sinew_cnn::RigidMotions`]).
 ///
 /// Sweeps begin with no displacement beside that, an error of `dt v`, and each leaves a share of it that falls as `dt^2`, or as `dt` with stiffness damping or
 /// dashpots, which weigh `dt` times more. So the order is that of the formula from two sweeps on (from one for implicit Euler), with
@@ -67,7 +68,7 @@ pub struct CnnEnergy {
 }
 
 impl CnnEnergy {
-    /// The method with this formula and so many sweeps, at least one.
+    /// The method with this formula and `sweeps` sweeps, at least one.
     #[must_use]
     pub fn new(kind: Kind, sweeps: u32) -> Self {
         Self {
@@ -143,7 +144,8 @@ impl Scheme for CnnEnergy {
             Kind::ImplicitEuler => 1,
             Kind::Trapezoidal => 2,
         };
-        // Where the velocity leads y is off by dt^2, and each sweep leaves dt^2 of it, with other damping dt; v is off by that over dt.
+        // After a displacement by the velocity, y is off by dt^2, and each sweep leaves dt^2 of it, with other damping
+        // dt; v is off by that over dt.
         let sweeps = self.sweeps.min(8) as u8;
         let order = of_formula.min(2 * sweeps);
         Properties::of_order(order, Needs::Tangents, EnergyBehaviour::NeverRises)

@@ -1,4 +1,4 @@
-//! The part of a step's potential that every law has.
+//! The quadratic terms of a step's potential, which every law has.
 
 use sinew_core::vectors::add_scaled;
 
@@ -15,7 +15,8 @@ pub(super) struct Quadratic<'a> {
 }
 
 impl Quadratic<'_> {
-    /// The potential's slope (N) where a displacement y (m), with D y (N) where anything damps, has led to the law's force (N).
+    /// The gradient (N) of the potential at a displacement y (m), from D y (N) if anything damps, and the law's force
+    /// (N) there.
     pub(super) fn write_slope(
         &self,
         (moved, damped): (&[f64], Option<&[f64]>),

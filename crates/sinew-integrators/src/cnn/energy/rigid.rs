@@ -5,7 +5,8 @@ use sinew_core::FreePart;
 
 use super::quadratic::Quadratic;
 
-/// The parts that may move as rigid bodies. The potential of a rigid motion is that of its inertia alone, and so its least is known; sweeps then go on by blocks that rigid motions do not feel.
+/// The parts that may move as rigid bodies. The potential of a rigid motion is that of its inertia alone, and so its
+/// least is known; sweeps then continue by blocks that rigid motions do not feel.
 pub(super) struct Rigid {
     parts: Vec<RigidMotions>,
     pub(super) deflation: Deflation,
@@ -17,7 +18,7 @@ pub(super) struct Rigid {
 }
 
 impl Rigid {
-    /// Room for these parts; `None` where there are none.
+    /// Scratch space for these parts; `None` without any.
     pub(super) fn new(parts: Vec<FreePart>, dofs: usize) -> Option<Self> {
         if parts.is_empty() {
             return None;

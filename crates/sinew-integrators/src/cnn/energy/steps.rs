@@ -33,7 +33,7 @@ pub struct EnergySteps {
     /// The linear part of the step's potential (N), and the force of damping at one end of the step.
     pull: Vec<f64>,
     damped: Vec<f64>,
-    /// Room for the displacement (m) at which stiffness damping is held throughout a step.
+    /// Buffer for the displacement (m) at which stiffness damping is held throughout a step.
     middle: Vec<f64>,
     /// The force (N) of that damping by the motion of supports.
     drag: Vec<f64>,
@@ -60,7 +60,7 @@ impl Attempt {
 }
 
 impl EnergySteps {
-    /// Steps of a system, which go on counting for the certificate where those `before` end, as at a cut.
+    /// Steps of a system, whose certificate continues the counts of those `before`, as at a cut.
     pub(super) fn new(
         id: &'static str,
         system: &dyn System,
@@ -352,7 +352,7 @@ impl StepByHand for EnergySteps {
 }
 
 impl EnergySteps {
-    /// Takes a step, with room for a displacement.
+    /// Takes a step, with a buffer for a displacement.
     fn take_step(
         &mut self,
         step: &Step<'_>,

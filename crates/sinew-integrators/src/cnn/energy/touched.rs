@@ -26,14 +26,15 @@ pub(super) enum SetOut {
 
 /// A displacement over a step, improved by sweeps of which each minimises a bound of the potential, exactly and with contact.
 ///
-/// The bound about a displacement z is `Phi(z) + g'(y - z) + (y - z)'(m M + beta B)(y - z)/2`, with the inertia as it is and the cells' own blocks B of
-/// the rest, so many times that it is one. Its minimum lies where contact, in the metric `dt^2 (m M + beta B)`, leaves the cells that were led to
-/// `z - (m M + beta B)^-1 g`. So each sweep ends with forces of contact that fit its
-/// displacement, friction included. It is a proximal gradient method with a momentum that begins anew where it leads uphill (Beck and Teboulle,
-/// SIAM J. Imaging Sci. 2, 2009; O'Donoghue and Candes, Found. Comput. Math. 15, 2015).
+/// The bound about a displacement z is `Phi(z) + g'(y - z) + (y - z)'(m M + beta B)(y - z)/2`, with the inertia as it
+/// is and the cells' own blocks B of the rest, with beta large enough for a bound. Its minimum lies where contact, in
+/// the metric `dt^2 (m M + beta B)`, leaves the cells whose contact-free displacement is `z - (m M + beta B)^-1 g`. So
+/// each sweep ends with forces of contact that fit its displacement, friction included. It is a proximal gradient
+/// method with a momentum that restarts where it leads uphill (Beck and Teboulle, SIAM J. Imaging Sci. 2, 2009;
+/// O'Donoghue and Candes, Found. Comput. Math. 15, 2015).
 ///
-/// Sweeps set out from `z = dt v`, where `y - z` is of the order of `dt^2`: what moves freely goes on in the first one. A bound of the inertia, such as twice
-/// of it, would keep a share of the velocity in each step, however short.
+/// Sweeps set out from `z = dt v`, where `y - z` is of the order of `dt^2`: free motion is carried on in the first one.
+/// A bound of the inertia, such as twice of it, would keep a share of the velocity in each step, however short.
 ///
 /// Parts that may move as rigid bodies feel nothing of B ([`Deflation`]), and turn by z as far as they turn in dt. In one block for each cell they would be braked by all that holds a cell in its neighbours.
 ///
@@ -102,7 +103,7 @@ impl Touched {
         }
     }
 
-    /// Lowers the potential by so many sweeps; their end is left in `descent`.
+    /// Runs `sweeps` sweeps that lower the potential; their end is left in `descent`.
     ///
     /// # Errors
     /// [`EvaluationError`] when the law has no own blocks or no damping where it has a force, or refuses where tools push the tissue.
@@ -205,7 +206,7 @@ impl Touched {
         is_free
     }
 
-    /// Lets contact push the cells from where they are led to, in the metric of the last sweep.
+    /// Applies contact to the cells at their contact-free positions, in the metric of the last sweep.
     fn push(
         &mut self,
         contact: &dyn Contact,
@@ -332,7 +333,7 @@ impl Touched {
         }
     }
 
-    /// Leads the cells down the slope and lets contact push them.
+    /// Moves the cells down the slope and lets contact push them.
     fn meet(&mut self, taken: Taken<'_>, descent: &Descent) {
         let dt = taken.step.dt;
         self.change.copy_from_slice(&self.gradient);

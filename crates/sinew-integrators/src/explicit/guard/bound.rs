@@ -6,28 +6,27 @@
 //! it: `|v_i| <= (sqrt(2 W) + sqrt(2 E_start))/sqrt(m_i)`, m_i being the cell's mass. That holds for every body,
 //! and does not depend on the axes' directions.
 //!
-//! *Computed motion.* A method's velocities may be larger; [`room`] says how much larger.
+//! *Computed motion.* A method's velocities may be larger; [`room`] gives the factor.
 
 use sinew_core::{SetupError, Start, State, System};
 
 use super::load_work::{LoadStrength, load_strengths};
 
-/// The least room for a computed velocity over the bound of the exact one.
+/// The least factor of a computed velocity over the bound of the exact one.
 pub(super) const LEAST_ROOM: f64 = 10.0;
 
 /// The factor by which a method's velocities may exceed the bound of exact motion at a step that is this share
 /// of its stable one and this many times `1/alpha`, alpha being the rate of mass damping.
 ///
-/// Within its stable step a method keeps an energy of its own. That of leapfrog is
-/// `v'(M - dt/2 D - dt^2/4 K)v + w'Kw`, w being the mean of two displacements about the equilibrium of the moment
-/// and D the damping that lags. It falls while loads are constant, and a change of a load adds no more to
-/// its root than to that of the exact energy. At a share r of the stable step the matrix is at least
-/// `(1 - r) M`, so that velocities are too large by at most `1/sqrt(1 - r)`. Symplectic Euler has the same
-/// recurrence; modified leapfrog has it with a smaller K and `(1 - r)/4 M`; `cnn-stabilised` has at least `.0199 M`
-/// at any step. Powers of forward Euler and `rk4` grow at first in a mode that is critically damped, by up to
-/// `1/(e (1 - r))`; `rk4`, which sees a load at three instants of a step, makes less than five times as much of a
-/// change. So there is room for `1/(1 - r)`, and for ten at least. At the stable step itself there is
-/// no bound: a leapfrog's fastest mode grows as the number of steps.
+/// Within its stable step a method keeps an energy of its own. That of leapfrog is `v'(M - dt/2 D - dt^2/4 K)v + w'Kw`,
+/// w being the mean of two displacements about the equilibrium of the moment and D the damping that lags. It falls
+/// while loads are constant, and a change of a load adds no more to its root than to that of the exact energy. At a
+/// share r of the stable step the matrix is at least `(1 - r) M`, so that velocities are too large by at most
+/// `1/sqrt(1 - r)`. Symplectic Euler has the same recurrence; modified leapfrog has it with a smaller K and
+/// `(1 - r)/4 M`; `cnn-stabilised` has at least `.0199 M` at any step. Powers of forward Euler and `rk4` grow at first
+/// in a mode that is critically damped, by up to `1/(e (1 - r))`; `rk4`, which sees a load at three instants of a step,
+/// makes less than five times as much of a change. So the factor is `1/(1 - r)`, and ten at least. At the stable step
+/// itself there is no bound: a leapfrog's fastest mode grows as the number of steps.
 ///
 /// A staggered method whose first half step does not resolve the mass damping, `alpha dt > 1`, starts with a
 /// velocity that is too large by a polynomial in `alpha dt`, of degree 2 in modified leapfrog.
@@ -74,7 +73,7 @@ impl Bound {
         })
     }
 
-    /// Writes the limit of each cell (m/s) for motion computed in steps of `dt` (s), `room` times the bound
+    /// Writes the limit of each cell (m/s) for motion computed in steps of `dt` (s), the factor `room` times the bound
     /// by energy; returns the largest limit over the cell's size (1/s), 0 where the system has no sizes.
     pub(super) fn limits(&self, start: Option<Start>, dt: f64, room: f64, out: &mut [f64]) -> f64 {
         let start_strength = start.map_or(0.0, |start| (2.0 * start.energy).sqrt());

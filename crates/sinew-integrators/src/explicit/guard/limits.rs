@@ -22,7 +22,7 @@ pub(super) struct Limits {
 }
 
 impl Limits {
-    /// Share of its size that a cell may pass in a part of a step where no part is known to be stable.
+    /// Share of its size that a cell may pass in a substep if no substep is known to be stable.
     pub(super) const SHARE_OF_SIZE: f64 = 0.2;
 
     /// Limits for a motion from rest.

@@ -9,14 +9,14 @@ const MOST_ITERATIONS: usize = 2000;
 /// Residual of a solution, relative to the load; the error of the energy is its square.
 const RESIDUAL: f64 = 1e-5;
 
-/// Stiffness of a motion that counts as zero, relative to the stiffness against moving each cell by itself.
+/// Stiffness of a motion that counts as zero, relative to the stiffness against moving each single cell.
 const UNRESISTED: f64 = 1e-12;
 
 /// Bounds of `e = sqrt(v'Mv + w'Kw)` that a load can bring about at any time after a start at rest, w being the
 /// displacement from the equilibrium of the moment or, for the second, from the equilibrium without loads.
 #[derive(Debug)]
 pub(super) struct LoadStrength {
-    /// Bound by the load's changes (J^1/2); infinite where nothing holds the body against it.
+    /// Bound by the load's changes (J^1/2); infinite if the body is unsupported against it.
     by_changes: f64,
     /// `sqrt(F'M^-1 F)` (J^1/2/s), F being the load at full value.
     rate: f64,
@@ -27,8 +27,7 @@ pub(super) struct LoadStrength {
 }
 
 impl LoadStrength {
-    /// The bound (J^1/2) for motion computed in steps of `dt` (s); infinite where the load can go on moving the
-    /// body for ever.
+    /// The bound (J^1/2) for motion computed in steps of `dt` (s); infinite where the load can move the body for ever.
     ///
     /// With the equilibrium u_s under the load of the moment, `r(t) F`, and `e^2 = v'Mv + (u - u_s)'K(u - u_s)`,
     /// `de/dt <= |dr/dt| sqrt(F'K^-1 F)`, since damping takes energy away: e is at most the ramp's variation

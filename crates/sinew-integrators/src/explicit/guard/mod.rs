@@ -19,18 +19,18 @@ use bound::{LEAST_ROOM, room};
 use limits::Limits;
 pub use option::{Guard, GuardOption};
 
-/// Most parts of a step where none is stable: a light cell's limit would ask for millions.
+/// Most substeps of a step if none is stable: a light cell's limit would ask for millions.
 const MOST_PARTS_BY_SIZE: u32 = 1000;
 
 /// An integrator whose velocities and displacements are clamped after each step: `|v_i| <= Q_i`
 /// and `|u_i(t + dt) - u_i(t)| <= Q_i dt` for the vectors of each cell i, so that the result does not
 /// depend on the axes' directions. Not a bit changes while nothing saturates.
 ///
-/// With [`Guard::Auto`] a step longer than the method's stable one is cut into the fewest equal parts that are
-/// at most nine tenths of it. The limits Q_i follow from the energy that the loads and the start of the motion
-/// bring, with room for the larger velocities of a stable method, so that a stable step, or part of one, is never
-/// clamped. Where a method knows no stable step, as forward Euler without damping, parts are so short that no
-/// cell passes a fifth of its size in one, or a thousandth of the step, and the limits are what bounds the motion.
+/// With [`Guard::Auto`] a step longer than the method's stable one is cut into the fewest equal parts that are at most
+/// nine tenths of it. The limits Q_i follow from the energy that the loads and the start of the motion bring, with a
+/// factor for the larger velocities of a stable method, so that a stable step, or substep, is never clamped. Where a
+/// method knows no stable step, as forward Euler without damping, parts are so short that no cell passes a fifth of its
+/// size in one, or a thousandth of the step, and the limits are what bounds the motion.
 ///
 /// [`Guard::At`] clamps and does nothing else.
 ///
@@ -51,7 +51,7 @@ pub struct Guarded {
 }
 
 impl Guarded {
-    /// Name of the fact for the number of parts of a step.
+    /// Name of the fact for the number of substeps of a step.
     pub const SUBSTEPS: &'static str = "guard_substeps";
     /// Name of the fact for the largest of all limits (m/s), which rises without end where a step nears the
     /// method's stable one.
@@ -97,7 +97,7 @@ impl Guarded {
         Ok(stable)
     }
 
-    /// Chooses the parts of a step, and limits with room for the method's velocities at that length.
+    /// Chooses the substeps of a step, and limits with a factor for the method's velocities at that length.
     fn cut(&mut self, system: &dyn System, dt: f64) -> Result<(), SetupError> {
         if let Guard::At(_) = self.guard {
             return Ok(());

@@ -44,13 +44,13 @@ impl GuardOption {
         shown_default: None,
     };
 
-    /// The option in words, where the method does not list it itself.
+    /// Description of the option, for methods that do not list it themselves.
     #[must_use]
     pub fn help(self) -> Option<OptionHelp> {
         matches!(self, Self::Any).then_some(Self::HELP)
     }
 
-    /// Takes the guard out of the other options; `None` where there is none.
+    /// Takes the guard out of the other options; `None` if absent.
     ///
     /// # Errors
     /// [`OptionError::Value`] for anything but a finite number above 0, "auto" or "off".

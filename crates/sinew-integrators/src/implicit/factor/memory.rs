@@ -14,7 +14,7 @@ static SET: AtomicU64 = AtomicU64::new(NOT_SET);
 pub struct Memory(Option<u64>);
 
 impl Memory {
-    /// So many bytes.
+    /// A limit of `bytes` bytes.
     #[must_use]
     pub fn of(bytes: u64) -> Self {
         Self(Some(bytes))
@@ -39,7 +39,7 @@ impl Memory {
         self.check(bytes).is_ok()
     }
 
-    /// Refuses a factor of so many bytes if they are too many.
+    /// Refuses a factor of `bytes` bytes if they are too many.
     pub(super) fn check(self, bytes: u64) -> Result<(), FactorError> {
         match self.0 {
             Some(most) if bytes > most => Err(FactorError::Memory {

@@ -17,7 +17,7 @@ enum Kind {
     Factor(Box<Factor>),
     Gradients {
         gradients: Box<Gradients>,
-        /// Bytes of the factor in whose place they stand; 0 where none was thought of.
+        /// Bytes of the factor that they replace; 0 where none was considered.
         instead_of: u64,
     },
 }

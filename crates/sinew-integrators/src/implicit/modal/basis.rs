@@ -19,7 +19,7 @@ pub(super) enum Choice {
     Tolerance(f64),
 }
 
-/// Vectors that stand for the motion.
+/// Vectors that represent the motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Vectors {
     /// Modes, the most excited of a Lanczos basis.

@@ -79,7 +79,8 @@ impl Carried {
         }
     }
 
-    /// Adds so many times this part at the time `t` (s), after what happens then, to displacements (m) and velocities (m/s).
+    /// Adds `times` times this part at the time `t` (s), after what happens then, to displacements (m) and velocities
+    /// (m/s).
     pub(super) fn add(&self, times: f64, t: f64, u: &mut [f64], v: &mut [f64]) {
         let after = t + Clock::ROUNDING * t.abs();
         for course in &self.courses {

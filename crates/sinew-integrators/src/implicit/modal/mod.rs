@@ -36,11 +36,10 @@ use crate::{Frame, Method, OptionDefault, OptionHelp, OptionKind, Scheme, SetUp,
 /// loads is taken exactly at any step; steps are cut at the ramps' breakpoints.
 ///
 /// # Modes
-/// They come from the Lanczos method on `K^-1 M`, or on `(K + s^2 M)^-1 M` where the body floats, in
-/// a basis that starts from the static response to the loads, so that modes that no load excites never
-/// enter. Modes at the fast end of the basis have not converged; each stands for a bundle of modes,
-/// which represents the loads better than any one of them. Systems of up to 256 degrees of freedom
-/// have all their modes taken.
+/// They come from the Lanczos method on `K^-1 M`, or on `(K + s^2 M)^-1 M` where the body floats, in a basis that
+/// starts from the static response to the loads, so that modes that no load excites never enter. Modes at the fast end
+/// of the basis have not converged; each represents a bundle of modes, which represents the loads better than any one
+/// of them. Systems of up to 256 degrees of freedom have all their modes taken.
 ///
 /// * `tolerance = x`: the basis grows until the response to suddenly applied loads, in the norm of
 ///   the masses and over eight periods of the slowest mode, changes by less than the tolerance from

@@ -3,12 +3,12 @@
 use sinew_core::vectors::{dot, weighted_dot};
 use sinew_core::{ElasticLaw, LoadTime, State, Step, StepReport, Trial};
 
-/// Growth over all the energy that start, loads and supports moved, from which on it is told.
+/// Growth over all the energy that start, loads and supports moved, from which on it is reported.
 const TOLD: f64 = 0.05;
 
-/// Sums up the energy that a motion may have: that of its start, and the work of loads and supports. Damping, which takes
-/// energy away, is left out, so that growth is found late where there is much of it. It begins anew with each motion: results
-/// depend on it by a remark only.
+/// Sums up the energy that a motion may have: that of its start, and the work of loads and supports. Damping, which
+/// takes energy away, is left out, so that growth is found late where there is much of it. It restarts with each
+/// motion: results depend on it by a remark only.
 pub(super) struct EnergyWatch {
     integrator: &'static str,
     /// Displacement (m) at the beginning of the last step, and the mean load (N) over that step with that displacement.
@@ -55,7 +55,7 @@ impl EnergyWatch {
         }
     }
 
-    /// Looks at the state before a step.
+    /// Checks the state before a step.
     pub(super) fn look(
         &mut self,
         step: &Step<'_>,
@@ -65,7 +65,7 @@ impl EnergyWatch {
         report: &mut StepReport,
     ) {
         if !state.internal.is_empty() {
-            // What memory stores and what it dissipates are not told apart.
+            // What memory stores and what it dissipates are not distinguished.
             return;
         }
         let t = state.t();
@@ -134,7 +134,7 @@ impl EnergyWatch {
         }
     }
 
-    /// Growth of the energy in words, where there was any.
+    /// Description of the growth of the energy, if there was any.
     pub(super) fn remark(&self) -> Option<String> {
         self.worst.map(|worst| {
             format!(

@@ -349,8 +349,8 @@ impl Newton {
         None
     }
 
-    /// Goes on along the direction, each time as far again, while that leads down: a projected tangent, stiffer than the law
-    /// or without any stiffness at all, says little about lengths.
+    /// Continues along the direction, each time twice as far, as long as the potential decreases: a projected tangent,
+    /// stiffer than the law or without any stiffness at all, says little about lengths.
     fn lengthen(&mut self, equations: &mut impl Equations, slope: f64, work: &mut StepReport) {
         let mut share = 1.0;
         for _ in 0..MOST_DOUBLINGS {

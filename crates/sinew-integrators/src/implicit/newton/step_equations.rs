@@ -12,7 +12,7 @@ use super::settings::NewtonSettings;
 use super::solver::{Equations, Newton, Point};
 use crate::implicit::factor::{Combination, Factor};
 
-/// Distance at which the change of stiffness damping is looked at, as a share of the smallest cell.
+/// Distance over which the change of stiffness damping is measured, as a share of the smallest cell.
 const PROBE: f64 = 1e-6;
 
 /// Share of the size of body and motion by which rounding moves positions.
@@ -77,7 +77,7 @@ struct StepEquations<'s> {
     viscous: &'s mut Viscous,
 }
 
-/// Room for stiffness damping.
+/// Scratch space for stiffness damping.
 #[derive(Default)]
 struct Viscous {
     /// Its force (N) where the last tangent was made, and beside it.
@@ -188,7 +188,7 @@ impl StepEquations<'_> {
             internal: &self.state.internal,
         };
         let all = Velocities::All(self.v);
-        // Where the law has no meaning beside the point, iterations go on without.
+        // Where the law has no meaning beside the point, iterations continue without.
         if self.law.viscous_force(&trial, all, beside).is_ok() {
             let [d, k] = self.unknown.coefficients;
             let k = k - self.unknown.viscosity.before * d;

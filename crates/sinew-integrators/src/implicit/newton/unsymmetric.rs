@@ -10,18 +10,18 @@ const MOST: usize = 30;
 /// Residual, as a share of that of the symmetric solution, at which the solution is near enough for an iteration of Newton's method.
 const NEAR: f64 = 1e-3;
 
-/// Room for solutions.
+/// Scratch space for solutions.
 #[derive(Default)]
 pub(super) struct Unsymmetric {
     basis: Vec<Vec<f64>>,
     product: Vec<f64>,
 }
 
-/// Vectors of the basis that there is room for beforehand: as many as a part takes that is a tenth of the matrix.
+/// Vectors of the basis that are allocated beforehand: as many as a part takes that is a tenth of the matrix.
 const USUAL: usize = 5;
 
 impl Unsymmetric {
-    /// Makes room for vectors of so many entries.
+    /// Allocates vectors of `entries` entries.
     pub(super) fn reserve(&mut self, entries: usize) {
         self.product.resize(entries, 0.0);
         self.basis.resize_with(USUAL, || vec![0.0; entries]);

@@ -36,7 +36,7 @@ const LEAST_DEVIATION: f64 = 1e-9;
 /// Fits after which bounds are met by mixing.
 const EXCHANGES: usize = 3;
 
-/// Points per coefficient at which turning points are looked for.
+/// Points per coefficient at which turning points are sought.
 const LOOKS_PER_TERM: usize = 2 * POINTS_PER_DEGREE;
 
 /// The dimensionless form of G on x = lambda/Lambda from 0 to 1: `G = dt^2 sum_k g_k T_k(2x - 1)`.
@@ -72,8 +72,8 @@ impl Fit<'_> {
             .estimate(|lambda| self.value(g, lambda), off)
     }
 
-    /// The polynomial of the least estimated error with `room lambda/Lambda <= lambda G <= top - room` for all of
-    /// the spectrum.
+    /// The polynomial of the least estimated error with `room lambda/Lambda <= lambda G <= top - room` for all of the
+    /// spectrum, `room` being a margin.
     pub(super) fn best(&self, degree: usize, room: f64) -> Vec<f64> {
         let asked = Bounds {
             least: room / self.reach(),
@@ -136,9 +136,9 @@ impl Fit<'_> {
         self.top / (2.0 * self.reach())
     }
 
-    /// The best polynomial that is within bounds at the guards, by a barrier method (Nocedal and Wright,
-    /// Numerical Optimization, section 19.6). The error's weights are made anew in each stage: a mode whose phase is
-    /// lost counts no more the farther off it is.
+    /// The best polynomial that is within bounds at the guards, by a barrier method (Nocedal and Wright, Numerical
+    /// Optimization, section 19.6). The error's weights are recomputed in each stage: a mode whose phase is lost counts
+    /// no more the farther off it is.
     fn within_guards(&self, degree: usize, guards: &[f64], bounds: Bounds) -> Vec<f64> {
         let count = degree + 1;
         let guards: Vec<Row> = guards.iter().map(|x| Row::at(*x, count)).collect();

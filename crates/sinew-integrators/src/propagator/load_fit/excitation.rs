@@ -39,7 +39,7 @@ pub(super) struct Excitation {
     instants: Vec<(f64, f64)>,
 }
 
-/// A mode, or a Gauss point that stands for some of them.
+/// A mode, or a Gauss point that represents some of them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct ExcitedMode {
     /// lambda (1/s^2).

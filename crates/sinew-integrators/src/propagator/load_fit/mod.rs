@@ -33,9 +33,9 @@ const WIDEST: f64 = 2.0;
 /// The two-step form with a polynomial G of its own, `v+ = e^(-2 eta) v- + G(M^-1 K) M^-1 (F - K u)/dt`, of the least
 /// error of a run under these loads.
 ///
-/// The form is stable where `0 <= lambda G <= (1 + e^-eta)^2`, which is kept, with some room, for all lambda from 0 to
-/// the largest; within these bounds G is fitted to `lambda G = 1 + e^(-2 eta) - 2 e^-eta cos(w dt)` in weighted least
-/// squares. The weights are those of the loads' measure over the spectrum.
+/// The form is stable where `0 <= lambda G <= (1 + e^-eta)^2`, which is kept, with some margin, for all lambda from 0
+/// to the largest; within these bounds G is fitted to `lambda G = 1 + e^(-2 eta) - 2 e^-eta cos(w dt)` in weighted
+/// least squares. The weights are those of the loads' measure over the spectrum.
 #[derive(Clone, Debug)]
 pub(super) struct LoadFit {
     /// Series of G (s^2).

@@ -20,7 +20,7 @@ const TURNS: f64 = 0.8;
 /// Weight of the error under loads beside that of amplitudes.
 const LOADED: f64 = 1e6;
 
-/// Points per coefficient at which the largest amplitude is looked for.
+/// Points per coefficient at which the largest amplitude is sought.
 const LOOKS_PER_TERM: usize = 32;
 
 /// x at an angle: 0 at 0, 1 at pi.

@@ -19,7 +19,7 @@ pub enum WriteMshError {
         /// Its coordinates.
         point: [f64; 3],
     },
-    /// A name cannot stand on one line.
+    /// A name with a line break.
     #[error("the name of group {tag} of dimension {dim} has a line break")]
     BadName {
         /// Dimension of the group.
@@ -27,7 +27,7 @@ pub enum WriteMshError {
         /// Tag of the group.
         tag: i32,
     },
-    /// The name of a data field cannot stand on one line.
+    /// The name of a data field, with a line break or a double quote.
     #[error("the name of data field {name:?} has a line break or a double quote")]
     BadFieldName {
         /// The name.

@@ -1,4 +1,4 @@
-//! Arrays of a file: where their numbers stand, and the numbers.
+//! Arrays of a file: the positions of their numbers, and the numbers.
 
 use std::ops::Range;
 
@@ -100,7 +100,7 @@ impl Array {
         })
     }
 
-    /// The type of the numbers, in words.
+    /// Description of the type of the numbers.
     pub(super) fn type_in_words(&self) -> String {
         match self.type_name.as_str() {
             "" => "without a type".to_owned(),
@@ -115,7 +115,7 @@ impl Array {
             Some(text) => {
                 let mut values = self.words(file, text, number::double)?;
                 if scalar == Scalar::F32 {
-                    // The number that the text stands for has single precision.
+                    // The number that the text represents has single precision.
                     values
                         .iter_mut()
                         .for_each(|value| *value = f64::from(*value as f32));

@@ -88,7 +88,7 @@ impl Document {
                             false => array = Some(read),
                         }
                     }
-                    // What an array says of itself stands inside its tag.
+                    // The attributes of an array are inside its tag.
                     name if array.is_none() && !tag.is_closed => {
                         section = Section::of(name).or(section);
                     }

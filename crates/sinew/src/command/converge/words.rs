@@ -1,4 +1,4 @@
-//! Quantities in words.
+//! Quantities as text.
 
 use sinew_measure::convergence::{Quantity, Subject, When};
 

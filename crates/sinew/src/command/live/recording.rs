@@ -161,6 +161,6 @@ fn log_beside(folder: &Path) -> PathBuf {
 
 /// Removes a file of this program's.
 fn remove(path: &Path) {
-    // One that stays costs room, and nothing else.
+    // One that stays costs disk space, and nothing else.
     let _ = std::fs::remove_file(path);
 }

@@ -1,4 +1,4 @@
-//! Data of a mesh in words and as JSON.
+//! Data of a mesh as text and as JSON.
 
 use serde_json::{Value, json};
 use sinew_mesh::info::DataInfo;
@@ -21,7 +21,7 @@ pub(super) fn lines(data: &[DataInfo]) -> impl Iterator<Item = String> {
     })
 }
 
-/// The data as they stand in the summary of a mesh.
+/// The data as the summary of a mesh lists them.
 pub(super) fn as_json(data: &[DataInfo]) -> Value {
     let finite = |x: f64| x.is_finite().then_some(x);
     let data = data.iter().map(|data| {

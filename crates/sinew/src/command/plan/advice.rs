@@ -1,4 +1,4 @@
-//! Advice in words.
+//! Advice as text.
 
 use crate::command::ruled;
 use comfy_table::CellAlignment;

@@ -57,7 +57,7 @@ impl Cost {
         }
     }
 
-    /// The cost in words.
+    /// Description of the cost.
     pub(super) fn lines(&self) -> Vec<String> {
         let mut lines = Vec::new();
         lines.extend(self.footprint.map(|footprint| {

@@ -1,4 +1,4 @@
-//! The program of a scene's integrator in words.
+//! The program of a scene's integrator as text.
 
 use sinew_cnn::Program;
 use sinew_core::{Batch, BlockMatrix, Inputs, LinearSystem, SimulateError};
@@ -8,7 +8,7 @@ use sinew_scene::output::say;
 use super::program_json;
 use crate::command::Failure;
 
-/// Prints it, in words or as JSON.
+/// Prints it, as text or as JSON.
 pub(super) fn print(simulation: &Simulation, as_json: bool) -> Result<(), Failure> {
     let mut integrator = simulation.integrator()?;
     simulation.set_up(&mut *integrator)?;

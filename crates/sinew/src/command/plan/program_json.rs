@@ -6,7 +6,7 @@ use sinew_cnn::{
 };
 use sinew_core::{Acceleration, VelocityTime};
 
-/// The program, or `null` and why there is none. Loads are counted from 1.
+/// The program, or `null` and why it is absent. Loads are counted from 1.
 pub(super) fn object(id: &str, dt: f64, program: Option<&Program>, because: &'static str) -> Value {
     let reason = program.is_none().then_some(because);
     json!({
