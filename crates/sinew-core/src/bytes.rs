@@ -1,5 +1,7 @@
-//! Values as bytes: a name with its version, the length of the content, the content and a checksum.
-//! Numbers are little-endian on every machine.
+//! Values as bytes: a name with its version, the length of the content, the content by [`postcard`] and a checksum.
+
+use serde::Serialize;
+use serde::de::DeserializeOwned;
 
 use crate::hash::Hash;
 
@@ -51,62 +53,54 @@ pub enum BytesError {
 
 /// A kind of value.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Kind {
+pub struct Kind {
     /// Name and version, with which the bytes begin.
-    pub(crate) name: &'static [u8; 16],
-    /// Description of the kind.
-    pub(crate) words: &'static str,
+    pub name: &'static [u8; 16],
+    /// Description of the kind, for errors.
+    pub words: &'static str,
 }
 
 /// Bytes of the name and of the content's length.
 const HEAD: usize = 16 + 8;
 const CHECKSUM: usize = 8;
 
-/// Content on its way to bytes.
-pub(crate) struct Writer(Vec<u8>);
+/// Writes a value. Numbers keep their bits, and machines of either byte order write the same bytes.
+///
+/// # Errors
+/// [`BytesError::Content`] for a value that its own type refuses to write.
+pub fn write<T: Serialize>(kind: Kind, value: &T) -> Result<Vec<u8>, BytesError> {
+    let mut bytes = kind.name.to_vec();
+    bytes.resize(HEAD, 0);
+    let mut bytes = postcard::to_extend(value, bytes).map_err(|_| kind.impossible("content"))?;
+    let content = (bytes.len() - HEAD) as u64;
+    bytes[HEAD - 8..HEAD].copy_from_slice(&content.to_le_bytes());
+    let checksum = Hash::of(&bytes);
+    bytes.extend(checksum.to_le_bytes());
+    Ok(bytes)
+}
 
-impl Writer {
-    pub(crate) fn new(kind: Kind) -> Self {
-        let mut bytes = kind.name.to_vec();
-        bytes.resize(HEAD, 0);
-        Self(bytes)
-    }
-
-    pub(crate) fn flags(&mut self, flags: [u8; 4]) {
-        self.0.extend(flags);
-    }
-
-    pub(crate) fn dof(&mut self, dof: u32) {
-        self.0.extend(dof.to_le_bytes());
-    }
-
-    pub(crate) fn count(&mut self, count: u64) {
-        self.0.extend(count.to_le_bytes());
-    }
-
-    pub(crate) fn number(&mut self, number: f64) {
-        self.0.extend(number.to_le_bytes());
-    }
-
-    pub(crate) fn finish(mut self) -> Vec<u8> {
-        let content = (self.0.len() - HEAD) as u64;
-        self.0[HEAD - 8..HEAD].copy_from_slice(&content.to_le_bytes());
-        let checksum = Hash::of(&self.0);
-        self.0.extend(checksum.to_le_bytes());
-        self.0
+/// Reads a value that [`write()`] wrote.
+///
+/// # Errors
+/// [`BytesError`] for other bytes.
+pub fn read<T: DeserializeOwned>(kind: Kind, bytes: &[u8]) -> Result<T, BytesError> {
+    let content = kind.open(bytes)?;
+    match postcard::take_from_bytes(content) {
+        Ok((value, [])) => Ok(value),
+        _ => Err(kind.impossible("content")),
     }
 }
 
-/// Content that is left to read.
-pub(crate) struct Reader<'a> {
-    kind: &'static str,
-    rest: &'a [u8],
-}
+impl Kind {
+    /// The error for a part of a content that is never written.
+    pub(crate) fn impossible(self, part: &'static str) -> BytesError {
+        let kind = self.words;
+        BytesError::Content { kind, part }
+    }
 
-impl<'a> Reader<'a> {
-    /// Opens the content of whole and undamaged bytes.
-    pub(crate) fn open(kind: Kind, bytes: &'a [u8]) -> Result<Self, BytesError> {
-        let Kind { name, words: kind } = kind;
+    /// The content of whole and undamaged bytes.
+    fn open(self, bytes: &[u8]) -> Result<&[u8], BytesError> {
+        let Self { name, words: kind } = self;
         let found = bytes.len();
         let begins = found.min(name.len());
         if bytes[..begins] != name[..begins] {
@@ -139,55 +133,7 @@ impl<'a> Reader<'a> {
         if Hash::of(&bytes[..HEAD + content]) != u64::from_le_bytes(*checksum) {
             return Err(BytesError::Damaged { kind });
         }
-        Ok(Self { kind, rest })
-    }
-
-    /// The error for a part with a content that is never written.
-    pub(crate) fn impossible(&self, part: &'static str) -> BytesError {
-        let kind = self.kind;
-        BytesError::Content { kind, part }
-    }
-
-    fn take<const N: usize>(&mut self) -> Result<[u8; N], BytesError> {
-        let taken = self.rest.split_first_chunk();
-        let (first, rest) = taken.ok_or_else(|| self.impossible("length"))?;
-        self.rest = rest;
-        Ok(*first)
-    }
-
-    pub(crate) fn flags(&mut self) -> Result<[u8; 4], BytesError> {
-        self.take()
-    }
-
-    pub(crate) fn dof(&mut self) -> Result<u32, BytesError> {
-        self.take().map(u32::from_le_bytes)
-    }
-
-    pub(crate) fn count(&mut self) -> Result<u64, BytesError> {
-        self.take().map(u64::from_le_bytes)
-    }
-
-    /// Reads a number of items of `size` bytes or more each; an error where fewer bytes are left.
-    pub(crate) fn count_of(&mut self, size: usize) -> Result<usize, BytesError> {
-        let count = usize::try_from(self.count()?).ok();
-        let fits = |count: &usize| {
-            count
-                .checked_mul(size)
-                .is_some_and(|n| n <= self.rest.len())
-        };
-        count.filter(fits).ok_or_else(|| self.impossible("length"))
-    }
-
-    pub(crate) fn number(&mut self) -> Result<f64, BytesError> {
-        self.take().map(f64::from_le_bytes)
-    }
-
-    /// Checks that the content ends here.
-    pub(crate) fn end(&self) -> Result<(), BytesError> {
-        match self.rest {
-            [] => Ok(()),
-            _ => Err(self.impossible("length")),
-        }
+        Ok(rest)
     }
 }
 
@@ -200,33 +146,30 @@ mod tests {
         words: "test",
     };
 
+    type Sample = (Vec<f64>, Option<u32>, bool);
+
     fn sample() -> Vec<u8> {
-        let mut writer = Writer::new(KIND);
-        writer.flags([1, 2, 3, 4]);
-        writer.count(2);
-        writer.number(0.1);
-        writer.dof(7);
-        writer.finish()
+        let value: Sample = (vec![0.1, -0.0, f64::NAN], Some(7), true);
+        write(KIND, &value).unwrap()
     }
 
     #[test]
-    fn what_was_written_is_read() {
-        let bytes = sample();
-        let mut reader = Reader::open(KIND, &bytes).unwrap();
-        assert_eq!(reader.flags(), Ok([1, 2, 3, 4]));
-        assert!(reader.end().is_err());
-        assert_eq!(reader.count(), Ok(2));
-        assert_eq!(reader.number(), Ok(0.1));
-        assert_eq!(reader.dof(), Ok(7));
-        assert_eq!(reader.end(), Ok(()));
-        assert!(reader.number().is_err());
+    fn what_was_written_is_read_with_the_same_bits() {
+        let (numbers, name, flag): Sample = read(KIND, &sample()).unwrap();
+        let bits: Vec<u64> = numbers.iter().map(|number| number.to_bits()).collect();
+        assert_eq!(bits, [0.1, -0.0, f64::NAN].map(f64::to_bits));
+        assert_eq!((name, flag), (Some(7), true));
+        let longer = read::<Vec<f64>>(KIND, &sample());
+        assert_eq!(longer.unwrap_err(), KIND.impossible("content"));
+        let shorter = read::<(Sample, u64)>(KIND, &sample());
+        assert_eq!(shorter.unwrap_err(), KIND.impossible("content"));
     }
 
     #[test]
     fn every_cut_says_so() {
         let bytes = sample();
         for length in 0..bytes.len() {
-            let refused = Reader::open(KIND, &bytes[..length]).err();
+            let refused = read::<Sample>(KIND, &bytes[..length]).err();
             assert!(
                 matches!(refused, Some(BytesError::Cut { found, .. }) if found == length),
                 "{length}: {refused:?}"
@@ -234,7 +177,7 @@ mod tests {
         }
         let mut longer = bytes;
         longer.push(0);
-        let refused = Reader::open(KIND, &longer).err();
+        let refused = read::<Sample>(KIND, &longer).err();
         assert!(
             matches!(refused, Some(BytesError::Longer { .. })),
             "{refused:?}"
@@ -247,7 +190,7 @@ mod tests {
         for bit in 0..8 * bytes.len() {
             let mut flipped = bytes.clone();
             flipped[bit / 8] ^= 1 << (bit % 8);
-            let refused = Reader::open(KIND, &flipped).err();
+            let refused = read::<Sample>(KIND, &flipped).err();
             let expected = match bit / 8 {
                 0..16 => matches!(refused, Some(BytesError::Unknown { .. })),
                 16..24 => refused.is_some(),
@@ -259,13 +202,11 @@ mod tests {
 
     #[test]
     fn no_room_is_made_for_what_is_not_there() {
-        let mut writer = Writer::new(KIND);
-        writer.count(u64::MAX / 8);
-        writer.count(2);
-        writer.number(1.0);
-        let bytes = writer.finish();
-        let mut reader = Reader::open(KIND, &bytes).unwrap();
-        assert!(reader.count_of(8).is_err());
-        assert!(reader.count_of(8).is_err(), "one of two is there");
+        // A length without its items, as `Vec` begins with.
+        let bytes = write(KIND, &(u64::MAX / 8)).unwrap();
+        assert_eq!(
+            read::<Vec<f64>>(KIND, &bytes).unwrap_err(),
+            KIND.impossible("content")
+        );
     }
 }

@@ -5,6 +5,7 @@
 /// Steps that are added up miss the instants they represent by more with every step; this time is rounded once, however
 /// long the run. A step of another length begins a new base.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Clock {
     base: f64,
     dt: f64,
@@ -23,15 +24,6 @@ impl Clock {
             dt: 0.0,
             steps: 0,
         }
-    }
-
-    /// Base (s), step (s) and number of steps, from which [`Clock::from_parts`] makes the same clock.
-    pub(crate) fn parts(self) -> (f64, f64, u64) {
-        (self.base, self.dt, self.steps)
-    }
-
-    pub(crate) fn from_parts(base: f64, dt: f64, steps: u64) -> Self {
-        Self { base, dt, steps }
     }
 
     /// The time (s).

@@ -2,6 +2,7 @@
 
 /// Energies of a state (J).
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Energy {
     /// Kinetic energy, half v' M v.
     pub kinetic: f64,

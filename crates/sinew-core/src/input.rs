@@ -163,6 +163,12 @@ impl Inputs {
         self.forces.highest_dof()
     }
 
+    /// Number of its channels.
+    #[must_use]
+    pub fn channel_count(&self) -> usize {
+        self.channels.len()
+    }
+
     /// True if the channel exists.
     #[must_use]
     pub fn has(&self, channel: Channel) -> bool {

@@ -21,7 +21,8 @@
 //! ```
 
 mod batch;
-mod bytes;
+#[cfg(feature = "serde")]
+pub mod bytes;
 mod changes;
 mod channel_record;
 mod clock;
@@ -46,7 +47,6 @@ mod gauss;
 mod guard;
 mod hash;
 mod input;
-mod input_bytes;
 mod integrator;
 mod lanczos;
 mod linear_model;
@@ -58,15 +58,17 @@ mod options;
 mod prepared;
 mod properties;
 mod ramp;
-mod ramp_bytes;
 mod recorder;
 mod revision;
+#[cfg(feature = "serde")]
+mod saved_inputs;
+#[cfg(feature = "serde")]
+mod saved_state;
 mod scaling;
 mod simulate;
 mod spectral_measure;
 pub mod spectrum;
 mod state;
-mod state_bytes;
 mod static_load;
 mod step_error;
 mod step_report;
@@ -76,6 +78,7 @@ mod trial;
 mod watch;
 
 pub use batch::{Batch, Step, Stepped, worst_beyond};
+#[cfg(feature = "serde")]
 pub use bytes::BytesError;
 pub use channel_record::{Between, InputError};
 pub use clock::Clock;
@@ -94,7 +97,6 @@ pub use gauss::gauss_points;
 pub use guard::Guarding;
 pub use hash::Hash;
 pub use input::Inputs;
-pub use input_bytes::InputBytesError;
 pub use integrator::{Fact, Integrator};
 pub use linear_model::LinearModel;
 pub use load::Load;
@@ -109,13 +111,16 @@ pub use properties::{
 pub use ramp::{Channel, Ramp, RampError};
 pub use recorder::{Moment, RecordError, Recorder, Verdict};
 pub use revision::Revision;
+#[cfg(feature = "serde")]
+pub use saved_inputs::{InputBytesError, SavedInputs};
+#[cfg(feature = "serde")]
+pub use saved_state::{SavedState, StateBytesError};
 pub use scaling::Scaling;
 pub use simulate::{
     Outcome, RecordedSteps, Run, RunReport, SimulateError, simulate, simulate_under,
 };
 pub use sinew_sparse::{AssemblyError, BlockMatrix, Layers, Pattern, clamp_vector, vectors};
 pub use state::{Acceleration, DampedAt, Start, State, StepCut, VelocityTime};
-pub use state_bytes::StateBytesError;
 pub use static_load::StaticLoad;
 pub use step_error::{SetupError, StepError};
 pub use step_report::StepReport;

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 /// A value of an option.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum OptionValue {
     /// A number.
     Number(f64),
@@ -113,6 +114,7 @@ fn list(names: &[&'static str]) -> String {
 
 /// Options by name.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Options(BTreeMap<String, OptionValue>);
 
 impl Options {

@@ -6,10 +6,12 @@ use crate::scaling::Scaling;
 
 /// Number of an input channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Channel(pub u32);
 
 /// A factor over time: of a load (dimensionless) or of a prescribed motion.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Ramp {
     /// 1 from t = 0 on.
     Step,

@@ -2,6 +2,7 @@
 
 /// A factor that holds from each of some instants (s) to the next; 1 before the first.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Scaling {
     /// Increasing instants (s).
     pub times: Vec<f64>,

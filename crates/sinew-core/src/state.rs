@@ -14,6 +14,7 @@ use crate::revision::Revision;
 /// Two states are equal where all that determines the motion is equal; the identity of the loads
 /// does not count.
 #[derive(Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct State {
     /// Time of `u`.
     pub clock: Clock,
@@ -34,10 +35,12 @@ pub struct State {
     pub internal: Vec<f64>,
     /// History variables of contact, in an order defined by [`crate::Contact`]; empty if nothing touches the body.
     pub contact: Vec<f64>,
-    /// Identity of the matrices and the loads under which the last step was taken.
+    /// Identity of the matrices and the loads under which the last step was taken. It is not written with serde.
+    #[cfg_attr(feature = "serde", serde(skip))]
     pub loads: Option<[Revision; 2]>,
     /// Start of the motion, where a guarded method bounds velocities by its energy; `None` until
-    /// then. Set it to `None` after changing `u` or `v` by hand.
+    /// then. Set it to `None` after changing `u` or `v` by hand. It is not written with serde.
+    #[cfg_attr(feature = "serde", serde(skip))]
     pub start: Option<Start>,
     /// The parts into which steps are cut by the current stiffness, where a method does so.
     pub cut: Option<StepCut>,
@@ -48,6 +51,7 @@ pub struct State {
 
 /// The cut of steps into parts that the current stiffness of a system allows.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct StepCut {
     /// Number of substeps of a step.
     pub parts: u32,
@@ -128,6 +132,7 @@ impl PartialEq for State {
 
 /// Time of a state's velocity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum VelocityTime {
     /// The displacement's time.
     Same,
@@ -142,6 +147,7 @@ pub enum VelocityTime {
 ///
 /// First-order methods set the way of one step over its time beside that of another; what supports feel of damping is the force of that pair.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct DampedAt {
     /// Offset for cells, after the velocity's own time: more than 0 where a state keeps the acceleration of the last
     /// kick, and damping does not lag by a whole step.
@@ -176,6 +182,7 @@ impl DampedAt {
 
 /// Kind of acceleration that a state keeps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Acceleration {
     /// No acceleration.
     None,

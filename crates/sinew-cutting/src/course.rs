@@ -4,6 +4,7 @@ use crate::vector::Vector;
 
 /// Progress of a stroke through a body so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Course {
     /// The last pose of the blade.
     pub(crate) blade: Option<[Vector; 2]>,

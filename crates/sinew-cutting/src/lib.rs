@@ -63,7 +63,7 @@ pub use pieces::Pieces;
 pub use properties::TetProperties;
 pub use report::{Removal, Stroke};
 pub use rough::{Chips, Missed};
-pub use saved::SavedBodyError;
+pub use saved::{SavedBody, SavedBodyError};
 pub use sheet::Sheet;
 pub use snap::FREQUENCY_GROWTH;
 pub use strokes::{BladeAct, BladePose, Strokes, StrokesError};

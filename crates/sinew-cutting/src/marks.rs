@@ -5,6 +5,7 @@ use crate::tet::EDGES;
 
 /// Progress of the blade through one tetrahedron since the blade was set on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Mark {
     /// Side on which the tetrahedron stays: -1 or 1; 0 before it was touched.
     pub(crate) side: i8,
@@ -19,22 +20,6 @@ pub(crate) struct Mark {
 }
 
 impl Mark {
-    pub(crate) fn to_bytes(self) -> [u8; 5] {
-        let [side] = self.side.to_le_bytes();
-        let settled = u8::from(self.settled);
-        [side, self.edges, self.on_sheet, self.faces, settled]
-    }
-
-    pub(crate) fn from_bytes([side, edges, on_sheet, faces, settled]: [u8; 5]) -> Self {
-        Self {
-            side: i8::from_le_bytes([side]),
-            edges,
-            on_sheet,
-            faces,
-            settled: settled != 0,
-        }
-    }
-
     pub(crate) fn cross(&mut self, edge: usize) {
         self.edges |= 1 << edge;
     }
@@ -83,6 +68,7 @@ impl Mark {
 
 /// The side of a node for the current stroke.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) enum NodeSide {
     /// Not settled: where it lies now.
     #[default]
@@ -101,28 +87,11 @@ impl NodeSide {
             _ => Self::OnSheet,
         }
     }
-
-    pub(crate) fn to_byte(self) -> u8 {
-        match self {
-            Self::Open => 0,
-            Self::OnSheet => 1,
-            Self::Below => 2,
-            Self::Above => 3,
-        }
-    }
-
-    pub(crate) fn from_byte(byte: u8) -> Self {
-        match byte {
-            1 => Self::OnSheet,
-            2 => Self::Below,
-            3 => Self::Above,
-            _ => Self::Open,
-        }
-    }
 }
 
 /// The marks of all tetrahedra since the blade was set on.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Marks {
     of: Vec<Mark>,
     /// Tetrahedra with a mark.
@@ -157,6 +126,27 @@ impl Marks {
             passed: open(),
             places: Vec::with_capacity(nodes + spare),
         }
+    }
+
+    /// True if they are those of a body of as many nodes and tetrahedra.
+    pub(crate) fn are_of(&self, nodes: usize, tets: usize) -> bool {
+        self.of.len() == tets
+            && self.marked.iter().all(|tet| (*tet as usize) < tets)
+            && [self.sides.len(), self.passed.len()] == [nodes; 2]
+            && (self.places.is_empty() || self.places.len() == nodes)
+    }
+
+    /// A copy with space for nodes to come.
+    pub(crate) fn with_space(&self, spare: usize) -> Self {
+        let nodes = self.sides.len();
+        let mut marks = Self::new(nodes, self.of.len(), spare);
+        marks.of.copy_from_slice(&self.of);
+        marks.marked.extend_from_slice(&self.marked);
+        marks.sides.copy_from_slice(&self.sides);
+        marks.passed.copy_from_slice(&self.passed);
+        marks.places.extend_from_slice(&self.places);
+        (marks.normal, marks.heading, marks.course) = (self.normal, self.heading, self.course);
+        marks
     }
 
     pub(crate) fn side_of_node(&self, node: u32) -> NodeSide {

@@ -10,6 +10,7 @@ const TOUCH: f64 = 1e-6;
 
 /// Pieces that a stroke cut off and touched all over, beside the pieces that it parted.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Chips {
     /// Their number.
     pub count: usize,
@@ -33,6 +34,7 @@ impl Chips {
 
 /// Strokes that entered the body and cut nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Missed {
     /// Their number.
     pub strokes: usize,

@@ -1,169 +1,89 @@
-//! A cut body as bytes, from which it continues with the same bits.
+//! A cut body apart from its process, from which it continues with the same bits.
 
 use crate::body::CuttableBody;
-use crate::course::Course;
 use crate::incidence::Incidence;
-use crate::marks::{Mark, Marks, NodeSide};
+use crate::marks::Marks;
 
-/// Bytes that are none of this body.
+/// The changes that cuts made to a body, and its blade's progress.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct SavedBody {
+    points: Vec<[f64; 3]>,
+    origins: Vec<u32>,
+    tets: Vec<[u32; 4]>,
+    neighbours: Vec<[u32; 4]>,
+    is_kept: Vec<bool>,
+    is_removed: Vec<bool>,
+    marks: Marks,
+}
+
+/// What cuts made of another body, or of none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("these bytes are not those of this body after cuts")]
+#[error("these are not the cuts of this body")]
 pub struct SavedBodyError;
 
 impl CuttableBody {
-    /// Serializes the changes that cuts made to the body.
+    /// Keeps the changes that cuts made to the body.
     #[must_use]
-    pub fn to_bytes(&self) -> Vec<u8> {
-        let mut bytes = Vec::new();
-        let counts = [self.points.len(), self.first_places.len(), self.tets.len()];
-        for count in counts {
-            bytes.extend((count as u64).to_le_bytes());
+    pub fn save(&self) -> SavedBody {
+        SavedBody {
+            points: self.points.clone(),
+            origins: self.origins.clone(),
+            tets: self.tets.clone(),
+            neighbours: self.neighbours.clone(),
+            is_kept: self.is_kept.clone(),
+            is_removed: self.is_removed.clone(),
+            marks: self.marks.clone(),
         }
-        let Marks {
-            normal,
-            heading,
-            course,
-            ..
-        } = self.marks;
-        bytes.extend([normal, heading].map(|direction| u8::from(direction.is_some())));
-        bytes.extend([course.blade.is_some(), course.is_rimmed, course.is_out].map(u8::from));
-        let places = self.points.as_flattened().iter();
-        bytes.push(u8::from(!self.marks.places.is_empty()));
-        let numbers = places
-            .chain(normal.as_slice().as_flattened())
-            .chain(heading.as_slice().as_flattened())
-            .chain(course.blade.as_slice().as_flattened().as_flattened())
-            .chain([&course.back])
-            .chain(self.marks.places.as_flattened());
-        bytes.extend(numbers.flat_map(|number| number.to_le_bytes()));
-        let corners = self.tets.as_flattened().iter();
-        let names = self.origins.iter().chain(corners);
-        let names = names.chain(self.neighbours.as_flattened());
-        bytes.extend(names.flat_map(|name| name.to_le_bytes()));
-        let flags = self.is_kept.iter().chain(&self.is_removed);
-        bytes.extend(flags.map(|flag| u8::from(*flag)));
-        let sides = self.marks.sides.iter().chain(&self.marks.passed);
-        bytes.extend(sides.map(|side| side.to_byte()));
-        for tet in 0..self.tets.len() as u32 {
-            bytes.extend(self.marks.of(tet).to_bytes());
-        }
-        bytes
     }
 
-    /// Becomes the body that [`CuttableBody::to_bytes`] was called on, which was made of the same mesh.
+    /// Becomes the body that [`CuttableBody::save`] was called on, which was made of the same mesh.
     ///
     /// # Errors
-    /// [`SavedBodyError`] for other bytes; nothing is changed then.
-    pub fn restore(&mut self, bytes: &[u8]) -> Result<(), SavedBodyError> {
-        let mut rest = Bytes(bytes);
-        let [nodes, first, tets] = [rest.count()?, rest.count()?, rest.count()?];
-        let is_mine = (first, tets) == (self.first_places.len(), self.tets.len());
-        // Each tetrahedron has four corners: there are never more nodes.
-        if !is_mine || nodes < first || nodes > first + 4 * tets {
-            return Err(SavedBodyError);
-        }
-        let [has_normal, has_heading] = [rest.flag()?, rest.flag()?];
-        let [has_blade, is_rimmed, is_out] = [rest.flag()?, rest.flag()?, rest.flag()?];
-        let has_places = rest.flag()?;
-        let points = rest.vectors(nodes)?;
-        let normal = rest.vectors(usize::from(has_normal))?.first().copied();
-        let heading = rest.vectors(usize::from(has_heading))?.first().copied();
-        let blade = rest.vectors(2 * usize::from(has_blade))?;
-        let course = Course {
-            blade: blade.first_chunk().copied(),
-            is_rimmed,
-            is_out,
-            back: f64::from_le_bytes(rest.take()?),
-        };
-        let places = rest.vectors(if has_places { nodes } else { 0 })?;
-        let origins = rest.names(nodes)?;
-        let corners = rest.names(4 * tets)?;
-        let neighbours = rest.names(4 * tets)?;
-        let is_kept = rest.flags(nodes)?;
-        let is_removed = rest.flags(tets)?;
-        let spare = self.points.capacity().saturating_sub(nodes);
-        let mut marks = Marks::new(nodes, tets, spare);
-        for side in marks.sides.iter_mut().chain(&mut marks.passed) {
-            let [byte] = rest.take()?;
-            *side = NodeSide::from_byte(byte);
-        }
-        marks.places.extend(places);
-        for tet in 0..tets as u32 {
-            let mark = Mark::from_bytes(rest.take()?);
-            if mark != Mark::default() {
-                marks.set(tet, mark);
-            }
-        }
-        (marks.normal, marks.heading, marks.course) = (normal, heading, course);
+    /// [`SavedBodyError`] for another body; nothing is changed then.
+    pub fn restore(&mut self, saved: &SavedBody) -> Result<(), SavedBodyError> {
+        let SavedBody {
+            points,
+            origins,
+            tets,
+            neighbours,
+            is_kept,
+            is_removed,
+            marks,
+        } = saved;
+        let (nodes, first) = (points.len(), self.first_places.len());
         let within =
             |names: &[u32], limit: usize| names.iter().all(|name| (*name as usize) < limit);
-        let is_neighbour = |name: &u32| *name == crate::body::NONE || (*name as usize) < tets;
-        let is_sound = rest.0.is_empty()
-            && within(&origins, first)
-            && within(&corners, nodes)
-            && neighbours.iter().all(is_neighbour)
+        let is_neighbour = |name: &u32| *name == crate::body::NONE || (*name as usize) < tets.len();
+        let is_sound = tets.len() == self.tets.len()
+            && nodes >= first
+            && [origins.len(), is_kept.len()] == [nodes; 2]
+            && [neighbours.len(), is_removed.len()] == [tets.len(); 2]
+            && marks.are_of(nodes, tets.len())
+            && within(origins, first)
+            && within(tets.as_flattened(), nodes)
+            && neighbours.as_flattened().iter().all(is_neighbour)
             && points.as_flattened().iter().all(|place| place.is_finite());
         if !is_sound {
             return Err(SavedBodyError);
         }
-        let corners = corners.as_chunks::<4>().0.to_vec();
-        let left = (0..).zip(&corners).zip(&is_removed);
+        let spare = self.points.capacity().saturating_sub(nodes);
+        let left = (0..).zip(tets).zip(is_removed);
         let left = left.filter(|(_, is_removed)| !**is_removed);
-        self.incidence = Incidence::of_some(nodes, left.map(|(tet, _)| tet), tets, spare);
-        self.points.clear();
-        self.points.extend(points);
-        self.origins.clear();
-        self.origins.extend(origins);
-        self.is_kept.clear();
-        self.is_kept.extend(is_kept);
+        self.incidence = Incidence::of_some(nodes, left.map(|(tet, _)| tet), tets.len(), spare);
+        self.points.clone_from(points);
+        self.origins.clone_from(origins);
+        self.is_kept.clone_from(is_kept);
         self.held.clear();
         self.copied_from.clear();
         self.copied_from.extend(0..nodes as u32);
         self.room.is_listed.clear();
         self.room.is_listed.resize(nodes, false);
-        self.neighbours = neighbours.as_chunks::<4>().0.to_vec();
-        (self.tets, self.is_removed, self.marks) = (corners, is_removed, marks);
+        self.neighbours.clone_from(neighbours);
+        self.tets.clone_from(tets);
+        self.is_removed.clone_from(is_removed);
+        self.marks = marks.with_space(spare);
         Ok(())
-    }
-}
-
-/// Bytes that are read from their beginning.
-struct Bytes<'a>(&'a [u8]);
-
-impl Bytes<'_> {
-    fn take<const N: usize>(&mut self) -> Result<[u8; N], SavedBodyError> {
-        let (first, rest) = self.0.split_first_chunk::<N>().ok_or(SavedBodyError)?;
-        self.0 = rest;
-        Ok(*first)
-    }
-
-    fn count(&mut self) -> Result<usize, SavedBodyError> {
-        usize::try_from(u64::from_le_bytes(self.take()?)).map_err(|_| SavedBodyError)
-    }
-
-    fn flag(&mut self) -> Result<bool, SavedBodyError> {
-        Ok(self.take::<1>()? != [0])
-    }
-
-    fn flags(&mut self, count: usize) -> Result<Vec<bool>, SavedBodyError> {
-        (0..count).map(|_| self.flag()).collect()
-    }
-
-    fn names(&mut self, count: usize) -> Result<Vec<u32>, SavedBodyError> {
-        let name = |_| Ok(u32::from_le_bytes(self.take()?));
-        (0..count).map(name).collect()
-    }
-
-    fn vectors(&mut self, count: usize) -> Result<Vec<[f64; 3]>, SavedBodyError> {
-        let mut vectors = Vec::new();
-        for _ in 0..count {
-            let mut vector = [0.0; 3];
-            for value in &mut vector {
-                *value = f64::from_le_bytes(self.take()?);
-            }
-            vectors.push(vector);
-        }
-        Ok(vectors)
     }
 }
 
@@ -205,8 +125,8 @@ mod tests {
             kept.remove(|place| place[0] < 0.03 && place[2] < 0.03, &mut places)
                 .unwrap();
             let mut restored = body().0;
-            restored.restore(&kept.to_bytes()).unwrap();
-            assert_eq!(restored.to_bytes(), kept.to_bytes());
+            restored.restore(&kept.save()).unwrap();
+            assert_eq!(restored.save(), kept.save());
             let mut others = places.clone();
             let lower = sheet(0.063, -0.02);
             let copied = kept
@@ -217,36 +137,37 @@ mod tests {
             let theirs = restored.stroke(&lower, &mut others, snap).unwrap();
             assert!(!copied.is_empty());
             assert_eq!(theirs.copied, copied);
-            assert_eq!(restored.to_bytes(), kept.to_bytes());
+            assert_eq!(restored.save(), kept.save());
             assert_eq!(others, places);
         }
     }
 
     #[test]
-    fn other_bytes_are_refused_and_change_nothing() {
+    fn the_cuts_of_another_body_are_refused_and_change_nothing() {
         let (mut cut, mut places) = body();
         cut.stroke(&sheet(0.12, 0.02), &mut places, 0.0).unwrap();
-        let bytes = cut.to_bytes();
+        let sound = cut.save();
         let (mut whole, _) = body();
-        let before = whole.to_bytes();
-        let mut longer = bytes.clone();
-        longer.push(0);
-        let mut wrong = bytes.clone();
-        // A corner beyond all nodes.
-        let corner = 30 + 24 * cut.nodes() + (2 + 2) * 24 + 8 + 24 * cut.nodes() + 4 * cut.nodes();
-        wrong[corner..corner + 4].copy_from_slice(&u32::MAX.to_le_bytes());
-        let mut huge = bytes.clone();
-        huge[..8].copy_from_slice(&u64::MAX.to_le_bytes());
-        for bytes in [
-            &bytes[..bytes.len() - 1],
-            &bytes[..9],
-            &[],
-            &longer,
-            &wrong,
-            &huge,
-        ] {
-            assert_eq!(whole.restore(bytes), Err(SavedBodyError));
-            assert_eq!(whole.to_bytes(), before);
+        let before = whole.save();
+        let spoils: [fn(&mut SavedBody); 9] = [
+            |saved| saved.tets[0][3] = u32::MAX,
+            |saved| saved.neighbours[5][1] = u32::MAX - 1,
+            |saved| saved.origins[0] = u32::MAX,
+            |saved| saved.points[0][2] = f64::NAN,
+            |saved| saved.points.truncate(7),
+            |saved| saved.tets.truncate(7),
+            |saved| saved.is_removed.truncate(7),
+            |saved| saved.marks.sides.truncate(7),
+            |saved| saved.marks.places.truncate(1),
+        ];
+        for spoil in spoils {
+            let mut wrong = sound.clone();
+            spoil(&mut wrong);
+            assert_ne!(wrong, sound);
+            assert_eq!(whole.restore(&wrong), Err(SavedBodyError));
+            assert_eq!(whole.save(), before);
         }
+        whole.restore(&sound).unwrap();
+        assert_eq!(whole.save(), sound);
     }
 }

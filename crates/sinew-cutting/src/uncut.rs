@@ -12,6 +12,7 @@ pub(crate) const CHIP: u32 = NONE - 1;
 
 /// Tissue that a stroke through a body left uncut between the parts on its two sides.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Uncut {
     /// Area of the faces at rest (m^2).
     pub area: f64,

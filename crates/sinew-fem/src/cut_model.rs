@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use sinew_core::{Energy, Inputs, LinearSystem, LoadTime, State, System};
 use sinew_cutting::{
-    CutError, CuttableBody, FREQUENCY_GROWTH, Removal, SavedBodyError, Sheet, Stroke,
+    CutError, CuttableBody, FREQUENCY_GROWTH, Removal, SavedBody, SavedBodyError, Sheet, Stroke,
     TetProperties, Uncut, spare_nodes,
 };
 use sinew_mesh::{CutMesh, MovedNode, TetMesh};
@@ -49,8 +49,19 @@ impl From<FieldError> for CutModelError {
     }
 }
 
+/// The changes that cuts made to a model.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct SavedCut {
+    epoch: u64,
+    /// Displacement (m) of the nodes that were frozen.
+    frozen: BTreeMap<u32, [f64; 3]>,
+    body: SavedBody,
+}
+
 /// Changes that a cut made to the body and to its energy.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct CutReport {
     /// Faces that were cut.
     pub faces: usize,
@@ -422,38 +433,24 @@ impl CutModel {
         is_loose.contains(&true).then(|| of_tet().collect())
     }
 
-    /// The changes that cuts made, as bytes.
+    /// Keeps the changes that cuts made.
     #[must_use]
-    pub fn to_bytes(&self) -> Vec<u8> {
-        let mut bytes = self.epoch.to_le_bytes().to_vec();
-        bytes.extend((self.frozen.len() as u64).to_le_bytes());
-        for (node, displacement) in &self.frozen {
-            bytes.extend(node.to_le_bytes());
-            bytes.extend(displacement.iter().flat_map(|along| along.to_le_bytes()));
+    pub fn save(&self) -> SavedCut {
+        SavedCut {
+            epoch: self.epoch,
+            frozen: self.frozen.clone(),
+            body: self.body.save(),
         }
-        bytes.extend(self.body.to_bytes());
-        bytes
     }
 
-    /// Becomes the model that [`CutModel::to_bytes`] was called on, which was made of the same mesh and problem.
+    /// Becomes the model that [`CutModel::save`] was called on, which was made of the same mesh and problem.
     ///
     /// # Errors
     /// [`CutModelError`].
-    pub fn restore(&mut self, bytes: &[u8]) -> Result<(), CutModelError> {
-        let (epoch, rest) = bytes.split_first_chunk().ok_or(SavedBodyError)?;
-        let (count, mut rest) = rest.split_first_chunk().ok_or(SavedBodyError)?;
-        let mut frozen = BTreeMap::new();
-        for _ in 0..u64::from_le_bytes(*count) {
-            let (node, numbers) = rest.split_first_chunk().ok_or(SavedBodyError)?;
-            let (numbers, after) = numbers.split_first_chunk::<24>().ok_or(SavedBodyError)?;
-            let numbers = numbers.as_chunks::<8>().0;
-            let displacement = [0, 1, 2].map(|axis| f64::from_le_bytes(numbers[axis]));
-            frozen.insert(u32::from_le_bytes(*node), displacement);
-            rest = after;
-        }
-        self.body.restore(rest)?;
-        self.frozen = frozen;
-        let before = std::mem::replace(&mut self.epoch, u64::from_le_bytes(*epoch));
+    pub fn restore(&mut self, saved: &SavedCut) -> Result<(), CutModelError> {
+        self.body.restore(&saved.body)?;
+        self.frozen.clone_from(&saved.frozen);
+        let before = std::mem::replace(&mut self.epoch, saved.epoch);
         if before > 0 || self.epoch > 0 {
             let mesh = self.body.mesh(&self.uncut);
             self.model = self.model_on(&mesh)?;

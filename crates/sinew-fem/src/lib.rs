@@ -136,7 +136,7 @@ mod volumes;
 
 pub use body::smoothed_blocks;
 pub use boundary::{Course, Fixed, Moving};
-pub use cut_model::{CutModel, CutModelError, CutReport};
+pub use cut_model::{CutModel, CutModelError, CutReport, SavedCut};
 pub use element::Element;
 pub use error::{Cause, FemError, Item};
 pub use from_mesh::{DataError, FromMesh};

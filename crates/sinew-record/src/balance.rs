@@ -76,7 +76,7 @@ impl Sums {
 
 /// Motion at the last row: time (s), displacement (m) and velocity (m/s) of the degrees of freedom, and the
 /// acceleration (m/s^2) if the energy that the method takes is known.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct LastRow {
     pub(crate) t: f64,
     /// Time (s) of the row before it; its own where it is the first.

@@ -1,5 +1,6 @@
 //! The file from which a run continues.
 
+use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use sinew_scene::output::OwnedFolder;
 use sinew_world::{RestoreError, Saved, World};
@@ -14,14 +15,13 @@ use crate::request;
 pub(crate) const NAME: &str = "checkpoint.bin";
 
 /// The first line, with the version of what follows.
-const HEAD: &str = "sinew checkpoint 8";
+const HEAD: &str = "sinew checkpoint 9\n";
 
 /// Bytes of the checksum at its end.
 const CHECKSUM: usize = 32;
 
-/// Data from which a run continues: a line of JSON, then the cuts of the body, the state in the format of `sinew-core`,
-/// and numbers.
-#[derive(Debug)]
+/// Data from which a run continues beside its world.
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub(crate) struct Checkpoint {
     pub(crate) progress: Progress,
     /// The motion at the last row of energies.
@@ -31,27 +31,11 @@ pub(crate) struct Checkpoint {
 }
 
 impl Checkpoint {
-    pub(crate) fn write(
-        folder: &OwnedFolder,
-        progress: &Progress,
-        world: &World,
-        row: &LastRow,
-        largest: &[f64],
-    ) -> Result<(), RecordRunError> {
-        let Saved { cuts, state, .. } = world.save();
-        let times = [row.t, row.before];
-        let lists: [&[f64]; 6] = [&times, &row.u, &row.v, &row.a, &row.internal, largest];
-        let json = serde_json::to_string(progress).map_err(|error| unusable(folder, &error))?;
-        let mut bytes = format!("{HEAD}\n{json}\n{} {}", cuts.len(), state.len());
-        for list in lists {
-            bytes.push_str(&format!(" {}", list.len()));
-        }
-        bytes.push('\n');
-        let mut bytes = bytes.into_bytes();
-        bytes.extend(cuts);
-        bytes.extend(state);
-        let numbers = lists.into_iter().flatten();
-        bytes.extend(numbers.flat_map(|number| number.to_le_bytes()));
+    pub(crate) fn write(&self, folder: &OwnedFolder, world: &World) -> Result<(), RecordRunError> {
+        let head = HEAD.as_bytes().to_vec();
+        let content = (self, world.save());
+        let bytes = postcard::to_extend(&content, head);
+        let mut bytes = bytes.map_err(|error| unusable(folder, &error))?;
         let checksum = checksum(folder, &bytes)?;
         bytes.extend(checksum);
         Ok(folder.write(NAME, &bytes)?)
@@ -68,34 +52,19 @@ impl Checkpoint {
         };
         let damaged = || unusable(folder, &"it is damaged, or that of another run");
         let (bytes, found) = bytes.split_last_chunk::<CHECKSUM>().ok_or_else(damaged)?;
-        if !HEAD
-            .as_bytes()
-            .starts_with(&bytes[..bytes.len().min(HEAD.len())])
-        {
+        let head = &bytes[..bytes.len().min(HEAD.len())];
+        if !HEAD.as_bytes().starts_with(head) {
             return Err(unusable(folder, &"another version of sinew wrote it"));
         }
         if checksum(folder, bytes)? != *found {
             return Err(damaged());
         }
-        let mut lines = bytes.splitn(4, |byte| *byte == b'\n').skip(1);
-        let progress: Progress = serde_json::from_slice(lines.next().unwrap_or_default())
-            .map_err(|error| unusable(folder, &error))?;
-        for (frame, seal) in progress.seals.frames.iter().enumerate() {
+        let content = bytes.get(HEAD.len()..).ok_or_else(damaged)?;
+        let content: (Self, Saved) = postcard::from_bytes(content).map_err(|_| damaged())?;
+        let (checkpoint, saved) = content;
+        for (frame, seal) in checkpoint.progress.seals.frames.iter().enumerate() {
             seal.check_whole(folder, &frame_name(frame))?;
         }
-        let sizes = str::from_utf8(lines.next().unwrap_or_default()).map_err(|_| damaged())?;
-        let sizes: Result<Vec<usize>, _> = sizes.split(' ').map(str::parse).collect();
-        let [cuts, size, counts @ ..] = &sizes.map_err(|_| damaged())?[..] else {
-            return Err(damaged());
-        };
-        let rest = lines.next().unwrap_or_default();
-        let (cuts, rest) = rest.split_at_checked(*cuts).ok_or_else(damaged)?;
-        let (state, rest) = rest.split_at_checked(*size).ok_or_else(damaged)?;
-        let saved = Saved {
-            cuts: cuts.to_vec(),
-            state: state.to_vec(),
-            commanded: None,
-        };
         world.restore(&saved).map_err(|error| match error {
             RestoreError::Cutting(error) => error.into(),
             RestoreError::State(source) => RecordRunError::Checkpoint {
@@ -104,36 +73,7 @@ impl Checkpoint {
             },
             other => unusable(folder, &other),
         })?;
-        let (numbers, []) = rest.as_chunks::<8>() else {
-            return Err(damaged());
-        };
-        let mut numbers = numbers.iter().map(|bytes| f64::from_le_bytes(*bytes));
-        let lists: Vec<Vec<f64>> = counts
-            .iter()
-            .map(|count| numbers.by_ref().take(*count).collect())
-            .collect();
-        let whole = lists
-            .iter()
-            .zip(counts)
-            .all(|(list, count)| list.len() == *count);
-        let Ok([t, u, v, a, internal, largest]) = <[Vec<f64>; 6]>::try_from(lists) else {
-            return Err(damaged());
-        };
-        if !whole || numbers.next().is_some() || t.len() != 2 {
-            return Err(damaged());
-        }
-        Ok(Some(Self {
-            progress,
-            row: LastRow {
-                t: t[0],
-                before: t[1],
-                u,
-                v,
-                a,
-                internal,
-            },
-            largest,
-        }))
+        Ok(Some(checkpoint))
     }
 }
 

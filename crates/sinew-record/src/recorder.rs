@@ -286,7 +286,12 @@ impl RunRecorder<'_> {
         progress.work.add(work);
         // What the checkpoint counts on is there before it is.
         self.folder.secure()?;
-        Checkpoint::write(self.folder, &progress, world, &row, &largest)?;
+        let checkpoint = Checkpoint {
+            progress,
+            row,
+            largest,
+        };
+        checkpoint.write(self.folder, world)?;
         self.saved = Instant::now();
         Ok(())
     }

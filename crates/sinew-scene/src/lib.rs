@@ -71,7 +71,7 @@ pub use simulation::{
     BodyModel, CutFrom, CutTotals, Cutter, CuttingError, DrivenLoadError, Footprint, HeldParts,
     HeldPlace, LoadRemedy, MeshedScene, MotionTableError, MotionTableFault, NearestNode, Probe,
     ProbeNode, Reaction, ReactionError, ReactionOf, RefinementError, RefusedLoad, RoughStrokes,
-    SceneBody, SceneModel, SelectedPart, Simulation, ToolFault, UnresolvedLoad, Warning,
+    SavedCuts, SceneBody, SceneModel, SelectedPart, Simulation, ToolFault, UnresolvedLoad, Warning,
     WarningKind,
 };
 pub use source::SceneSource;

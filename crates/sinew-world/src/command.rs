@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use serde::{Deserialize, Serialize};
 use sinew_core::{OptionError, Options, StepError};
 use sinew_scene::{CuttingError, DrivenLoadError};
 
@@ -31,7 +32,7 @@ impl LoadId {
 
 /// A command to a session. It names tools and loads as scenes and logs do; [`World::steer`](crate::World::steer) and
 /// [`World::scale_load`](crate::World::scale_load) give the same commands by id. It takes effect with the next step.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub enum Command {
     /// The pose of a tool at the end of the next step: it moves there in a straight line within that step, and stays

@@ -112,6 +112,9 @@ pub enum RestoreError {
         "this motion was kept by a world that was built in another way, by `World::new` or `World::following`"
     )]
     OtherWorld,
+    /// A motion of another scene, which can cut where this one cannot, or has other tools or loads.
+    #[error("this motion was kept by the world of another scene")]
+    OtherScene,
     /// Cuts of another body.
     #[error(transparent)]
     Cutting(#[from] CuttingError),

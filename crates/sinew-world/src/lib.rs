@@ -20,4 +20,4 @@ pub use input_file::{InputFile, InputFileError};
 pub use log::{Entry, Header, Journal, JournalError, Log, LogError, LogFault};
 pub use recorder::{BodyChange, BodyCut, Recorder, Recorders, Shown};
 pub use replay::{FollowError, Replay, ReplayError};
-pub use world::{Commanded, Ended, Saved, World};
+pub use world::{Ended, Saved, World};

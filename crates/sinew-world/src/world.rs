@@ -21,7 +21,7 @@ use crate::error::{WorldError, WorldStepError};
 use crate::log::{Header, Log};
 use crate::recorder::BodyCut;
 
-pub use saved::{Commanded, Saved};
+pub use saved::Saved;
 
 /// A scene in motion: the only thing that takes its steps.
 ///

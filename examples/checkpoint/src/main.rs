@@ -106,27 +106,27 @@ fn compare() -> Result<(), Box<dyn Error>> {
 
         let mut half = State::at_rest(model.dofs());
         advance(&model, method, &record, &mut half, STEPS / 2)?;
-        std::fs::write(&state_file, half.to_bytes(&model))?;
-        std::fs::write(&record_file, record.to_bytes())?;
+        std::fs::write(&state_file, half.to_bytes(&model)?)?;
+        std::fs::write(&record_file, record.to_bytes()?)?;
         let child = continue_elsewhere(id, folder.path())?;
         if !child.status.success() {
             return Err(String::from_utf8_lossy(&child.stderr).into());
         }
-        if std::fs::read(&state_file)? != whole.to_bytes(&model) {
+        if std::fs::read(&state_file)? != whole.to_bytes(&model)? {
             return Err(format!("{id}: other bits in another process").into());
         }
         println!("{id}: the same bits in another process ({keeps})");
     }
 
-    let bytes = State::at_rest(model.dofs()).to_bytes(&model);
+    let bytes = State::at_rest(model.dofs()).to_bytes(&model)?;
     let mut damaged = bytes.clone();
     damaged[1000] ^= 1;
     let at_rest_in = |model: Model| State::at_rest(model.dofs()).to_bytes(&model);
     for (what, bytes) in [
         ("cut off", &bytes[..bytes.len() / 2]),
         ("one bit flipped", &damaged),
-        ("a coarser mesh", &at_rest_in(block(3, STIFFNESS)?)),
-        ("a softer body", &at_rest_in(block(4, 0.9 * STIFFNESS)?)),
+        ("a coarser mesh", &at_rest_in(block(3, STIFFNESS)?)?),
+        ("a softer body", &at_rest_in(block(4, 0.9 * STIFFNESS)?)?),
     ] {
         std::fs::write(&state_file, bytes)?;
         let child = continue_elsewhere("rk4", folder.path())?;
@@ -153,7 +153,7 @@ fn finish(method: &Method, folder: &Path) -> Result<(), Box<dyn Error>> {
     let mut state = State::from_bytes(&std::fs::read(&file)?, &model)?;
     let record = Inputs::from_bytes(&std::fs::read(folder.join(RECORD))?)?;
     advance(&model, method, &record, &mut state, STEPS / 2)?;
-    Ok(std::fs::write(file, state.to_bytes(&model))?)
+    Ok(std::fs::write(file, state.to_bytes(&model)?)?)
 }
 
 /// Force of a user on a corner of the top: another one in every tenth step.

@@ -6,7 +6,7 @@
 
 use sinew_core::{Moment, Verdict};
 use sinew_scene::Scene;
-use sinew_world::{Command, World};
+use sinew_world::{Command, Saved, World};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let scene = Scene::from_value(
@@ -27,14 +27,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         deepest = moment.state.u.iter().copied().fold(deepest, f64::min);
         Ok(Verdict::Continue)
     };
-    let [position, rotation_vector] = [[0.03, 0.03, 0.066], [0.0; 3]];
-    world.command(Command::Pose {
-        tool: "ball".into(),
-        position,
-        rotation_vector,
-    })?;
+    let ball = world.tool("ball")?;
+    world.steer(ball, [0.03, 0.03, 0.066], [0.0; 3])?;
     world.advance_to(0.1, &mut recorder)?;
-    let whole = world.save();
+    // A value, which other processes read as well.
+    let whole = Saved::from_bytes(&world.save().to_bytes()?)?;
     let blade = |z: f64| [[0.031, -0.01, z], [0.031, 0.07, z]];
     world.command(Command::Cut {
         from: blade(0.07),

@@ -240,7 +240,7 @@ fn a_stroke_through_moving_tissue_goes_on_from_saved_bytes_with_the_same_bits() 
         }
         if step >= 9 {
             if step == 9 {
-                restored.restore(&kept.to_bytes()).unwrap();
+                restored.restore(&kept.save()).unwrap();
             }
             others.clone_from(&places);
             restored.follow(poses, &mut others, 0.25).unwrap();
@@ -249,7 +249,7 @@ fn a_stroke_through_moving_tissue_goes_on_from_saved_bytes_with_the_same_bits() 
     }
     assert_eq!(kept.pieces().count, 2);
     assert_eq!(others, places);
-    assert_eq!(restored.to_bytes(), kept.to_bytes());
+    assert_eq!(restored.save(), kept.save());
 }
 
 #[test]

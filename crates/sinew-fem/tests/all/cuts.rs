@@ -341,10 +341,10 @@ fn pieces_that_nothing_holds_can_be_frozen_where_they_are() {
     frozen.1.u.iter_mut().for_each(|u| *u += 1e-3);
     assert_eq!(below_and_above(&frozen.0, &frozen.1)[1], above);
 
-    // It has the same bits from its bytes, and can be cut on; both halves rest then.
+    // It has the same bits from what was saved, and can be cut on; both halves rest then.
     let mut again = CutModel::new(cube(6), held(body(linear(3500.0, 0.45))), 0.25).unwrap();
-    again.restore(&frozen.0.to_bytes()).unwrap();
-    assert_eq!(again.to_bytes(), frozen.0.to_bytes());
+    again.restore(&frozen.0.save()).unwrap();
+    assert_eq!(again.save(), frozen.0.save());
     let nodes = again.body().nodes();
     // Another stroke than the one before.
     assert_eq!(again.lift(), None);

@@ -278,11 +278,11 @@ fn a_model_that_was_restored_follows_strokes_as_the_one_that_was_saved() {
         let blade = |z: f64| [[0.047, -0.01, z], [0.048, 0.11, z]];
         Sheet::swept(blade(from), blade(to)).unwrap()
     };
-    let whole = cut.to_bytes();
+    let whole = cut.save();
     let none = Inputs::none();
     cut.stroke(&sheet(0.11, 0.06), &mut state, none).unwrap();
     let mut restored = CutModel::new(Arc::clone(&mesh), problem(), 0.25).unwrap();
-    restored.restore(&cut.to_bytes()).unwrap();
+    restored.restore(&cut.save()).unwrap();
     is_model(restored.model(), cut.model());
     let mut theirs = state.clone();
     let lower = sheet(0.06, 0.01);

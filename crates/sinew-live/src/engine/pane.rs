@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use sinew_core::vectors::weighted_dot;
-use sinew_core::{Energy, LoadTime, Options, StableStep, System};
+use sinew_core::{BytesError, Energy, LoadTime, Options, StableStep, System};
 use sinew_scene::{BodyModel, CutTotals, SceneBody, Simulation};
 use sinew_tools::{Pose, Tools};
 use sinew_world::{Command, CommandError, Log, World};
@@ -641,7 +641,7 @@ impl Pane {
     }
 
     /// Its state as a checkpoint.
-    pub(crate) fn state_bytes(&self) -> Vec<u8> {
+    pub(crate) fn state_bytes(&self) -> Result<Vec<u8>, BytesError> {
         let system = self.session.body().system();
         self.session.state().to_bytes(system)
     }

@@ -3,6 +3,7 @@
 use std::ffi::OsString;
 use std::path::{Component, Path, PathBuf};
 
+use sinew_core::BytesError;
 use sinew_scene::output::{OutputError, OutputFolder};
 
 use super::pane::Pane;
@@ -29,6 +30,9 @@ pub(crate) enum SaveError {
         /// The reason.
         source: std::io::Error,
     },
+    /// A state that cannot be written.
+    #[error(transparent)]
+    State(#[from] BytesError),
     /// The folder that this program works in is gone.
     #[error("no folder to save in: {0}")]
     Folder(#[from] std::io::Error),
@@ -63,7 +67,7 @@ pub(crate) fn save(scene: &SceneValues, panes: &[Pane]) -> Result<Event, SaveErr
     let copy = folder.write(&format!("{own}scene.toml"), text.as_bytes())?;
     let mut logs = Vec::new();
     for (number, pane) in (1..).zip(panes) {
-        folder.write(&format!("state-{number}.bin"), &pane.state_bytes())?;
+        folder.write(&format!("state-{number}.bin"), &pane.state_bytes()?)?;
         logs.push(folder.write(
             &format!("commands-{number}.log"),
             pane.log().to_text().as_bytes(),

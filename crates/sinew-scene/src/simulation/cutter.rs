@@ -3,9 +3,10 @@
 use std::collections::{HashMap, HashSet};
 use std::sync::{Arc, OnceLock};
 
+use serde::{Deserialize, Serialize};
 use sinew_core::{Energy, Inputs, State};
-use sinew_cutting::{BladeAct, SavedBodyError};
-use sinew_fem::{CutModel, CutModelError, CutReport, Problem};
+use sinew_cutting::BladeAct;
+use sinew_fem::{CutModel, CutModelError, CutReport, Problem, SavedCut};
 use sinew_mesh::TetMesh;
 use sinew_tools::{Convex, Tools, ToolsError};
 
@@ -20,7 +21,7 @@ use crate::number::length;
 use crate::scene::{Blade, Cutting, LoosePieces, Subject};
 
 /// Totals of all cuts since a motion began.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct CutTotals {
     /// Faces, area, nodes, mass and energy of all cuts.
     pub report: CutReport,
@@ -105,8 +106,15 @@ pub struct Cutter {
     pub(super) totals: CutTotals,
 }
 
-/// Words before those of rough strokes.
-const HEAD: usize = 15;
+/// The cuts of a body, and where its cutter stands.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SavedCuts {
+    cut: SavedCut,
+    followed: Option<f64>,
+    swept: f64,
+    is_in: bool,
+    totals: CutTotals,
+}
 
 impl Simulation {
     /// The cutter of its body, which is uncut; `None` if the scene has no `[cutting]`. Assembles the body once more.
@@ -281,88 +289,33 @@ impl Cutter {
         left
     }
 
-    /// All that it needs to continue, as bytes.
+    /// Keeps all that it continues from.
     #[must_use]
-    pub fn to_bytes(&self) -> Vec<u8> {
-        let CutTotals {
-            report,
-            changes,
-            blade_work,
-            rough,
-        } = self.totals;
-        let energy = report.energy_gained;
-        let parts = energy.map_or([f64::NAN; 2], |energy| [energy.kinetic, energy.elastic]);
-        let numbers = [
-            self.followed.unwrap_or(f64::NAN),
-            report.area,
-            report.mass_gained,
-            report.removed_mass,
-            blade_work,
-            parts[0],
-            parts[1],
-            self.swept,
-        ];
-        let counts = [
-            report.faces,
-            report.new_nodes,
-            report.moved_nodes,
-            report.removed_tets,
-            report.frozen_tets,
-            usize::from(self.is_in),
-        ];
-        let mut bytes = changes.to_le_bytes().to_vec();
-        let counts = counts.map(|count| (count as u64).to_le_bytes());
-        bytes.extend(
-            numbers
-                .map(f64::to_le_bytes)
-                .iter()
-                .chain(&counts)
-                .chain(&rough.to_numbers().map(f64::to_le_bytes))
-                .flatten(),
-        );
-        bytes.extend(self.cut.to_bytes());
-        bytes
+    pub fn save(&self) -> SavedCuts {
+        SavedCuts {
+            cut: self.cut.save(),
+            followed: self.followed,
+            swept: self.swept,
+            is_in: self.is_in,
+            totals: self.totals,
+        }
     }
 
-    /// Restores the cutter from [`Cutter::to_bytes`] of the same scene, whose uncut body is `uncut`; returns
-    /// the body to continue with, if it was cut.
+    /// Continues from what [`Cutter::save`] kept of the same scene, whose uncut body is `uncut`; returns the body to
+    /// continue with, if it was cut.
     ///
     /// # Errors
-    /// [`CuttingError`] for other bytes.
+    /// [`CuttingError`] for the cuts of another body.
     pub fn restore(
         &mut self,
-        bytes: &[u8],
+        saved: &SavedCuts,
         uncut: &SceneBody,
     ) -> Result<Option<SceneBody>, CuttingError> {
-        let other = || CuttingError::from(CutModelError::from(SavedBodyError));
-        let (head, body) = bytes
-            .split_at_checked((HEAD + RoughStrokes::WORDS) * 8)
-            .ok_or_else(other)?;
-        let words: Vec<[u8; 8]> = head.as_chunks().0.to_vec();
-        let number = |place: usize| f64::from_le_bytes(words[place]);
-        let count = |place: usize| u64::from_le_bytes(words[place]) as usize;
-        self.cut.restore(body)?;
-        let (kinetic, elastic) = (number(6), number(7));
-        self.followed = Some(number(1)).filter(|t| !t.is_nan());
-        self.is_in = count(HEAD - 1) > 0;
-        self.swept = number(8);
-        let rough = std::array::from_fn(|place| number(HEAD + place));
-        self.totals = CutTotals {
-            changes: u64::from_le_bytes(words[0]),
-            blade_work: number(5),
-            rough: RoughStrokes::from_numbers(rough),
-            report: CutReport {
-                faces: count(9),
-                area: number(2),
-                new_nodes: count(10),
-                moved_nodes: count(11),
-                mass_gained: number(3),
-                removed_tets: count(12),
-                frozen_tets: count(13),
-                removed_mass: number(4),
-                energy_gained: (!kinetic.is_nan()).then_some(Energy { kinetic, elastic }),
-            },
-        };
+        self.cut.restore(&saved.cut)?;
+        self.followed = saved.followed;
+        self.swept = saved.swept;
+        self.is_in = saved.is_in;
+        self.totals = saved.totals;
         if self.totals.changes == 0 {
             return Ok(None);
         }

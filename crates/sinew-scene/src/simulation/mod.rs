@@ -37,7 +37,7 @@ use sinew_integrators::Stepper;
 
 pub use cut_from::CutFrom;
 use cut_plan::CutPlan;
-pub use cutter::{CutTotals, Cutter, CuttingError};
+pub use cutter::{CutTotals, Cutter, CuttingError, SavedCuts};
 pub use driven::DrivenLoadError;
 pub use footprint::Footprint;
 pub use load_problems::{LoadRemedy, RefusedLoad, UnresolvedLoad};

@@ -1,11 +1,12 @@
 //! Defects of strokes whose paths have details smaller than the mesh.
 
+use serde::{Deserialize, Serialize};
 use sinew_cutting::{Chips, CuttableBody, Missed, Uncut};
 
 use crate::number::{count, short};
 
 /// Defects of strokes that their sheets do not show, each with the time (s) of the first stroke that left it.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct RoughStrokes {
     /// Uncut area in a body that strokes passed through.
     pub uncut: Option<Uncut>,
@@ -16,9 +17,6 @@ pub struct RoughStrokes {
 }
 
 impl RoughStrokes {
-    /// Number of 8-byte words in their binary form.
-    pub(super) const WORDS: usize = 17;
-
     /// Defects of the current stroke, whose last sheet came at a time (s).
     pub(super) fn of(body: &CuttableBody, t: f64) -> Self {
         Self {
@@ -87,72 +85,5 @@ impl RoughStrokes {
             )
         });
         [uncut, chips, missed].into_iter().flatten().collect()
-    }
-
-    /// Numbers of the binary form; NaN for defects that are absent.
-    pub(super) fn to_numbers(self) -> [f64; Self::WORDS] {
-        let none = [f64::NAN; 3];
-        let uncut = self.uncut.map(|uncut| (uncut.area, uncut.place));
-        let (area, [x, y, z]) = uncut.unwrap_or((f64::NAN, none));
-        let chips = self.chips.map(|(t, chips)| {
-            let counts = [chips.count, chips.tets].map(|count| count as f64);
-            (t, counts, chips.place)
-        });
-        let (since, [chips, tets], [a, b, c]) = chips.unwrap_or((f64::NAN, [f64::NAN; 2], none));
-        let missed = self.missed.map(|(t, missed)| {
-            let depth = missed.depth.unwrap_or(f64::NAN);
-            (t, [missed.strokes as f64, depth, missed.edge], missed.place)
-        });
-        let (first, [strokes, depth, edge], [d, e, f]) = missed.unwrap_or((f64::NAN, none, none));
-        [
-            area, x, y, z, since, chips, tets, a, b, c, first, strokes, depth, edge, d, e, f,
-        ]
-    }
-
-    /// From such numbers.
-    pub(super) fn from_numbers(numbers: [f64; Self::WORDS]) -> Self {
-        let [
-            area,
-            x,
-            y,
-            z,
-            since,
-            chips,
-            tets,
-            a,
-            b,
-            c,
-            first,
-            strokes,
-            depth,
-            edge,
-            d,
-            e,
-            f,
-        ] = numbers;
-        let is_known = |number: f64| !number.is_nan();
-        Self {
-            uncut: is_known(area).then_some(Uncut {
-                area,
-                place: [x, y, z],
-            }),
-            chips: is_known(since).then_some((
-                since,
-                Chips {
-                    count: chips as usize,
-                    tets: tets as usize,
-                    place: [a, b, c],
-                },
-            )),
-            missed: is_known(first).then_some((
-                first,
-                Missed {
-                    strokes: strokes as usize,
-                    depth: is_known(depth).then_some(depth),
-                    edge,
-                    place: [d, e, f],
-                },
-            )),
-        }
     }
 }

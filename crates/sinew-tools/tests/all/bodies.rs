@@ -344,7 +344,7 @@ fn several_bodies_and_a_led_tool_press_at_once_and_machines_threads_and_batches_
         }
         let mut part = pressed.at_rest();
         pressed.run_with(&mut part, method("reference", 1.0), dt, 90);
-        let bytes = part.to_bytes(&pressed.model);
+        let bytes = part.to_bytes(&pressed.model).unwrap();
         let mut part = State::from_bytes(&bytes, &pressed.model).unwrap();
         pressed.run_with(&mut part, method("reference", 1.0), dt, 60);
         assert!(part == expected, "{id} from bytes");

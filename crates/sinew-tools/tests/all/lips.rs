@@ -243,7 +243,7 @@ fn a_motion_with_lips_goes_on_from_bytes_with_the_same_bits() {
         let mut part = cut.pressed.at_rest();
         cut.pressed.run(&mut part, id, dt, 50);
         assert!(cut.pressed.tools.lips_report(&part).contacts > 0, "{id}");
-        let bytes = part.to_bytes(&cut.pressed.model);
+        let bytes = part.to_bytes(&cut.pressed.model).unwrap();
         let mut part = State::from_bytes(&bytes, &cut.pressed.model).unwrap();
         cut.pressed.run(&mut part, id, dt, 10);
         assert!(whole == part, "{id}");

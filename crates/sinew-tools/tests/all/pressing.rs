@@ -119,7 +119,7 @@ fn a_motion_goes_on_from_bytes_with_the_same_bits() {
     pressed.run(&mut whole, "cnn-stabilised", 3e-3, 60);
     let mut part = pressed.at_rest();
     pressed.run(&mut part, "cnn-stabilised", 3e-3, 30);
-    let bytes = part.to_bytes(&pressed.model);
+    let bytes = part.to_bytes(&pressed.model).unwrap();
     let mut part = State::from_bytes(&bytes, &pressed.model).unwrap();
     pressed.run(&mut part, "cnn-stabilised", 3e-3, 30);
     assert!(whole == part);

@@ -9,6 +9,7 @@ mod words;
 pub use error::{LogError, LogFault};
 pub use journal::{Journal, JournalError};
 
+use serde::{Deserialize, Serialize};
 use sinew_scene::Scene;
 
 use crate::command::Command;
@@ -45,7 +46,7 @@ impl Header {
 }
 
 /// A command of a log.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Entry {
     /// Steps taken before it.
     pub step: usize,
@@ -103,12 +104,17 @@ impl Log {
 
     /// Replaces its commands by these, of a session that has taken as many steps as there are before the last of them.
     pub(crate) fn begin_with(&mut self, entries: &[Entry]) {
-        self.entries = entries.to_vec();
-        self.steps = entries.last().map_or(0, |last| last.step);
+        self.restore(entries, entries.last().map_or(0, |last| last.step));
     }
 
     /// Sets the number of steps of the session.
     pub(crate) fn ends_after(&mut self, steps: usize) {
+        self.steps = steps;
+    }
+
+    /// Replaces its commands by these, of a session that has taken as many steps.
+    pub(crate) fn restore(&mut self, entries: &[Entry], steps: usize) {
+        self.entries = entries.to_vec();
         self.steps = steps;
     }
 

@@ -2,28 +2,34 @@
 
 use std::sync::Arc;
 
-use sinew_core::{Inputs, Options, State};
-use sinew_scene::Cutter;
+use serde::{Deserialize, Serialize};
+use sinew_core::bytes::{self, BytesError, Kind};
+use sinew_core::{Options, SavedInputs, SavedState};
+use sinew_scene::{Cutter, SavedCuts};
 
 use super::{Method, Sheet, World};
 use crate::error::RestoreError;
-use crate::log::Log;
+use crate::log::Entry;
 
-/// All that the motion of a world continues from.
-#[derive(Clone, Debug, PartialEq)]
+const KIND: Kind = Kind {
+    name: b"sinew world v1\r\n",
+    words: "saved world",
+};
+
+/// All that the motion of a world continues from: a value that other processes read.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Saved {
-    /// The cuts; empty if nothing can cut.
-    pub cuts: Vec<u8>,
-    /// The state, see [`State::to_bytes`].
-    pub state: Vec<u8>,
-    /// Tools, loads, method and log as commands left them; `None` of a world that follows its scene.
-    pub commanded: Option<Commanded>,
+    /// `None` if nothing can cut.
+    cuts: Option<SavedCuts>,
+    state: SavedState,
+    /// `None` of a world that follows its scene.
+    commanded: Option<Commanded>,
 }
 
 /// What commands to a world left.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Commanded {
-    inputs: Vec<u8>,
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct Commanded {
+    inputs: SavedInputs,
     /// Target of each tool, and whether it was steered.
     tools: Vec<(Target, bool)>,
     /// Factor of each load that the next step begins with.
@@ -34,18 +40,37 @@ pub struct Commanded {
     sheets: Vec<Sheet>,
     blade: Option<[[f64; 3]; 2]>,
     steps: usize,
-    log: Log,
+    log: Vec<Entry>,
+    log_steps: usize,
 }
 
 /// Position (m) and rotation vector (rad) that a tool goes to.
 type Target = Option<([f64; 3], [f64; 3])>;
+
+impl Saved {
+    /// It as bytes, the same on every machine.
+    ///
+    /// # Errors
+    /// [`BytesError`]; none for what [`World::save`] gives.
+    pub fn to_bytes(&self) -> Result<Vec<u8>, BytesError> {
+        bytes::write(KIND, self)
+    }
+
+    /// Reads what [`Saved::to_bytes`] wrote.
+    ///
+    /// # Errors
+    /// [`BytesError`] for other bytes.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, BytesError> {
+        bytes::read(KIND, bytes)
+    }
+}
 
 impl World {
     /// Keeps all that the motion continues from.
     #[must_use]
     pub fn save(&self) -> Saved {
         let commanded = (!self.follows).then(|| Commanded {
-            inputs: self.inputs.to_bytes(),
+            inputs: SavedInputs::of(&self.inputs),
             tools: (self.tools.iter())
                 .map(|hand| (hand.target, hand.is_steered))
                 .collect(),
@@ -56,33 +81,60 @@ impl World {
             sheets: self.sheets.clone(),
             blade: self.blade,
             steps: self.steps,
-            log: self.log.clone(),
+            log: self.log.entries().to_vec(),
+            log_steps: self.log.steps(),
         });
         Saved {
-            cuts: self.cutter.as_ref().map_or_else(Vec::new, Cutter::to_bytes),
-            state: self.state.to_bytes(self.body.system()),
+            cuts: self.cutter.as_ref().map(Cutter::save),
+            state: SavedState::of(&self.state, self.body.system()),
             commanded,
         }
     }
 
-    /// Continues from what [`World::save`] kept of this world, or of another one of the same scene that was built in the same
-    /// way. The log is that of the motion that is continued.
+    /// Continues from what [`World::save`] kept of this world, or of another one of the same scene that was built in the
+    /// same way. The log is that of the motion that is continued.
     ///
     /// # Errors
-    /// [`RestoreError`] for what another scene left. The world is of no use then.
+    /// [`RestoreError`] for what another scene left; the world stays as it was.
     pub fn restore(&mut self, saved: &Saved) -> Result<(), RestoreError> {
+        let before = self.save();
+        let failure = self.failure.take();
+        let restored = self.take_saved(saved);
+        if restored.is_err() {
+            self.take_saved(&before)?;
+            self.failure = failure;
+        }
+        restored
+    }
+
+    fn take_saved(&mut self, saved: &Saved) -> Result<(), RestoreError> {
         if saved.commanded.is_some() == self.follows {
             return Err(RestoreError::OtherWorld);
         }
-        self.undriven = Arc::clone(self.scene.body());
-        self.topology_epoch += 1;
-        if let Some(cutter) = &mut self.cutter
-            && let Some(cut) = cutter.restore(&saved.cuts, self.scene.body())?
-        {
-            self.undriven = Arc::new(cut);
+        let cut = match (&mut self.cutter, &saved.cuts) {
+            (Some(cutter), Some(cuts)) => cutter.restore(cuts, self.scene.body())?,
+            (None, None) => None,
+            _ => return Err(RestoreError::OtherScene),
+        };
+        let undriven = cut.map_or_else(|| Arc::clone(self.scene.body()), Arc::new);
+        let was_driven = self.drives_loads();
+        let is_same = Arc::ptr_eq(&undriven, &self.undriven);
+        if !is_same {
+            self.undriven = undriven;
+            self.topology_epoch += 1;
         }
-        self.body = Arc::clone(&self.undriven);
-        let state = State::from_bytes(&saved.state, self.body.system())?;
+        let drives_loads = saved
+            .commanded
+            .as_ref()
+            .is_some_and(|kept| kept.drives_loads);
+        // Methods need not be set up again for the body that they know.
+        if !(is_same && drives_loads == was_driven) {
+            self.body = match drives_loads {
+                true => self.driven()?,
+                false => Arc::clone(&self.undriven),
+            };
+        }
+        let state = saved.state.restore(self.body.system())?;
         if let Some(commanded) = &saved.commanded {
             self.restore_commanded(commanded)?;
         }
@@ -94,12 +146,27 @@ impl World {
     }
 
     fn restore_commanded(&mut self, commanded: &Commanded) -> Result<(), RestoreError> {
-        self.inputs = Inputs::from_bytes(&commanded.inputs)?;
-        if commanded.drives_loads {
-            self.body = self.driven()?;
+        let inputs = commanded.inputs.restore()?;
+        let known = [
+            self.tools.len(),
+            self.loads.len(),
+            self.inputs.channel_count(),
+        ];
+        if known
+            != [
+                commanded.tools.len(),
+                commanded.factors.len(),
+                inputs.channel_count(),
+            ]
+        {
+            return Err(RestoreError::OtherScene);
         }
         let (id, options) = &commanded.method;
-        self.method = Method::new(&self.scene, id, options, commanded.dt)?;
+        if self.method.asked != commanded.method {
+            self.method = Method::new(&self.scene, id, options, commanded.dt)?;
+        }
+        self.method.dt = commanded.dt;
+        self.inputs = inputs;
         for (hand, (target, is_steered)) in self.tools.iter_mut().zip(&commanded.tools) {
             (hand.target, hand.is_steered) = (*target, *is_steered);
         }
@@ -109,7 +176,7 @@ impl World {
         self.sheets.clone_from(&commanded.sheets);
         self.blade = commanded.blade;
         self.steps = commanded.steps;
-        self.log = commanded.log.clone();
+        self.log.restore(&commanded.log, commanded.log_steps);
         Ok(())
     }
 }

@@ -509,9 +509,9 @@ fn a_tool_cuts_in_any_steps_what_a_table_cuts() {
             .unwrap();
         let mut taken_over = simulation.cutter().unwrap().unwrap();
         taken_over
-            .restore(&cutter.to_bytes(), simulation.body())
+            .restore(&cutter.save(), simulation.body())
             .unwrap();
-        assert_eq!(taken_over.to_bytes(), cutter.to_bytes());
+        assert_eq!(taken_over.save(), cutter.save());
         cutter = taken_over;
     }
     assert!(cutter.totals().report.faces > 0);

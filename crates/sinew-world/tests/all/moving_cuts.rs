@@ -118,9 +118,7 @@ fn what_a_hand_leaps_over_is_told_with_its_area_and_place() {
     cutter.lift();
     assert_eq!(cutter.left_by_strokes(), [said]);
     let mut restored = simulation.cutter().unwrap().unwrap();
-    restored
-        .restore(&cutter.to_bytes(), simulation.body())
-        .unwrap();
+    restored.restore(&cutter.save(), simulation.body()).unwrap();
     assert_eq!(restored.left_by_strokes(), [said]);
 }
 

@@ -72,7 +72,7 @@ fn command(dice: &mut Dice) -> Command {
 fn bytes(session: &World) -> Vec<u8> {
     let mut state = session.state().clone();
     state.loads = None;
-    state.to_bytes(session.body().system())
+    state.to_bytes(session.body().system()).unwrap()
 }
 
 #[test]

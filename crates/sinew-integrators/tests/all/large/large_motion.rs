@@ -240,7 +240,7 @@ fn steps_follow_the_current_stiffness() {
             "step {step}: {part} s of {true_limit} s"
         );
         if step == 17 {
-            saved = Some(state.to_bytes(&scene.model));
+            saved = Some(state.to_bytes(&scene.model).unwrap());
         }
     }
     assert!(parts.iter().min() < parts.iter().max(), "{parts:?}");
@@ -277,7 +277,7 @@ fn steps_that_fibres_stop_are_taken_again_in_shorter_parts() {
         work += integrator.step(&scene.model, &mut state, dt).unwrap();
         seen.push(state.u.clone());
         if step == 3 {
-            saved = Some(state.to_bytes(&scene.model));
+            saved = Some(state.to_bytes(&scene.model).unwrap());
         }
     }
     assert!(work.retaken > 0, "{work:?}");

@@ -137,7 +137,7 @@ fn a_run_that_goes_on_from_bytes_has_the_bits_of_one_that_never_ended() {
         let mut bytes = Vec::new();
         for step in 0..40 {
             if step == 17 {
-                bytes = state.to_bytes(&model);
+                bytes = state.to_bytes(&model).unwrap();
             }
             integrator.step(&model, &mut state, 0.004).unwrap();
         }

@@ -276,7 +276,7 @@ fn cuts_are_recorded_and_saved_moments_repeated_bit_for_bit() {
         while replay.step().unwrap().is_some() {}
         let session = replay.world();
         assert!(session.cuts().unwrap().changes > 0);
-        let found = session.state().to_bytes(session.body().system());
+        let found = session.state().to_bytes(session.body().system()).unwrap();
         assert!(
             found == fs::read(state.with_extension("bin")).unwrap(),
             "pane {pane}"

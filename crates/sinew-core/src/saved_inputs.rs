@@ -1,14 +1,15 @@
-//! A record of inputs as bytes, to be played again in another process.
+//! A record of inputs apart from its process, to be played again in another one.
 
-use crate::bytes::{BytesError, Kind, Reader, Writer};
+use serde::{Deserialize, Serialize};
+
+use crate::bytes::{self, BytesError, Kind};
 use crate::channel_record::{Between, InputError};
 use crate::force_record::ForceInputError;
 use crate::input::Inputs;
 use crate::ramp::{Ramp, RampError};
-use crate::ramp_bytes;
 
 const KIND: Kind = Kind {
-    name: b"sinew input v1\r\n",
+    name: b"sinew input v2\r\n",
     words: "record of inputs",
 };
 
@@ -30,45 +31,85 @@ pub enum InputBytesError {
     Forces(#[from] ForceInputError),
 }
 
-impl Inputs {
-    /// The record as bytes, little-endian on every machine: played again, it gives the same bits in
-    /// another process too.
+/// The values that [`Inputs`] were given: a value that other processes read and play again, with the same bits.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct SavedInputs {
+    channels: Vec<Ramp>,
+    /// Sets of forces (N) on degrees of freedom, with the time (s) from which and until which they act.
+    forces: Vec<(f64, f64, Vec<(u32, f64)>)>,
+}
+
+impl SavedInputs {
+    /// What inputs were given so far.
     #[must_use]
-    pub fn to_bytes(&self) -> Vec<u8> {
-        let mut out = Writer::new(KIND);
-        out.count(self.channels().len() as u64);
-        for course in self.channels() {
-            let (flag, times, values) = match course {
-                Ramp::Table { times, values } => (1, &times[..], &values[..]),
-                Ramp::Hold { times, values } => (0, &times[..], &values[..]),
-                Ramp::Scaled(_, scaling) => (2, &scaling.times[..], &scaling.factors[..]),
-                _ => (0, &[][..], &[][..]),
-            };
-            out.flags([flag, 0, 0, 0]);
-            if let Ramp::Scaled(of, _) = course {
-                ramp_bytes::write(of, &mut out);
-            }
-            out.count(times.len() as u64);
-            for (t, value) in times.iter().zip(values) {
-                out.number(*t);
-                out.number(*value);
-            }
-        }
-        out.count(self.forces().len() as u64);
-        for load in self.forces() {
+    pub fn of(inputs: &Inputs) -> Self {
+        let forces = inputs.forces().map(|load| {
             let (from, to) = match load.ramp {
                 Ramp::Pulse { from, to } => (from, to),
                 _ => (0.0, f64::INFINITY),
             };
-            out.number(from);
-            out.number(to);
-            out.count(load.entries.len() as u64);
-            for &(dof, force) in &load.entries {
-                out.dof(dof);
-                out.number(force);
+            (from, to, load.entries.clone())
+        });
+        Self {
+            channels: inputs.channels().cloned().collect(),
+            forces: forces.collect(),
+        }
+    }
+
+    /// Gives it to new inputs, which check it again.
+    ///
+    /// # Errors
+    /// [`InputBytesError`] for values that [`Inputs`] refuse.
+    pub fn restore(&self) -> Result<Inputs, InputBytesError> {
+        let mut inputs = Inputs::new();
+        for course in &self.channels {
+            let (channel, times, values) = match course {
+                Ramp::Hold { times, values } => {
+                    (inputs.add_channel(Between::Hold), &times[..], &values[..])
+                }
+                Ramp::Scaled(of, scaling) => {
+                    let channel = inputs.add_factor_of((**of).clone())?;
+                    (channel, &scaling.times[..], &scaling.factors[..])
+                }
+                Ramp::Table { times, values } => match (&times[..], &values[..]) {
+                    ([t, times @ ..], [value, values @ ..]) => {
+                        (inputs.add_line_from(*t, *value)?, times, values)
+                    }
+                    _ => (inputs.add_open_line(), &[][..], &[][..]),
+                },
+                _ => return Err(KIND.impossible("channel").into()),
+            };
+            if times.len() != values.len() {
+                return Err(KIND.impossible("channel").into());
+            }
+            for (t, value) in times.iter().zip(values) {
+                inputs.set(channel, *t, *value)?;
             }
         }
-        out.finish()
+        let mut ended = f64::NEG_INFINITY;
+        for (from, to, entries) in &self.forces {
+            // Else one set would replace another.
+            let follows = *from >= ended && to > from && !entries.is_empty();
+            if !follows {
+                return Err(KIND.impossible("forces").into());
+            }
+            inputs.set_forces(*from, entries)?;
+            if *to != f64::INFINITY {
+                inputs.set_forces(*to, &[])?;
+            }
+            ended = *to;
+        }
+        Ok(inputs)
+    }
+}
+
+impl Inputs {
+    /// The record as bytes: played again, it gives the same bits in another process too. See [`SavedInputs`].
+    ///
+    /// # Errors
+    /// [`BytesError`]; none for a record.
+    pub fn to_bytes(&self) -> Result<Vec<u8>, BytesError> {
+        bytes::write(KIND, &SavedInputs::of(self))
     }
 
     /// The record that [`Inputs::to_bytes`] wrote.
@@ -76,47 +117,7 @@ impl Inputs {
     /// # Errors
     /// [`InputBytesError`] for other bytes.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, InputBytesError> {
-        let mut rest = Reader::open(KIND, bytes)?;
-        let mut inputs = Self::new();
-        for _ in 0..rest.count_of(12)? {
-            let flags = rest.flags()?;
-            let scaled = (flags == [2, 0, 0, 0]).then(|| ramp_bytes::read(&mut rest));
-            let scaled = scaled.transpose()?;
-            let (count, mut known) = (rest.count_of(16)?, 0);
-            let channel = match flags {
-                [0, 0, 0, 0] => inputs.add_channel(Between::Hold),
-                [2, 0, 0, 0] if let Some(ramp) = scaled => inputs.add_factor_of(ramp)?,
-                [1, 0, 0, 0] if count == 0 => inputs.add_open_line(),
-                [1, 0, 0, 0] => {
-                    known = 1;
-                    inputs.add_line_from(rest.number()?, rest.number()?)?
-                }
-                _ => return Err(rest.impossible("channel").into()),
-            };
-            for _ in known..count {
-                let (t, value) = (rest.number()?, rest.number()?);
-                inputs.set(channel, t, value)?;
-            }
-        }
-        let (sets, mut ended, mut entries) = (rest.count_of(24)?, f64::NEG_INFINITY, Vec::new());
-        for _ in 0..sets {
-            let (from, to) = (rest.number()?, rest.number()?);
-            entries.clear();
-            for _ in 0..rest.count_of(12)? {
-                entries.push((rest.dof()?, rest.number()?));
-            }
-            // Else one set would replace another.
-            if from < ended || to <= from || entries.is_empty() {
-                return Err(rest.impossible("forces").into());
-            }
-            inputs.set_forces(from, &entries)?;
-            if to != f64::INFINITY {
-                inputs.set_forces(to, &[])?;
-            }
-            ended = to;
-        }
-        rest.end()?;
-        Ok(inputs)
+        bytes::read::<SavedInputs>(KIND, bytes)?.restore()
     }
 }
 
@@ -178,12 +179,12 @@ mod tests {
     #[test]
     fn a_record_comes_back_with_the_same_bits() {
         let (mut written, empty) = (record(), Inputs::new());
-        assert_eq!(Inputs::from_bytes(&empty.to_bytes()), Ok(empty));
+        assert_eq!(Inputs::from_bytes(&empty.to_bytes().unwrap()), Ok(empty));
         for _ in 0..2 {
-            let bytes = written.to_bytes();
+            let bytes = written.to_bytes().unwrap();
             let read = Inputs::from_bytes(&bytes).unwrap();
             assert_eq!(read, written);
-            assert_eq!(read.to_bytes(), bytes);
+            assert_eq!(read.to_bytes().unwrap(), bytes);
             assert_eq!(read.highest_dof(), written.highest_dof());
             for channel in (0..9).map(crate::Channel) {
                 for ramp in [Ramp::Input(channel), Ramp::InputRate(channel)] {
@@ -205,13 +206,13 @@ mod tests {
     fn a_line_that_forgot_all_but_its_last_point_comes_back() {
         let mut written = record();
         written.forget_before(1.0);
-        let read = Inputs::from_bytes(&written.to_bytes());
+        let read = Inputs::from_bytes(&written.to_bytes().unwrap());
         assert_eq!(read, Ok(written));
     }
 
     #[test]
     fn a_record_that_is_read_goes_on() {
-        let (mut written, bytes) = (record(), record().to_bytes());
+        let (mut written, bytes) = (record(), record().to_bytes().unwrap());
         let mut read = Inputs::from_bytes(&bytes).unwrap();
         for inputs in [&mut written, &mut read] {
             inputs.set(crate::Channel(1), 0.7, 3.0).unwrap();
@@ -220,24 +221,16 @@ mod tests {
         assert_eq!(read, written);
     }
 
-    /// A record with these sets of forces, valid or not.
-    fn forces(sets: &[[f64; 2]], force: f64) -> Vec<u8> {
-        let mut out = Writer::new(KIND);
-        out.count(0);
-        out.count(sets.len() as u64);
-        for [from, to] in sets {
-            out.number(*from);
-            out.number(*to);
-            out.count(1);
-            out.dof(0);
-            out.number(force);
-        }
-        out.finish()
-    }
-
     #[test]
     fn what_could_not_be_given_is_not_read() {
-        let read = |sets: &[[f64; 2]], force| Inputs::from_bytes(&forces(sets, force));
+        let read = |sets: &[[f64; 2]], force| {
+            let forces = sets.iter().map(|[from, to]| (*from, *to, vec![(0, force)]));
+            let saved = SavedInputs {
+                channels: Vec::new(),
+                forces: forces.collect(),
+            };
+            Inputs::from_bytes(&bytes::write(KIND, &saved).unwrap())
+        };
         assert!(read(&[[0.0, 1.0], [1.0, f64::INFINITY]], 1.0).is_ok());
         let nan = f64::NAN;
         for wrong in [
@@ -254,23 +247,16 @@ mod tests {
             read(&[[0.0, 1.0]], nan),
             Err(InputBytesError::Forces(_))
         ));
-        let mut out = Writer::new(KIND);
-        out.count(1);
-        out.flags([3, 0, 0, 0]);
-        out.count(0);
-        out.count(0);
-        assert!(matches!(
-            Inputs::from_bytes(&out.finish()),
-            Err(InputBytesError::Bytes(BytesError::Content {
-                part: "channel",
-                ..
-            }))
-        ));
+        let impossible = SavedInputs {
+            channels: vec![Ramp::Linear],
+            ..SavedInputs::default()
+        };
+        assert_eq!(impossible.restore(), Err(KIND.impossible("channel").into()));
         let state = crate::State::at_rest(0);
         let model =
             crate::LinearModel::new(crate::LinearOperators::oscillator(1.0, 1.0, 0.0).unwrap());
         assert_eq!(
-            Inputs::from_bytes(&state.to_bytes(&model))
+            Inputs::from_bytes(&state.to_bytes(&model).unwrap())
                 .unwrap_err()
                 .to_string(),
             "these bytes are no record of inputs written by this version of sinew"
