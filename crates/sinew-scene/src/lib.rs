@@ -35,6 +35,7 @@
 mod decode;
 mod error;
 mod formula;
+mod keys;
 mod nearest;
 mod number;
 mod options_json;
@@ -51,7 +52,10 @@ mod schedule;
 mod simulation;
 mod source;
 
-pub use error::{Fault, NoStableStep, OverrideError, SceneError, StableStepError};
+pub use error::{
+    Fault, MotionTableError, MotionTableFault, NoStableStep, OverrideError, SceneError,
+    StableStepError, ToolFault,
+};
 pub use formula::{Formula, FormulaError};
 pub use options_json::options_json;
 pub use overlap::{Overlap, OverlapWatch};
@@ -69,9 +73,8 @@ pub use scene::{
 pub use schedule::Schedule;
 pub use simulation::{
     BodyModel, CutFrom, CutTotals, Cutter, CuttingError, DrivenLoadError, Footprint, HeldParts,
-    HeldPlace, LoadRemedy, MeshedScene, MotionTableError, MotionTableFault, NearestNode, Probe,
-    ProbeNode, Reaction, ReactionError, ReactionOf, RefinementError, RefusedLoad, RoughStrokes,
-    SavedCuts, SceneBody, SceneModel, SelectedPart, Simulation, ToolFault, UnresolvedLoad, Warning,
-    WarningKind,
+    HeldPlace, LoadRemedy, MeshedScene, NearestNode, Probe, ProbeNode, Reaction, ReactionError,
+    ReactionOf, RefinementError, RefusedLoad, RoughStrokes, SavedCuts, SceneBody, SceneModel,
+    SelectedPart, Simulation, UnresolvedLoad, Warning, WarningKind,
 };
 pub use source::SceneSource;

@@ -1,4 +1,4 @@
-//! No two files of a crate import each other, directly or by way of others.
+//! No two files of a crate, and no two modules at its top, import each other, directly or by way of others.
 
 use std::path::Path;
 
@@ -7,20 +7,41 @@ use super::components::{Edges, components, shortest_circle};
 use super::files::{entries, shown};
 use super::modules::Modules;
 
-/// Finds the circles of files.
+/// Finds the circles of files and of modules: two modules may need each other though none of their files does.
 pub(super) fn check(root: &Path) -> Result<Vec<Breach>, RuleError> {
-    let edges = imports(root)?;
+    let files = imports(root)?;
+    let mut found = circles(&files);
+    found.extend(circles(&of_modules(&files)));
+    Ok(found)
+}
+
+fn circles(edges: &Edges<String>) -> Vec<Breach> {
     let breach = |files: Vec<String>| {
-        let circles = files
-            .iter()
-            .filter_map(|file| shortest_circle(&edges, file));
+        let circles = files.iter().filter_map(|file| shortest_circle(edges, file));
         let shortest = circles.min_by_key(Vec::len).unwrap_or_default();
         Breach::FileCircle {
             files: files.join("\n    "),
             shortest: shortest.join(" -> "),
         }
     };
-    Ok(components(&edges).into_iter().map(breach).collect())
+    components(edges).into_iter().map(breach).collect()
+}
+
+/// The imports between the modules at the top of each crate. Its root shows what is public, and imports nothing.
+fn of_modules(files: &Edges<String>) -> Edges<String> {
+    let module = |file: &String| {
+        let (above, rest) = file.split_once("/src/")?;
+        let name = rest.split('/').next()?.trim_end_matches(".rs");
+        (!["lib", "main"].contains(&name)).then(|| format!("{above}/src/{name}"))
+    };
+    let mut edges = Edges::new();
+    for (from, to) in files {
+        let Some(from) = module(from) else { continue };
+        let others = to.iter().filter_map(module).filter(|to| *to != from);
+        let entry: &mut std::collections::BTreeSet<String> = edges.entry(from.clone()).or_default();
+        entry.extend(others);
+    }
+    edges
 }
 
 /// The imports between the files of each crate, by their paths below the root of the repository.
@@ -140,6 +161,30 @@ mod tests {
             shortest(&circle).as_deref(),
             Some("the shortest way round: one.rs -> two.rs -> one.rs")
         );
+    }
+
+    #[test]
+    fn modules_that_need_each_other_are_named_though_no_two_files_do() {
+        let files = [
+            ("lib.rs", "mod error; mod scene;"),
+            ("error/mod.rs", "mod fault; pub use fault::Fault;"),
+            ("error/fault.rs", "pub struct Fault(crate::scene::Shape);"),
+            ("scene/mod.rs", "mod read; mod shape; pub use shape::Shape;"),
+            (
+                "scene/read.rs",
+                "fn read() -> crate::error::Fault { todo!() }",
+            ),
+            ("scene/shape.rs", "pub struct Shape;"),
+        ];
+        assert_eq!(
+            shortest(&files).as_deref(),
+            Some("the shortest way round: error -> scene -> error")
+        );
+        let apart = files.map(|(path, text)| match path {
+            "scene/read.rs" => (path, "fn read() {}"),
+            _ => (path, text),
+        });
+        assert_eq!(shortest(&apart), None);
     }
 
     #[test]

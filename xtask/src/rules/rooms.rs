@@ -50,6 +50,8 @@ pub(super) const ROOMS: &[(&str, &[&str])] = &[
         "sinew-world",
         &[
             "sinew-core",
+            "sinew-mesh",
+            "sinew-fem",
             "sinew-integrators",
             "sinew-scene",
             "sinew-tools",

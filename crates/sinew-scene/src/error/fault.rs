@@ -139,10 +139,10 @@ pub enum Fault {
     MeshFile(#[from] sinew_mesh::MeshFileError),
     /// A table over time that cannot be used.
     #[error(transparent)]
-    MotionTable(#[from] crate::simulation::MotionTableError),
+    MotionTable(#[from] super::MotionTableError),
     /// A tool that does not fit the body, or cannot be.
     #[error(transparent)]
-    Tool(#[from] crate::simulation::ToolFault),
+    Tool(#[from] super::ToolFault),
     /// A body that cannot be cut.
     #[error(transparent)]
     Cutting(#[from] sinew_fem::CutModelError),

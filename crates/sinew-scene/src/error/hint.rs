@@ -6,10 +6,10 @@ use sinew_core::OptionError;
 use sinew_mesh::{CellType, TetMeshError};
 
 use super::fault::Fault;
+use super::tool_fault::ToolFault;
 use super::words::quoted;
+use crate::keys::AT_THE_TOP;
 use crate::nearest::nearest;
-use crate::scene::keys::AT_THE_TOP;
-use crate::simulation::ToolFault;
 
 /// The hint that follows from a fault, if there is one.
 pub(super) fn following_from(fault: &Fault) -> Option<String> {

@@ -3,8 +3,10 @@
 mod fault;
 mod hint;
 mod key_path;
+mod motion_table;
 mod no_step;
 mod override_error;
+mod tool_fault;
 mod words;
 
 use std::fmt;
@@ -14,8 +16,10 @@ use std::sync::Arc;
 
 pub use fault::Fault;
 pub(crate) use fault::MOST_STEPS;
+pub use motion_table::{MotionTableError, MotionTableFault};
 pub use no_step::{NoStableStep, StableStepError};
 pub use override_error::OverrideError;
+pub use tool_fault::ToolFault;
 pub(crate) use words::shortened;
 
 use crate::source::SceneSource;

@@ -4,7 +4,6 @@ use super::cutting::CUTTING;
 use super::damping::DAMPING;
 use super::fixed::FIXED;
 use super::initial::INITIAL;
-use super::keys::GRAVITY;
 use super::load::LOAD;
 use super::mesh::MESH;
 use super::motion::MOVE;
@@ -15,6 +14,7 @@ use super::region::REGION;
 use super::run::RUN;
 use super::tool::TOOL;
 use crate::decode::{Condition, Inner, Key, Needs, Optional, TableDescription, Text, Vector};
+use crate::keys::GRAVITY;
 
 /// The whole scene.
 pub(crate) const DOCUMENT: TableDescription = TableDescription {

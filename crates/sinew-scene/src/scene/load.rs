@@ -5,7 +5,6 @@ use std::path::PathBuf;
 use sinew_core::Ramp;
 use sinew_fem::{LoadKind, LoadSpec, On};
 
-use super::keys::GRAVITY;
 use super::ramp::{self, RAMP};
 use super::region::taken;
 use super::selected::{GROUP, Members, Selections, WHERE};
@@ -14,6 +13,7 @@ use crate::decode::{
     Usual, Vector,
 };
 use crate::error::{Fault, SceneError};
+use crate::keys::GRAVITY;
 
 pub(super) const LOAD: TableDescription = TableDescription {
     name: "load",

@@ -9,7 +9,6 @@ mod from_mesh;
 mod from_value;
 mod group_name;
 mod initial;
-pub(crate) mod keys;
 mod load;
 mod mesh;
 mod model;
@@ -36,6 +35,7 @@ use sinew_core::Ramp;
 use sinew_fem::Problem;
 use toml::de::DeTable;
 
+use crate::keys::GRAVITY;
 pub use cutting::{Blade, Cutting, Lips, LoosePieces};
 pub(crate) use document::DOCUMENT;
 use document::{
@@ -43,7 +43,6 @@ use document::{
     OSCILLATOR_TABLE, OUTPUT_TABLE, PROBES, REGIONS, RUN_TABLE, SUPPORTS, TITLE, TOOLS,
 };
 pub use initial::Initial;
-use keys::GRAVITY;
 pub use mesh::{MeshChanges, MeshSource, Rotation};
 pub use motion::{Motion, Way};
 pub use oscillator::Oscillator;

@@ -6,13 +6,13 @@ use sinew_core::{OptionError, OptionValue, Options};
 use toml::Spanned;
 use toml::de::DeValue;
 
-use super::keys::AT_THE_TOP;
 use crate::decode::value::{Misfit, finite};
 use crate::decode::{
     Count, Flag, Key, Kind, Needs, Number, Optional, Or, Place, Shape, Table, TableDescription,
     Text, Values,
 };
 use crate::error::{Fault, SceneError};
+use crate::keys::AT_THE_TOP;
 
 /// Duration, integrator and steps of a run.
 #[derive(Debug, Clone, PartialEq)]

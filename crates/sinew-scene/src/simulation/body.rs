@@ -9,7 +9,7 @@ use super::meshed::SelectedMesh;
 use super::model::BodyModel;
 use super::motion_table::{MotionTable, read_strokes};
 use crate::error::{Fault, SceneError};
-use crate::scene::keys::GRAVITY;
+use crate::keys::GRAVITY;
 use crate::scene::{Blade, Body, MeshSource, Motion, Places, Way};
 
 /// Assembles the matrices.

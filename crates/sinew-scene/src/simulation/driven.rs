@@ -11,8 +11,8 @@ use sinew_tools::{Steering, ToolsError};
 use super::model::{BodyModel, SceneModel};
 use super::scene_body::SceneBody;
 use super::{Simulation, tool};
+use crate::keys::GRAVITY;
 use crate::scene::Subject;
-use crate::scene::keys::GRAVITY;
 
 /// Reasons for which loads cannot be driven.
 #[derive(Debug, thiserror::Error)]

@@ -6,8 +6,8 @@ use sinew_fem::Item;
 
 use super::Simulation;
 use super::load_problems::{LoadRemedy, RefusedLoad, UnresolvedLoad};
+use crate::keys::GRAVITY;
 use crate::scene::Subject;
-use crate::scene::keys::GRAVITY;
 
 impl Simulation {
     /// The first load of the scene that its integrator will refuse; `None` where it accepts all loads.

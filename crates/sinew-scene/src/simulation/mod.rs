@@ -25,7 +25,6 @@ mod start;
 mod step;
 mod tool;
 mod tool_end;
-mod tool_fault;
 mod tool_surface;
 mod touched_steps;
 mod warnings;
@@ -43,14 +42,12 @@ pub use footprint::Footprint;
 pub use load_problems::{LoadRemedy, RefusedLoad, UnresolvedLoad};
 pub use meshed::MeshedScene;
 pub use model::{BodyModel, SceneModel};
-pub use motion_table::{MotionTableError, MotionTableFault};
 pub use probe::{NearestNode, Probe, ProbeNode};
 pub use reaction::{HeldParts, HeldPlace, Reaction, ReactionError, ReactionOf};
 pub use refined::RefinementError;
 pub use rough_strokes::RoughStrokes;
 pub use scene_body::SceneBody;
 pub use selected::SelectedPart;
-pub use tool_fault::ToolFault;
 
 pub use warnings::{Warning, WarningKind};
 

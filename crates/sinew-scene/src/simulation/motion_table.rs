@@ -1,9 +1,11 @@
 //! Tables of positions, poses, strokes and factors in CSV files.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use sinew_core::Ramp;
 use sinew_cutting::{BladePose, Strokes};
+
+use crate::error::{MotionTableError, MotionTableFault};
 
 /// The column of times.
 const TIME: &str = "t_s";
@@ -41,98 +43,6 @@ const FACTORS: [&str; 2] = [TIME, "factor"];
 struct Rows {
     columns: &'static [&'static str],
     rows: Vec<Vec<f64>>,
-}
-
-/// A table over time that cannot be used: its file, its line, and what is wrong.
-#[derive(Debug, thiserror::Error)]
-#[error("{}{}: {fault}", path.display(), line.map_or_else(String::new, |line| format!(":{line}")))]
-pub struct MotionTableError {
-    path: PathBuf,
-    line: Option<usize>,
-    fault: MotionTableFault,
-}
-
-impl MotionTableError {
-    /// The file.
-    #[must_use]
-    pub fn path(&self) -> &Path {
-        &self.path
-    }
-
-    /// The line, counted from 1; `None` where the fault is that of the whole file.
-    #[must_use]
-    pub fn line(&self) -> Option<usize> {
-        self.line
-    }
-
-    /// The fault.
-    #[must_use]
-    pub fn fault(&self) -> &MotionTableFault {
-        &self.fault
-    }
-}
-
-/// A fault in a table over time.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum MotionTableFault {
-    /// A file that cannot be read.
-    #[error("cannot be read: {0}")]
-    Unreadable(#[from] std::io::Error),
-    /// Other columns than those of such a table.
-    #[error("the first line is {found:?}: expected the names of the columns, {expected}")]
-    Header {
-        /// The line, shortened.
-        found: String,
-        /// The lines that fit, in words.
-        expected: String,
-    },
-    /// A row with more or fewer numbers than columns.
-    #[error("expected {} numbers, {}, found {found}", columns.len(), columns.join(","))]
-    Count {
-        /// Number of entries found.
-        found: usize,
-        /// The names of the columns.
-        columns: &'static [&'static str],
-    },
-    /// An entry that is not a finite number.
-    #[error("{column} is {found:?}: expected a finite number")]
-    NotANumber {
-        /// Name of the column.
-        column: &'static str,
-        /// The entry, shortened.
-        found: String,
-    },
-    /// A time that does not come after that of the row before.
-    #[error("t_s = {t} does not come after {last}, the time of the row before")]
-    Order {
-        /// The time (s).
-        t: f64,
-        /// Time (s) of the row before.
-        last: f64,
-    },
-    /// A third row of factors at one time.
-    #[error(
-        "t_s = {t} is the time of the two rows before: expected two rows at most, the factor before a jump and that after it"
-    )]
-    Jump {
-        /// The time (s).
-        t: f64,
-    },
-    /// A table without a row.
-    #[error("there is no row below the names of the columns: expected at least one")]
-    NoRows,
-    /// Rows that make no strokes.
-    #[error(transparent)]
-    Strokes(#[from] sinew_cutting::StrokesError),
-    /// A position along an axis that is not moved.
-    #[error("{column} = {found}, but the axis is not among `axes`: expected 0")]
-    UnnamedAxis {
-        /// Name of the column.
-        column: &'static str,
-        /// The position (m).
-        found: f64,
-    },
 }
 
 impl MotionTable {

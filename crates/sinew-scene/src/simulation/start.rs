@@ -6,7 +6,7 @@ use sinew_fem::Model;
 use super::model::BodyModel;
 use crate::error::{Fault, SceneError};
 use crate::formula::Formula;
-use crate::scene::keys::GRAVITY;
+use crate::keys::GRAVITY;
 use crate::scene::{Body, Initial, Places};
 
 pub(super) fn state(body: &Body, places: &Places, built: &BodyModel) -> Result<State, SceneError> {

@@ -12,10 +12,9 @@ use sinew_tools::{
 
 use super::model::BodyModel;
 use super::motion_table::PoseTable;
-use super::tool_fault::ToolFault;
 use super::tool_surface::{self, moved_nodes};
 use crate::decode::Place;
-use crate::error::{Fault, SceneError};
+use crate::error::{Fault, SceneError, ToolFault};
 use crate::scene::{
     Body, FARTHEST, Lips, Places, StartsInside, Tool, ToolPath, ToolShape, ToolStart,
 };

@@ -15,4 +15,5 @@ mod logs;
 mod moving_cuts;
 mod recorders;
 mod replays;
+mod report;
 mod saved;

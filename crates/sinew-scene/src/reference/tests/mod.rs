@@ -16,8 +16,8 @@ use toml::{Table, Value};
 use super::sections::{self, tables_in};
 use super::{examples, scene_schema, schema};
 use crate::decode::{KeyDescription, Needs, Shape, Stated, TableDescription};
+use crate::keys::AT_THE_TOP;
 use crate::scene::DOCUMENT;
-use crate::scene::keys::AT_THE_TOP;
 use crate::{OutputSettings, RunSettings, Scene, SceneSource, Subject};
 use spots::Spot;
 
