@@ -172,11 +172,7 @@ impl<'a> Batch<'a> {
             });
         }
         if let (Some([matrices, loads]), Some(present)) = (state.loads, self.loads) {
-            let is_earlier = || {
-                let linear = self.system.as_linear();
-                linear.is_some_and(|linear| linear.operators().changed_since(matrices).is_some())
-            };
-            let is_same_body = present[0] == matrices || is_earlier();
+            let is_same_body = present[0] == matrices;
             if is_same_body && present[1] != loads && state.velocity != VelocityTime::Same {
                 return Err(SetupError::OtherLoads { integrator });
             }

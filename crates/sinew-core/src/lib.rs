@@ -22,7 +22,6 @@
 
 mod batch;
 mod bytes;
-mod changes;
 mod channel_record;
 mod clock;
 pub mod closed_form;

@@ -8,10 +8,8 @@ use std::sync::Arc;
 
 use sinew_sparse::{AssemblyError, BlockMatrix, Layers, Pattern};
 
-use crate::changes::Changes;
 use crate::derived::Derived;
 use crate::element_bounds::ElementBounds;
-use crate::elements::ElementStiffness;
 use crate::energy::Energy;
 use crate::input::Inputs;
 use crate::load::Load;
@@ -55,14 +53,6 @@ pub enum OperatorError {
         /// The rate.
         value: f64,
     },
-    /// An added number that is not finite.
-    #[error("{value} in {what} that is added: expected a finite number")]
-    NotFinite {
-        /// `a matrix` or `a mass`.
-        what: &'static str,
-        /// The number.
-        value: f64,
-    },
     /// A load's ramp.
     #[error("ramp of load {load}: {source}")]
     Ramp {
@@ -103,7 +93,6 @@ struct Matrices {
     /// Bounds that are taken for eigenvalues.
     bounds: Option<ElementBounds>,
     revision: Revision,
-    changes: Changes,
     derived: Derived,
 }
 
@@ -150,7 +139,6 @@ impl LinearOperators {
                 damping,
                 bounds: None,
                 revision: Revision::new(),
-                changes: Changes::default(),
                 derived: Derived::default(),
             }),
             loads: loads.into(),
@@ -196,7 +184,6 @@ impl LinearOperators {
         let matrices = Arc::make_mut(&mut self.matrices);
         matrices.bounds = Some(bounds);
         matrices.revision = Revision::new();
-        matrices.changes = Changes::default();
         matrices.derived = Derived::default();
         self
     }
@@ -205,69 +192,6 @@ impl LinearOperators {
     #[must_use]
     pub fn element_bounds(&self) -> Option<ElementBounds> {
         self.matrices.bounds
-    }
-
-    /// Adds element matrices to K, and masses (kg) by degree of freedom: a cut takes an element's
-    /// matrix away, a burn makes it stiffer. A velocity that stays between two instants is then carried
-    /// over the change by a step of order 1, unless [`crate::State::synchronise`] brings it to the
-    /// displacement's time before. Costs as much as the rows it changes while no other
-    /// clone shares the matrices, and a copy of them otherwise; this clone has a new revision afterwards, and no bounds by elements.
-    ///
-    /// # Errors
-    /// [`OperatorError`] where cells are no neighbours, a size does not fit or a degree of freedom does
-    /// not exist; nothing is changed then. Whether masses stay positive is checked by the integrators.
-    pub fn add_elements(
-        &mut self,
-        elements: &[ElementStiffness],
-        masses: &[(u32, f64)],
-    ) -> Result<(), OperatorError> {
-        let (dofs, layers) = (self.dofs(), self.stiffness().layers().count());
-        for element in elements {
-            self.stiffness()
-                .check_element(&element.cells, &element.matrix)?;
-        }
-        let entries = elements.iter().flat_map(|element| &element.matrix);
-        let entries = entries.map(|value| ("a matrix", *value));
-        let added = masses.iter().map(|(_, mass)| ("a mass", *mass));
-        if let Some((what, value)) = entries.chain(added).find(|(_, value)| !value.is_finite()) {
-            return Err(OperatorError::NotFinite { what, value });
-        }
-        if let Some(&(dof, _)) = masses.iter().find(|(dof, _)| *dof as usize >= dofs) {
-            return Err(OperatorError::Size {
-                what: "the mass",
-                found: dof as usize + 1,
-                expected: dofs,
-            });
-        }
-        let matrices = Arc::make_mut(&mut self.matrices);
-        let stiffness = Arc::make_mut(&mut matrices.stiffness);
-        let mut cells: Vec<u32> = Vec::new();
-        for element in elements {
-            stiffness.add_element(&element.cells, &element.matrix)?;
-            cells.extend(&element.cells);
-        }
-        for &(dof, mass) in masses {
-            matrices.mass[dof as usize] += mass;
-            cells.push(dof / layers as u32);
-        }
-        matrices.changes.push(matrices.revision, cells);
-        matrices.bounds = None;
-        matrices.revision = Revision::new();
-        matrices.derived = Derived::default();
-        Ok(())
-    }
-
-    /// The cells whose rows changed since a revision of these matrices, increasing; `None` where
-    /// that revision is none of theirs, or too long ago.
-    #[must_use]
-    pub fn changed_since(&self, revision: Revision) -> Option<Vec<u32>> {
-        self.matrices.changes.since(revision)
-    }
-
-    /// True if rows changed since the matrices were made.
-    #[must_use]
-    pub fn has_changed(&self) -> bool {
-        !self.matrices.changes.is_empty()
     }
 
     /// Lumped mass of each degree of freedom (kg).

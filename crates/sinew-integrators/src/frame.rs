@@ -202,19 +202,6 @@ impl<M: Scheme> Frame<M> {
         if same {
             return Ok(StepReport::default());
         }
-        if let Some(cells) = self.prepared.changed_cells(system, dt)
-            && self.scheme.survives_change_of_rows()
-        {
-            let layers = system.layers().count();
-            let dofs = cells.iter().map(|cell| *cell as usize * layers);
-            let dofs = dofs.flat_map(|first| first..first + layers);
-            Prepared::check_masses(M::ID, system, dofs)?;
-            self.prepared.done(system, dt);
-            return Ok(StepReport {
-                cells_set_up: cells.len() as u64,
-                ..StepReport::default()
-            });
-        }
         self.prepared.forget();
         let before = match std::mem::replace(&mut self.ready, Ready::Not) {
             Ready::ByHand(steps) => Some(*steps),

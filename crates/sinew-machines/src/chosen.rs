@@ -64,9 +64,7 @@ impl Settings {
             Equations::Linear(linear) => linear,
             Equations::Forces(law) => return self.check_law(law),
         };
-        // Rows that have changed had their templates.
-        let changed = linear.operators().has_changed();
-        if self.kind == Kind::Repeated && !changed && Layout::<T>::repeated(linear).is_none() {
+        if self.kind == Kind::Repeated && Layout::<T>::repeated(linear).is_none() {
             return Err(Unfit::NoTemplates);
         }
         Ok(())
