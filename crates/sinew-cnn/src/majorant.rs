@@ -247,7 +247,7 @@ impl Majorant {
     }
 
     /// `out = (dt/2 D + dt^2/4 K) x`: the matrix that P must exceed.
-    pub fn multiply_required(&self, x: &[f64], out: &mut [f64]) {
+    pub(crate) fn multiply_required(&self, x: &[f64], out: &mut [f64]) {
         out.fill(0.0);
         let damping = self.operators.damping();
         let half = self.dt / 2.0;

@@ -57,12 +57,6 @@ impl Templates {
         self.operators.stiffness().layers()
     }
 
-    /// The cells a cell knows, itself included, increasing.
-    #[must_use]
-    pub fn neighbourhood(&self, cell: usize) -> &[u32] {
-        self.operators.stiffness().pattern().neighbours(cell)
-    }
-
     /// The feedback template A (1/s^2), computed on each call.
     #[must_use]
     pub fn feedback(&self) -> BlockMatrix {

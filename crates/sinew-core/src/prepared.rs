@@ -56,7 +56,7 @@ impl Prepared {
     ///
     /// # Errors
     /// [`SetupError::Mass`].
-    pub fn check_masses(
+    pub(crate) fn check_masses(
         integrator: &'static str,
         system: &dyn System,
         mut dofs: impl Iterator<Item = usize>,

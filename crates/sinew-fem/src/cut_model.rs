@@ -221,14 +221,6 @@ impl CutModel {
         Ok(cut_model)
     }
 
-    /// Makes room in a state for the nodes that the model has room for, so that cuts allocate nothing for it either.
-    pub fn make_room(&self, state: &mut State) {
-        let more = 3 * spare_nodes(self.mesh.nodes.len());
-        for values in [&mut state.u, &mut state.v, &mut state.a] {
-            values.reserve(more);
-        }
-    }
-
     /// The model of the body as it is.
     #[must_use]
     pub fn model(&self) -> &Model {

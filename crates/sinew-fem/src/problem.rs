@@ -45,6 +45,21 @@ pub struct Region {
     pub from_mesh: FromMesh,
 }
 
+impl Region {
+    /// The whole mesh of one isotropic material on plain elements, the same everywhere: a law and a mass density (kg/m^3).
+    #[must_use]
+    pub fn new(law: Law, density: f64) -> Self {
+        Self {
+            group: None,
+            density,
+            law,
+            element: Element::P1,
+            tissue: Tissue::default(),
+            from_mesh: FromMesh::default(),
+        }
+    }
+}
+
 /// Rayleigh damping, `D = alpha M + beta K`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Rayleigh {

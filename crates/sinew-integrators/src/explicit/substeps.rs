@@ -88,7 +88,10 @@ impl Substeps {
     ///
     /// # Errors
     /// [`OptionError::Value`] for anything but a whole number from 1 to 10000 or "auto".
-    pub fn take_from(options: &mut Options, integrator: &str) -> Result<Option<Self>, OptionError> {
+    pub(crate) fn take_from(
+        options: &mut Options,
+        integrator: &str,
+    ) -> Result<Option<Self>, OptionError> {
         let substeps = Self::HELP.read(options, integrator, |value| match value.word() {
             Some(_) => Some(Self::Auto),
             None => value.count(MOST_FIXED).map(Self::Fixed),

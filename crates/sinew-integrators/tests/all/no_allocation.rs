@@ -183,7 +183,7 @@ fn neither_do_the_fields_of_a_frame() {
         model.strain(0.0, &u, &mut tensors).unwrap();
         model.stress(0.0, &u, &mut tensors).unwrap();
         model.reactions(0.1, &u, &v, &mut nodal).unwrap();
-        model.node_reaction(0.1, &u, &v, 0).unwrap();
+        model.reaction_of_nodes(0.1, &u, &v, &[0]).unwrap();
     };
     assert!(
         CountingAllocator::count(&mut frame) > 0,

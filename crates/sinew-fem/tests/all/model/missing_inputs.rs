@@ -24,7 +24,7 @@ fn answers(model: &Model, when: LoadTime<'_>) -> [Vec<Result<(), FieldError>>; 2
     let forces = vec![
         model.reactions(when, &u, &v, &mut nodal),
         model.reaction(when, &u, &v, &"bottom".into()).map(|_| ()),
-        model.node_reaction(when, &u, &v, 0).map(|_| ()),
+        model.reaction_of_nodes(when, &u, &v, &[0]).map(|_| ()),
         model.reaction_of_nodes(when, &u, &v, &[0, 1]).map(|_| ()),
         model.moving_reactions(when, [&zero; 3], &mut nodal),
     ];
