@@ -18,9 +18,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
 use sinew_core::{Ramp, System};
-use sinew_fem::{
-    Element, Fixed, FromMesh, Law, LoadKind, LoadSpec, Model, Problem, Region, SpringRule, Tissue,
-};
+use sinew_fem::{Fixed, Law, LoadKind, LoadSpec, Model, Problem, Region, SpringRule};
 use sinew_mesh::TetMesh;
 use sinew_mesh::structured::{Split, cube};
 
@@ -110,14 +108,7 @@ fn main() {
 /// A cube on its bottom, pressed from above.
 fn problem(law: Law) -> Problem {
     Problem {
-        regions: vec![Region {
-            group: None,
-            density: 1060.0,
-            law,
-            element: Element::P1,
-            tissue: Tissue::default(),
-            from_mesh: FromMesh::default(),
-        }],
+        regions: vec![Region::new(law, 1060.0)],
         fixed: vec![Fixed {
             on: "bottom".into(),
             axes: [true; 3],

@@ -7,8 +7,7 @@ use proptest::prelude::*;
 use sinew_core::spectrum::Spectrum;
 use sinew_core::{LinearSystem, Ramp, State};
 use sinew_fem::{
-    Element, Fixed, FromMesh, Item, Law, LoadKind, LoadSpec, Model, Problem, Rayleigh, Region,
-    SpringRule, Tissue,
+    Fixed, Item, Law, LoadKind, LoadSpec, Model, Problem, Rayleigh, Region, SpringRule,
 };
 use sinew_mesh::structured::{self, Split};
 use sinew_mesh::{Group, GroupMembers, TetMesh};
@@ -284,11 +283,7 @@ fn laws() -> impl Strategy<Value = Law> {
 fn regions(tets: usize) -> impl Strategy<Value = (Vec<Region>, Vec<Group>)> {
     let region = |group: Option<&str>, density, law| Region {
         group: group.map(Into::into),
-        density,
-        law,
-        element: Element::P1,
-        tissue: Tissue::default(),
-        from_mesh: FromMesh::default(),
+        ..Region::new(law, density)
     };
     let one = (500.0..2000.0, laws())
         .prop_map(move |(density, law)| (vec![region(None, density, law)], vec![]));

@@ -15,7 +15,7 @@ use std::time::{Duration, Instant};
 
 use sinew_core::{Batch, Inputs, Integrator, Options, State, System};
 use sinew_fem::hyperelastic::Parameters;
-use sinew_fem::{Element, Fixed, FromMesh, Law, Model, Problem, Region, Tissue};
+use sinew_fem::{Fixed, Law, Model, Problem, Region};
 use sinew_mesh::structured::{Split, cube};
 use sinew_tools::{Convex, Motion, Row, Shape, Table, Tool, Tools, TouchedCell};
 
@@ -79,14 +79,7 @@ impl Lap {
     fn new(cells: usize, law: Law, height: Option<f64>) -> Self {
         let mesh = cube(cells, EDGE, Split::Kuhn).expect("the mesh is small enough");
         let problem = Problem {
-            regions: vec![Region {
-                group: None,
-                density: 1060.0,
-                law,
-                element: Element::P1,
-                tissue: Tissue::default(),
-                from_mesh: FromMesh::default(),
-            }],
+            regions: vec![Region::new(law, 1060.0)],
             fixed: vec![Fixed {
                 on: "bottom".into(),
                 axes: [true; 3],

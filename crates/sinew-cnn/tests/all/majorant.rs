@@ -6,7 +6,7 @@ use proptest::prelude::*;
 use sinew_cnn::{Blend, DampingShare, GammaRule, Inner, Majorant, Stabiliser};
 use sinew_core::spectrum::critical_step;
 use sinew_core::{LinearOperators, LinearSystem, System};
-use sinew_fem::{Element, Fixed, FromMesh, Law, Model, Problem, Region, SpringRule, Tissue};
+use sinew_fem::{Fixed, Law, Model, Problem, Region, SpringRule};
 use sinew_mesh::structured::{self, Split};
 use sinew_testkit::body::{Body, bodies_up_to};
 use sinew_testkit::dense::{dense, dense_damping};
@@ -364,14 +364,7 @@ proptest! {
 fn cube(cells: usize, law: Law, axes: [bool; 3]) -> Model {
     let mesh = structured::cube(cells, 0.1, Split::Kuhn).unwrap();
     let problem = Problem {
-        regions: vec![Region {
-            group: None,
-            density: 1060.0,
-            law,
-            element: Element::P1,
-            tissue: Tissue::default(),
-            from_mesh: FromMesh::default(),
-        }],
+        regions: vec![Region::new(law, 1060.0)],
         fixed: vec![Fixed {
             on: "sides".into(),
             axes,

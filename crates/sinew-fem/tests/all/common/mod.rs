@@ -1,9 +1,7 @@
 //! Shared by the verification tests: small models, static solutions, and figures beside their references.
 
 use sinew_core::{ElasticLaw, LinearSystem, LoadTime, Ramp, System, TangentKind, Trial};
-use sinew_fem::{
-    Element, Fixed, FromMesh, Law, LoadKind, LoadSpec, Model, Problem, Region, SpringRule, Tissue,
-};
+use sinew_fem::{Element, Fixed, Law, LoadKind, LoadSpec, Model, Problem, Region, SpringRule};
 use sinew_mesh::structured::{self, Split};
 use sinew_mesh::{Group, GroupMembers, TetMesh};
 
@@ -48,14 +46,7 @@ pub(crate) fn springs(youngs_modulus: f64, rule: SpringRule, calibrate: bool) ->
 /// A free body of one material.
 pub(crate) fn body(law: Law) -> Problem {
     Problem {
-        regions: vec![Region {
-            group: None,
-            density: DENSITY,
-            law,
-            element: Element::P1,
-            tissue: Tissue::default(),
-            from_mesh: FromMesh::default(),
-        }],
+        regions: vec![Region::new(law, DENSITY)],
         ..Problem::default()
     }
 }

@@ -3,8 +3,7 @@
 use crate::common::{DENSITY, add_node_group, body, held, held_along, linear, load, springs};
 use sinew_core::{Ramp, RampError};
 use sinew_fem::{
-    Cause, Element, FemError, Fixed, FromMesh, Item, Law, LoadKind, LoadSpec, Model, On, Problem,
-    Region, SpringRule, Tissue,
+    Cause, FemError, Fixed, Item, Law, LoadKind, LoadSpec, Model, On, Problem, Region, SpringRule,
 };
 use sinew_mesh::structured::{self, Split};
 use sinew_mesh::{Group, GroupMembers, TetMesh};
@@ -26,11 +25,7 @@ fn tissue() -> Problem {
 fn region(group: Option<&str>) -> Region {
     Region {
         group: group.map(Into::into),
-        density: DENSITY,
-        law: linear(3500.0, 0.45),
-        element: Element::P1,
-        tissue: Tissue::default(),
-        from_mesh: FromMesh::default(),
+        ..Region::new(linear(3500.0, 0.45), DENSITY)
     }
 }
 

@@ -6,12 +6,11 @@ use sinew_core::{
     System, Trial,
 };
 use sinew_fem::hyperelastic::Parameters;
-use sinew_fem::{
-    Element, Fixed, FromMesh, Law, LoadKind, LoadSpec, Model, On, Problem, Region, Tissue,
-};
+use sinew_fem::{Element, Fixed, Law, LoadKind, LoadSpec, Model, On, Problem, Region};
 use sinew_integrators::static_solution_under;
 use sinew_mesh::TetMesh;
 use sinew_mesh::structured::{self, Split};
+use sinew_mesh::vector::cross;
 
 const SIZE: f64 = 0.1;
 
@@ -24,15 +23,14 @@ fn block(cells: usize) -> TetMesh {
 
 fn neo_hookean(element: Element) -> Region {
     Region {
-        group: None,
-        density: 1060.0,
-        law: Law::Hyperelastic {
-            id: "neo-hookean",
-            parameters: Parameters::new(3500.0, 0.45),
-        },
         element,
-        tissue: Tissue::default(),
-        from_mesh: FromMesh::default(),
+        ..Region::new(
+            Law::Hyperelastic {
+                id: "neo-hookean",
+                parameters: Parameters::new(3500.0, 0.45),
+            },
+            1060.0,
+        )
     }
 }
 
@@ -86,10 +84,6 @@ fn volume(model: &Model, u: &[f64]) -> f64 {
         }
     }
     mesh.signed_volumes().iter().sum()
-}
-
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [0, 1, 2].map(|k| a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3])
 }
 
 #[test]

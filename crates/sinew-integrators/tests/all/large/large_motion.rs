@@ -10,8 +10,8 @@ use sinew_core::{
 use sinew_fem::hyperelastic::Parameters;
 use sinew_fem::hyperelastic::fibres::{Fibres, Stiffening};
 use sinew_fem::{
-    Element, FibreFamily, Fixed, FromMesh, Law, LoadKind, LoadSpec, Model, On, Problem, Rayleigh,
-    Region, Tissue,
+    Element, FibreFamily, Fixed, Law, LoadKind, LoadSpec, Model, On, Problem, Rayleigh, Region,
+    Tissue,
 };
 use sinew_mesh::TetMesh;
 use sinew_mesh::structured::{self, Split};
@@ -34,17 +34,13 @@ impl Scene {
         let mesh = structured::block(cells, size, Split::Mirrored).unwrap();
         let parameters = Parameters::new(3500.0, 0.45);
         let mut problem = Problem {
-            regions: vec![Region {
-                group: None,
-                density: 1060.0,
-                law: Law::Hyperelastic {
+            regions: vec![Region::new(
+                Law::Hyperelastic {
                     id: "neo-hookean",
                     parameters,
                 },
-                element: Element::P1,
-                tissue: Tissue::default(),
-                from_mesh: FromMesh::default(),
-            }],
+                1060.0,
+            )],
             fixed: vec![Fixed {
                 on: "bottom".into(),
                 axes: [true; 3],

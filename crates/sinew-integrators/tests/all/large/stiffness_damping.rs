@@ -4,8 +4,7 @@ use crate::common::{advance, build, plain, relative_error};
 use sinew_core::{ElasticLaw, LoadTime, Options, Ramp, State, System, Trial};
 use sinew_fem::hyperelastic::Parameters;
 use sinew_fem::{
-    Course, Element, Fixed, FromMesh, Law, LoadKind, LoadSpec, Model, Moving, Problem, Rayleigh,
-    Region, Tissue,
+    Course, Element, Fixed, Law, LoadKind, LoadSpec, Model, Moving, Problem, Rayleigh, Region,
 };
 use sinew_mesh::TetMesh;
 use sinew_mesh::structured::{self, Split};
@@ -13,15 +12,14 @@ use sinew_mesh::structured::{self, Split};
 fn tissue(id: &'static str, element: Element) -> Problem {
     Problem {
         regions: vec![Region {
-            group: None,
-            density: 1000.0,
-            law: Law::Hyperelastic {
-                id,
-                parameters: Parameters::new(5000.0, 0.3),
-            },
             element,
-            tissue: Tissue::default(),
-            from_mesh: FromMesh::default(),
+            ..Region::new(
+                Law::Hyperelastic {
+                    id,
+                    parameters: Parameters::new(5000.0, 0.3),
+                },
+                1000.0,
+            )
         }],
         damping: Rayleigh {
             mass: 0.0,

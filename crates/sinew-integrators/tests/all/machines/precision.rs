@@ -6,7 +6,7 @@ use sinew_core::{
     Equations, EvaluationError, ForceLaw, Layers, LoadTime, OptionError, Revision, SetupError,
     State, System, Trial,
 };
-use sinew_fem::{Element, FromMesh, Law, Model, Problem, Region, Tissue};
+use sinew_fem::{Law, Model, Problem, Region};
 use sinew_mesh::structured::{self, Split};
 use sinew_mesh::{Group, GroupMembers};
 
@@ -207,11 +207,7 @@ fn stiffnesses_too_far_apart_for_24_bits_are_refused() {
     let prepared = |factor: f64| {
         let region = |group: &str, law: Law| Region {
             group: Some(group.into()),
-            density: 1060.0,
-            law,
-            element: Element::P1,
-            tissue: Tissue::default(),
-            from_mesh: FromMesh::default(),
+            ..Region::new(law, 1060.0)
         };
         let problem = Problem {
             regions: vec![region("stiff", law(factor)), region("soft", law(1.0))],

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use sinew_cnn::{LoadAt, Loads, Machine, Physics, Program, Register};
 use sinew_core::{Batch, Inputs, LinearSystem, State, System, VelocityTime};
-use sinew_fem::{Element, Fixed, FromMesh, Law, Model, Problem, Region, Tissue};
+use sinew_fem::{Fixed, Law, Model, Problem, Region};
 use sinew_mesh::TetMesh;
 use sinew_mesh::structured::{Split, cube};
 
@@ -20,14 +20,7 @@ pub(crate) fn held_cube(cells: usize, split: Split) -> Model {
 
 pub(crate) fn body(mesh: &TetMesh, held: &str) -> Model {
     let problem = Problem {
-        regions: vec![Region {
-            group: None,
-            density: 1060.0,
-            law: TISSUE,
-            element: Element::P1,
-            tissue: Tissue::default(),
-            from_mesh: FromMesh::default(),
-        }],
+        regions: vec![Region::new(TISSUE, 1060.0)],
         fixed: vec![Fixed {
             on: held.into(),
             axes: [true; 3],
