@@ -80,10 +80,7 @@ fn main() {
     let seconds = (cpu_time() - before).as_secs_f64();
     let (nodes, tets) = (mesh.points.len(), mesh.tets.len());
     println!("{tets} tetrahedra, {nodes} nodes; the mesh itself took {seconds:.3} s of CPU");
-    let linear = Law::Linear {
-        youngs_modulus: 3500.0,
-        poissons_ratio: 0.45,
-    };
+    let linear = Law::linear(3500.0, 0.45);
     let springs = |rule, damping_ratio| Law::Springs {
         youngs_modulus: 3500.0,
         rule,
@@ -109,15 +106,8 @@ fn main() {
 fn problem(law: Law) -> Problem {
     Problem {
         regions: vec![Region::new(law, 1060.0)],
-        fixed: vec![Fixed {
-            on: "bottom".into(),
-            axes: [true; 3],
-        }],
-        loads: vec![LoadSpec {
-            on: "top".into(),
-            kind: LoadKind::Pressure(100.0),
-            ramp: Ramp::Step,
-        }],
+        fixed: vec![Fixed::new("bottom")],
+        loads: vec![LoadSpec::new("top", LoadKind::Pressure(100.0), Ramp::Step)],
         ..Problem::default()
     }
 }

@@ -49,22 +49,9 @@ fn main() {
 /// A cube on its bottom, pressed from above, under its weight.
 fn problem() -> Problem {
     Problem {
-        regions: vec![Region::new(
-            Law::Linear {
-                youngs_modulus: 3500.0,
-                poissons_ratio: 0.45,
-            },
-            1060.0,
-        )],
-        fixed: vec![Fixed {
-            on: "bottom".into(),
-            axes: [true; 3],
-        }],
-        loads: vec![LoadSpec {
-            on: "top".into(),
-            kind: LoadKind::Pressure(100.0),
-            ramp: Ramp::Step,
-        }],
+        regions: vec![Region::new(Law::linear(3500.0, 0.45), 1060.0)],
+        fixed: vec![Fixed::new("bottom")],
+        loads: vec![LoadSpec::new("top", LoadKind::Pressure(100.0), Ramp::Step)],
         gravity: Some([0.0, 0.0, -9.81]),
         ..Problem::default()
     }

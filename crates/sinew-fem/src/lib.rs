@@ -8,10 +8,10 @@
 //! let mesh = structured::cube(4, 0.1, Split::Kuhn)?;
 //! let problem = Problem {
 //!     regions: vec![Region::new(
-//!         Law::Linear { youngs_modulus: 3500.0, poissons_ratio: 0.45 },
+//!         Law::linear(3500.0, 0.45),
 //!         1060.0, // kg/m3
 //!     )],
-//!     fixed: vec![Fixed { on: "sides".into(), axes: [true; 3] }],
+//!     fixed: vec![Fixed::new("sides")],
 //!     loads: vec![LoadSpec {
 //!         on: "top".into(),
 //!         kind: LoadKind::Traction([0.0, 0.0, -100.0]), // Pa
@@ -32,11 +32,11 @@
 //! # use sinew_fem::{Fixed, Law, Model, On, Problem, Region};
 //! # use sinew_mesh::structured::{self, Split};
 //! let mesh = structured::cube(4, 0.1, Split::Kuhn)?;
-//! let law = Law::Linear { youngs_modulus: 3500.0, poissons_ratio: 0.0 };
+//! let law = Law::linear(3500.0, 0.0);
 //! let floor: Vec<u32> = (0..25).collect();
 //! let model = Model::build(&mesh, &Problem {
 //!     regions: vec![Region::new(law, 1060.0)],
-//!     fixed: vec![Fixed { on: On::Nodes(floor.clone()), axes: [true; 3] }],
+//!     fixed: vec![Fixed::new(On::Nodes(floor.clone()))],
 //!     ..Problem::default()
 //! })?;
 //!
@@ -59,10 +59,10 @@
 //! # use sinew_fem::{Course, Fixed, Law, Model, Moving, Problem, Region};
 //! # use sinew_mesh::structured::{self, Split};
 //! let mesh = structured::cube(4, 0.1, Split::Kuhn)?;
-//! let law = Law::Linear { youngs_modulus: 3500.0, poissons_ratio: 0.0 };
+//! let law = Law::linear(3500.0, 0.0);
 //! let model = Model::build(&mesh, &Problem {
 //!     regions: vec![Region::new(law, 1060.0)],
-//!     fixed: vec![Fixed { on: "bottom".into(), axes: [true; 3] }],
+//!     fixed: vec![Fixed::new("bottom")],
 //!     moves: vec![Moving {
 //!         on: "top".into(),
 //!         axes: [true; 3],

@@ -80,6 +80,18 @@ pub struct LoadSpec {
     pub ramp: Ramp,
 }
 
+impl LoadSpec {
+    /// A load of this kind on a part of the mesh, with its factor over time.
+    #[must_use]
+    pub fn new(on: impl Into<On>, kind: LoadKind, ramp: Ramp) -> Self {
+        Self {
+            on: on.into(),
+            kind,
+            ramp,
+        }
+    }
+}
+
 /// A kind of load, with its size.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LoadKind {

@@ -60,17 +60,8 @@ fn step(machine: &mut dyn Machine, model: &Model, steps: usize) -> f64 {
 
 fn held_cube(cells: usize) -> Model {
     let problem = Problem {
-        regions: vec![Region::new(
-            Law::Linear {
-                youngs_modulus: 3500.0,
-                poissons_ratio: 0.45,
-            },
-            1060.0,
-        )],
-        fixed: vec![Fixed {
-            on: "sides".into(),
-            axes: [true; 3],
-        }],
+        regions: vec![Region::new(Law::linear(3500.0, 0.45), 1060.0)],
+        fixed: vec![Fixed::new("sides")],
         ..Problem::default()
     };
     Model::build(&cube(cells, 0.1, Split::Kuhn).unwrap(), &problem).unwrap()

@@ -53,10 +53,7 @@ fn main() {
 }
 
 fn laws() -> [(&'static str, Law); 2] {
-    let linear = Law::Linear {
-        youngs_modulus: 3500.0,
-        poissons_ratio: 0.45,
-    };
+    let linear = Law::linear(3500.0, 0.45);
     let large = Law::Hyperelastic {
         id: "neo-hookean",
         parameters: Parameters::new(3500.0, 0.45),
@@ -80,10 +77,7 @@ impl Lap {
         let mesh = cube(cells, EDGE, Split::Kuhn).expect("the mesh is small enough");
         let problem = Problem {
             regions: vec![Region::new(law, 1060.0)],
-            fixed: vec![Fixed {
-                on: "bottom".into(),
-                axes: [true; 3],
-            }],
+            fixed: vec![Fixed::new("bottom")],
             ..Problem::default()
         };
         let mut model = Model::build(&mesh, &problem).expect("it can be built");

@@ -11,10 +11,10 @@
 //! let mesh = structured::cube(4, 0.1, Split::Kuhn)?;
 //! let model = Model::build(&mesh, &Problem {
 //!     regions: vec![Region::new(
-//!         Law::Linear { youngs_modulus: 3500.0, poissons_ratio: 0.45 },
+//!         Law::linear(3500.0, 0.45),
 //!         1060.0, // kg/m3
 //!     )],
-//!     fixed: vec![Fixed { on: "bottom".into(), axes: [true; 3] }],
+//!     fixed: vec![Fixed::new("bottom")],
 //!     gravity: Some([0.0, 0.0, -9.81]),
 //!     ..Problem::default()
 //! })?;

@@ -192,20 +192,14 @@ fn block(cells: usize, youngs_modulus: f64) -> Result<Model, Box<dyn Error>> {
     let duration = STEP * STEPS as f64;
     let problem = Problem {
         regions: vec![Region::new(
-            Law::Linear {
-                youngs_modulus,
-                poissons_ratio: 0.4,
-            },
+            Law::linear(youngs_modulus, 0.4),
             1060.0, // kg/m3
         )],
         damping: Rayleigh {
             mass: 5.0,
             stiffness: 0.001,
         },
-        fixed: vec![Fixed {
-            on: "bottom".into(),
-            axes: [true; 3],
-        }],
+        fixed: vec![Fixed::new("bottom")],
         loads: vec![LoadSpec {
             on: "top".into(),
             kind: LoadKind::Traction([0.0, 20.0, -50.0]), // Pa

@@ -52,10 +52,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             mass: 40.0,
             stiffness: 0.0,
         },
-        fixed: vec![Fixed {
-            on: On::Nodes(floor.clone()),
-            axes: [true; 3],
-        }],
+        fixed: vec![Fixed::new(On::Nodes(floor.clone()))],
         ..Problem::default()
     };
     let model = Model::build(&mesh, &problem)?;

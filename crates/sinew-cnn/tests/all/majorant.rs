@@ -322,7 +322,7 @@ proptest! {
     ) {
         let mut body = body;
         for region in &mut body.problem.regions {
-            region.law = Law::Linear { youngs_modulus: 3500.0, poissons_ratio };
+            region.law = Law::linear(3500.0, poissons_ratio);
         }
         let k = stiffness(body.model().operators());
         let least = extremes(&(blockdiag(&k) * 4.0 - &k)).0;
@@ -385,10 +385,7 @@ fn springs(rule: SpringRule) -> Law {
 
 #[test]
 fn gamma_of_the_paper_s_cube() {
-    let linear = |poissons_ratio| Law::Linear {
-        youngs_modulus: 3500.0,
-        poissons_ratio,
-    };
+    let linear = |poissons_ratio| Law::linear(3500.0, poissons_ratio);
     for (law, expected) in [
         (springs(SpringRule::Lloyd), 1.974),
         (springs(SpringRule::VanGelder), 1.984),

@@ -166,17 +166,8 @@ fn a_node_of_no_tetrahedron_is_refused_by_its_tag() {
     mesh.points.push([1.0; 3]);
     mesh.node_tags.push(77);
     let problem = Problem {
-        regions: vec![Region::new(
-            Law::Linear {
-                youngs_modulus: 1000.0,
-                poissons_ratio: 0.3,
-            },
-            1000.0,
-        )],
-        fixed: vec![Fixed {
-            on: "bottom".into(),
-            axes: [true; 3],
-        }],
+        regions: vec![Region::new(Law::linear(1000.0, 0.3), 1000.0)],
+        fixed: vec![Fixed::new("bottom")],
         ..Problem::default()
     };
     let model = Model::build(&mesh, &problem).unwrap();

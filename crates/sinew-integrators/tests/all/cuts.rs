@@ -10,17 +10,8 @@ use sinew_mesh::structured::{self, Split};
 
 fn problem() -> Problem {
     Problem {
-        regions: vec![Region::new(
-            Law::Linear {
-                youngs_modulus: 3500.0,
-                poissons_ratio: 0.45,
-            },
-            1060.0,
-        )],
-        fixed: vec![Fixed {
-            on: "bottom".into(),
-            axes: [true; 3],
-        }],
+        regions: vec![Region::new(Law::linear(3500.0, 0.45), 1060.0)],
+        fixed: vec![Fixed::new("bottom")],
         ..Problem::default()
     }
 }

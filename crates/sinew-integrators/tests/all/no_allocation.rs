@@ -243,11 +243,11 @@ fn a_frame_of_a_simulator_allocates_nothing() {
             ramp: Ramp::Input(clamp),
         }],
     }];
-    problem.loads = vec![LoadSpec {
-        on: "sides".into(),
-        kind: LoadKind::Pressure(50.0),
-        ramp: Ramp::Input(cuff),
-    }];
+    problem.loads = vec![LoadSpec::new(
+        "sides",
+        LoadKind::Pressure(50.0),
+        Ramp::Input(cuff),
+    )];
     let model = Model::build(&mesh, &problem).unwrap();
     let options = Options::new().with_text("substeps", "auto");
     let mut method = build("central-difference", &options);

@@ -31,10 +31,7 @@ fn problem(law: Law, element: Element) -> Problem {
             element,
             ..Region::new(law, 1060.0)
         }],
-        fixed: vec![Fixed {
-            on: "bottom".into(),
-            axes: [true; 3],
-        }],
+        fixed: vec![Fixed::new("bottom")],
         ..Problem::default()
     }
 }

@@ -73,10 +73,7 @@ fn springs_repeat_as_tetrahedra_do() {
     };
     let problem = Problem {
         regions: vec![Region::new(law, 1060.0)],
-        fixed: vec![Fixed {
-            on: "sides".into(),
-            axes: [true; 3],
-        }],
+        fixed: vec![Fixed::new("sides")],
         ..Problem::default()
     };
     let model = Model::build(&mesh, &problem).unwrap();
@@ -98,10 +95,7 @@ fn with_moduli(cells: usize, modulus: impl Fn(&TetMesh, usize) -> f64) -> Model 
     let regions = vec![Region {
         group: None,
         density: 1060.0,
-        law: Law::Linear {
-            youngs_modulus: 1.0,
-            poissons_ratio: 0.45,
-        },
+        law: Law::linear(1.0, 0.45),
         element: Element::P1,
         tissue: Tissue::default(),
         from_mesh: FromMesh {
@@ -109,10 +103,7 @@ fn with_moduli(cells: usize, modulus: impl Fn(&TetMesh, usize) -> f64) -> Model 
             ..FromMesh::default()
         },
     }];
-    let fixed = vec![Fixed {
-        on: "sides".into(),
-        axes: [true; 3],
-    }];
+    let fixed = vec![Fixed::new("sides")];
     let problem = Problem {
         regions,
         fixed,

@@ -27,10 +27,7 @@ pub(crate) fn at_most(name: &str, error: f64, limit: f64) {
 }
 
 pub(crate) fn linear(youngs_modulus: f64, poissons_ratio: f64) -> Law {
-    Law::Linear {
-        youngs_modulus,
-        poissons_ratio,
-    }
+    Law::linear(youngs_modulus, poissons_ratio)
 }
 
 /// Undamped springs.
@@ -63,11 +60,7 @@ pub(crate) fn held_along(group: &str, axes: [bool; 3]) -> Fixed {
 }
 
 pub(crate) fn load(group: &str, kind: LoadKind) -> LoadSpec {
-    LoadSpec {
-        on: group.into(),
-        kind,
-        ramp: Ramp::Step,
-    }
+    LoadSpec::new(group, kind, Ramp::Step)
 }
 
 pub(crate) fn build(mesh: &TetMesh, problem: &Problem) -> Model {

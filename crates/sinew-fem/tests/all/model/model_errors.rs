@@ -42,11 +42,7 @@ fn with_load(group: &str, kind: LoadKind) -> Problem {
 
 fn loaded_on(on: On, kind: LoadKind) -> Problem {
     Problem {
-        loads: vec![LoadSpec {
-            on,
-            kind,
-            ramp: Ramp::Step,
-        }],
+        loads: vec![LoadSpec::new(on, kind, Ramp::Step)],
         ..tissue()
     }
 }
@@ -297,10 +293,7 @@ fn nodes_the_mesh_does_not_have() {
     let triangles = On::Triangles(vec![[0, 1, 3], [26, 2, 27]]);
     for on in [nodes, triangles.clone()] {
         let problem = Problem {
-            fixed: vec![Fixed {
-                on: on.clone(),
-                axes: [true; 3],
-            }],
+            fixed: vec![Fixed::new(on.clone())],
             ..tissue()
         };
         let message = format!("support 1: {words}");

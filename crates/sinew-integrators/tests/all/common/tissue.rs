@@ -6,10 +6,7 @@ use sinew_fem::{Fixed, Law, Problem, Region};
 pub(crate) const DENSITY: f64 = 1060.0;
 
 pub(crate) fn linear(youngs_modulus: f64, poissons_ratio: f64) -> Law {
-    Law::Linear {
-        youngs_modulus,
-        poissons_ratio,
-    }
+    Law::linear(youngs_modulus, poissons_ratio)
 }
 
 /// A free body without loads.

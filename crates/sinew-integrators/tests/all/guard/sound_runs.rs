@@ -77,11 +77,11 @@ fn tissue() -> Region {
 }
 
 fn pulse(group: &str, traction: [f64; 3], to: f64) -> LoadSpec {
-    LoadSpec {
-        on: group.into(),
-        kind: LoadKind::Traction(traction),
-        ramp: Ramp::Pulse { from: 0.0, to },
-    }
+    LoadSpec::new(
+        group,
+        LoadKind::Traction(traction),
+        Ramp::Pulse { from: 0.0, to },
+    )
 }
 
 /// A bar whose width at each height (between 0 and 1) is this share of that of the block.

@@ -35,11 +35,7 @@ fn neo_hookean(element: Element) -> Region {
 }
 
 fn load(group: &str, kind: LoadKind) -> LoadSpec {
-    LoadSpec {
-        on: group.into(),
-        kind,
-        ramp: Ramp::Step,
-    }
+    LoadSpec::new(group, kind, Ramp::Step)
 }
 
 /// Under pressure (Pa) on these groups.
@@ -261,10 +257,7 @@ fn a_cube_under_pressure_all_round_shrinks_as_the_closed_form_says() {
 fn supports_carry_what_the_pressure_on_the_deformed_surface_asks() {
     let pressure = 800.0;
     let mut problem = pressed(Element::P1, pressure, &["sides", "top"]);
-    problem.fixed = vec![Fixed {
-        on: "bottom".into(),
-        axes: [true; 3],
-    }];
+    problem.fixed = vec![Fixed::new("bottom")];
     problem
         .loads
         .push(load("top", LoadKind::Traction([300.0, 0.0, 0.0])));
@@ -344,10 +337,7 @@ fn cellular_energy_steps_follow_a_surface_by_implicit_euler_alone() {
 fn a_cube_finds_its_equilibrium_under_pressure_on_one_side() {
     for (cells, pressure) in [(2, -2500.0), (4, -1500.0), (4, 1500.0)] {
         let mut problem = pressed(Element::P1, pressure, &["top"]);
-        problem.fixed = vec![Fixed {
-            on: "bottom".into(),
-            axes: [true; 3],
-        }];
+        problem.fixed = vec![Fixed::new("bottom")];
         let model = Model::build(&block(cells), &problem).unwrap();
         let u = static_solution_under(&model, &model.full_loads(&[0])).unwrap();
         let trial = Trial {

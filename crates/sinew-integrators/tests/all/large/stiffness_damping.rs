@@ -121,11 +121,7 @@ fn under_pressure_that_follows_the_surface_a_damped_body_gains_no_energy() {
     let mesh = structured::block([3, 3, 1], [0.09, 0.09, 0.03], Split::Mirrored).unwrap();
     let mut problem = tissue("neo-hookean", Element::P1);
     problem.loads = ["bottom", "sides", "top"]
-        .map(|group| LoadSpec {
-            on: group.into(),
-            kind: LoadKind::FollowingPressure(pressure),
-            ramp: Ramp::Step,
-        })
+        .map(|group| LoadSpec::new(group, LoadKind::FollowingPressure(pressure), Ramp::Step))
         .into();
     let model = Model::build(&mesh, &problem).unwrap();
     let with_pressure = |state: &State| {
@@ -151,10 +147,7 @@ fn falling() -> Model {
     let (held, _): (Vec<u32>, Vec<u32>) =
         (0..mesh.points.len() as u32).partition(|node| mesh.points[*node as usize][0] < 1e-9);
     let mut problem = tissue("neo-hookean", Element::P1);
-    problem.fixed.push(Fixed {
-        on: sinew_fem::On::Nodes(held),
-        axes: [true; 3],
-    });
+    problem.fixed.push(Fixed::new(sinew_fem::On::Nodes(held)));
     problem.gravity = Some([0.0, 0.0, -9.81]);
     Model::build(&mesh, &problem).unwrap()
 }

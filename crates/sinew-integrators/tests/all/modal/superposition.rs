@@ -95,10 +95,7 @@ fn motion(
 }
 
 fn linear(poissons_ratio: f64) -> Law {
-    Law::Linear {
-        youngs_modulus: 3500.0,
-        poissons_ratio,
-    }
+    Law::linear(3500.0, poissons_ratio)
 }
 
 fn springs(rule: SpringRule) -> Law {
@@ -127,11 +124,7 @@ fn body(
         regions: vec![Region::new(law, 1060.0)],
         damping,
         fixed: fixed.iter().map(held).collect(),
-        loads: vec![LoadSpec {
-            on: "top".into(),
-            kind,
-            ramp: Ramp::Step,
-        }],
+        loads: vec![LoadSpec::new("top", kind, Ramp::Step)],
         gravity: None,
         moves: Vec::new(),
     };

@@ -8,10 +8,7 @@ use sinew_fem::{Fixed, Law, Model, Problem, Region};
 use sinew_mesh::TetMesh;
 use sinew_mesh::structured::{Split, cube};
 
-pub(crate) const TISSUE: Law = Law::Linear {
-    youngs_modulus: 3500.0,
-    poissons_ratio: 0.45,
-};
+pub(crate) const TISSUE: Law = Law::linear(3500.0, 0.45);
 
 /// A cube of `cells` cells along each edge, held at its sides.
 pub(crate) fn held_cube(cells: usize, split: Split) -> Model {
@@ -21,10 +18,7 @@ pub(crate) fn held_cube(cells: usize, split: Split) -> Model {
 pub(crate) fn body(mesh: &TetMesh, held: &str) -> Model {
     let problem = Problem {
         regions: vec![Region::new(TISSUE, 1060.0)],
-        fixed: vec![Fixed {
-            on: held.into(),
-            axes: [true; 3],
-        }],
+        fixed: vec![Fixed::new(held)],
         ..Problem::default()
     };
     Model::build(mesh, &problem).unwrap()

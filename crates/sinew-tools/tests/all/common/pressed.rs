@@ -60,20 +60,14 @@ impl Block {
 
     pub(crate) fn problem(&self) -> Problem {
         let is_carried = self.carried_at != [0.0; 3];
-        let bottom = Fixed {
-            on: "bottom".into(),
-            axes: [true; 3],
-        };
+        let bottom = Fixed::new("bottom");
         let moving = Moving {
             on: "bottom".into(),
             axes: [true; 3],
             courses: vec![Course::at_velocity(self.carried_at)],
         };
         let law = match self.law {
-            None => Law::Linear {
-                youngs_modulus: E,
-                poissons_ratio: self.nu,
-            },
+            None => Law::linear(E, self.nu),
             Some(id) => Law::Hyperelastic {
                 id,
                 parameters: Parameters::new(E, self.nu),
