@@ -212,6 +212,44 @@ impl LinearOperators {
         &self.matrices.damping
     }
 
+    /// D = alpha M + beta K + extra (N s/m) as one matrix, made on each call.
+    #[must_use]
+    pub fn damping_matrix(&self) -> BlockMatrix {
+        let damping = self.damping();
+        let mut whole = self.stiffness_and_dashpots(damping.stiffness, 1.0);
+        let layers = whole.layers().count();
+        for (cell, mass) in self.mass().chunks_exact(layers).enumerate() {
+            // Every row of a pattern has its own cell.
+            let blocks = whole.row_blocks_mut(cell);
+            for (_, block) in blocks.filter(|(column, _)| *column == cell) {
+                let diagonal = block.iter_mut().step_by(layers + 1);
+                for (entry, mass) in diagonal.zip(mass) {
+                    *entry += damping.mass * mass;
+                }
+            }
+        }
+        whole
+    }
+
+    /// `of_stiffness K + of_dashpots extra` as one matrix, made on each call.
+    #[must_use]
+    pub fn stiffness_and_dashpots(&self, of_stiffness: f64, of_dashpots: f64) -> BlockMatrix {
+        let mut sum = BlockMatrix::clone(self.stiffness());
+        sum.scale_rows(&vec![of_stiffness; self.dofs()]);
+        if let Some(dashpots) = &self.damping().extra {
+            for cell in 0..sum.pattern().cells() {
+                // Both have one pattern (`LinearOperators::new`).
+                let blocks = sum.row_blocks_mut(cell).zip(dashpots.row_blocks(cell));
+                for ((_, block), (_, added)) in blocks {
+                    for (entry, added) in block.iter_mut().zip(added) {
+                        *entry += of_dashpots * added;
+                    }
+                }
+            }
+        }
+        sum
+    }
+
     /// The loads.
     #[must_use]
     pub fn loads(&self) -> &[Load] {
@@ -398,6 +436,17 @@ mod tests {
         for (value, expected) in out.iter().zip(&damping) {
             assert!((value + expected).abs() < 1e-12);
         }
+        // As a matrix, and its block sparse rows one by one: D = .5 M + .1 K + 10 K.
+        let matrix = operators.damping_matrix();
+        let bsr = matrix.to_bsr();
+        let expected = [1.0 + 50.5, -20.2, -20.2, 2.0 + 30.3];
+        for (value, expected) in bsr.blocks.iter().zip(expected) {
+            assert!((value - expected).abs() < 1e-12);
+        }
+        assert_eq!(
+            (&bsr.indptr[..], &*bsr.indices),
+            (&[0, 2, 4][..], &[0, 1, 0, 1][..])
+        );
         operators.net_force(0.0, &u, &v, &mut out);
         for ((value, elastic), damping) in out.iter().zip([1.0, 4.0]).zip(damping) {
             assert!((value + elastic + damping).abs() < 1e-12);

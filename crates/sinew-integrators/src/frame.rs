@@ -257,8 +257,8 @@ impl<M: Scheme> Frame<M> {
             });
         }
         match self.machine.kind {
-            Kind::Auto | Kind::Reference => Ok(()),
-            Kind::General | Kind::Repeated => Err(SetupError::Machine {
+            Kind::AUTO | Kind::REFERENCE => Ok(()),
+            _ => Err(SetupError::Machine {
                 integrator: M::ID,
                 reason: format!("no machine runs these steps: {reason}; leave `machine` out"),
             }),
