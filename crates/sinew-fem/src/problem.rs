@@ -46,7 +46,8 @@ pub struct Region {
 }
 
 impl Region {
-    /// The whole mesh of one isotropic material on plain elements, the same everywhere: a law and a mass density (kg/m^3).
+    /// The whole mesh of one isotropic material on plain elements, the same everywhere: a law and a mass density
+    /// (kg/m^3).
     #[must_use]
     pub fn new(law: Law, density: f64) -> Self {
         Self {

@@ -5,8 +5,8 @@ use std::sync::Arc;
 use sinew_cnn::{Machine, Program};
 use sinew_core::spectrum::Spectrum;
 use sinew_core::{
-    Batch, Fact, Guarding, Integrator, LoadOverStep, Prepared, Properties, SetupError, StableStep,
-    State, StepError, StepReport, System, VelocityTime,
+    Batch, CostClock, Fact, Guarding, Integrator, LoadOverStep, Prepared, Properties, SetupError,
+    StableStep, State, StepError, StepReport, System, VelocityTime,
 };
 
 use sinew_machines::{Chosen, Kind, PrecisionName, Settings};
@@ -187,6 +187,13 @@ impl<M: Scheme> Integrator for Frame<M> {
         match &self.ready {
             Ready::Program(loaded) => Some(loaded.machine.kernel()),
             Ready::Not | Ready::ByHand(_) => None,
+        }
+    }
+
+    fn cost_clock(&self) -> CostClock {
+        match &self.ready {
+            Ready::Program(loaded) => loaded.machine.cost_clock(),
+            Ready::Not | Ready::ByHand(_) => CostClock::default(),
         }
     }
 }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use sinew_cnn::{Machine, Program};
-use sinew_core::{Batch, Equations, State, StepError, System};
+use sinew_core::{Batch, CostClock, Equations, State, StepError, System};
 
 use crate::Settings;
 use crate::known::Kind;
@@ -51,6 +51,11 @@ impl Machine for Chosen {
             );
         }
         words
+    }
+
+    fn cost_clock(&self) -> CostClock {
+        let machine = self.machine.as_ref();
+        machine.map_or_else(CostClock::default, |machine| machine.cost_clock())
     }
 
     fn load(&mut self, program: Arc<Program>, system: &dyn System) {

@@ -455,7 +455,8 @@ impl<T: ElementPrecision> Running<'_, '_, T> {
                 damped: program.damped,
                 acceleration,
             };
-            written = is_last || exceeded || batch.looks_at_steps();
+            let needs = batch.host_needs(0);
+            written = needs.all || exceeded;
             if let Some(inertia) = program.inertia().filter(|_| has_contact) {
                 let mut loaded = write(self.loaded);
                 if written {
@@ -479,12 +480,12 @@ impl<T: ElementPrecision> Running<'_, '_, T> {
                 if !written && exceeded {
                     loaded.show(self.layout, state);
                 } else if !written {
-                    loaded.show_watched(self.layout, batch.watched(), state);
+                    loaded.show_watched(self.layout, needs.watched, state);
                 }
             } else if written {
                 write(self.loaded).show(self.layout, state);
-            } else if !batch.watched().is_empty() {
-                write(self.loaded).show_watched(self.layout, batch.watched(), state);
+            } else if !needs.watched.is_empty() {
+                write(self.loaded).show_watched(self.layout, needs.watched, state);
             }
             match exceeded {
                 true => batch.end_step(state, stepped)?,

@@ -15,7 +15,8 @@ const BOTH: &[PrecisionName] = &[PrecisionName::F64, PrecisionName::F32];
 pub(crate) const OURS: &[KnownMachine] = &[
     KnownMachine {
         id: Kind::AUTO.id(),
-        meaning: "templates where rows repeat on a lattice and that pays, else the general kernels; loops over elements for hyperelastic bodies",
+        meaning: "templates where rows repeat on a lattice and that pays, else the general kernels; loops over \
+                  elements for hyperelastic bodies",
         precisions: BOTH,
         check: |settings, system| match system.equations() {
             Equations::Forces(law) if law.element_forces().is_none() => {

@@ -4,7 +4,8 @@ use std::borrow::Cow;
 
 use crate::matrix::{BlockMatrix, Layers};
 
-/// Block sparse rows (BSR) of a square matrix of `cells` block rows: `scipy.sparse.bsr_array((blocks, indices, indptr))`.
+/// Block sparse rows (BSR) of a square matrix of `cells` block rows: `scipy.sparse.bsr_array((blocks, indices,
+/// indptr))`.
 ///
 /// Block `k` of row `i`, with `indptr[i] <= k < indptr[i + 1]`, is in block column `indices[k]`, and its entries are
 /// `blocks[k * layers * layers..]`, row-major. Columns of a row increase, and each row has its own.
@@ -21,8 +22,8 @@ pub struct Bsr<'a> {
 }
 
 impl BlockMatrix {
-    /// Block sparse rows of the matrix. Columns and entries are borrowed where rows are stored one after the other, which only a
-    /// cut changes ([`BlockMatrix::take_rows`]), and copied otherwise.
+    /// Block sparse rows of the matrix. Columns and entries are borrowed where rows are stored one after the other,
+    /// which only a cut changes ([`BlockMatrix::take_rows`]), and copied otherwise.
     ///
     /// ```
     /// use std::sync::Arc;

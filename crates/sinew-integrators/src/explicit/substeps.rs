@@ -5,8 +5,9 @@ use sinew_core::spectrum::{
     PRODUCTS_OF_BEGINNING, PRODUCTS_OF_ESTIMATE, Spectrum, follow_largest_eigenvalue,
 };
 use sinew_core::{
-    Batch, Damping, ElasticLaw, Fact, Integrator, LoadTime, OptionError, Options, Prepared,
-    Properties, SetupError, StableStep, State, StepCut, StepError, StepReport, System, Trial,
+    Batch, CostClock, Damping, ElasticLaw, Fact, Integrator, LoadTime, OptionError, Options,
+    Prepared, Properties, SetupError, StableStep, State, StepCut, StepError, StepReport, System,
+    Trial,
 };
 
 use crate::{OptionDefault, OptionHelp, OptionKind, Stepper};
@@ -562,6 +563,10 @@ impl Integrator for Substepped {
 
     fn kernel(&self) -> Option<String> {
         self.inner.kernel()
+    }
+
+    fn cost_clock(&self) -> CostClock {
+        self.inner.cost_clock()
     }
 
     fn facts(&self) -> Vec<Fact> {
