@@ -5,8 +5,7 @@ use std::sync::Arc;
 use sinew_cnn::{Machine, Program};
 use sinew_core::{Batch, CostClock, Equations, State, StepError, System};
 
-use crate::Settings;
-use crate::known::Kind;
+use crate::settings::{Kind, Settings};
 
 /// A machine built for each system that it is given, as its settings say ([`crate::KnownMachine`]).
 #[derive(Debug, Default)]

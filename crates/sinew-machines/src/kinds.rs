@@ -6,8 +6,11 @@ use sinew_cnn::{Machine, ReferenceMachine};
 use sinew_core::{ElementPrecision, Equations, ForceLaw, LinearSystem, System};
 use sinew_sparse::sweep::Precision;
 
-use crate::known::{Kind, KnownMachine};
-use crate::{FastMachine, Layout, PrecisionName, Settings, Unfit};
+use crate::fast::FastMachine;
+use crate::known::KnownMachine;
+use crate::layout::Layout;
+use crate::settings::{Kind, PrecisionName, Settings};
+use crate::unfit::Unfit;
 
 const BOTH: &[PrecisionName] = &[PrecisionName::F64, PrecisionName::F32];
 

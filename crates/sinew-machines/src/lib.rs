@@ -31,13 +31,15 @@ mod forces;
 mod kinds;
 mod known;
 mod layout;
+mod registry;
 mod settings;
 mod touched;
 mod unfit;
 
 pub use chosen::Chosen;
 pub use fast::FastMachine;
-pub use known::{Kind, KnownMachine, RegisterError, known_machines, register};
+pub use known::KnownMachine;
 pub use layout::Layout;
-pub use settings::{PrecisionName, Settings, Threads};
+pub use registry::{RegisterError, known_machines, register};
+pub use settings::{Kind, PrecisionName, Settings, Threads};
 pub use unfit::Unfit;

@@ -2,11 +2,34 @@
 
 use std::num::NonZero;
 
-use sinew_core::System;
 use sinew_sparse::simd::InstructionSet;
 
-use crate::Unfit;
-use crate::known::Kind;
+/// A kind of machine by its id, one of [`crate::known_machines`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Kind(pub(crate) &'static str);
+
+impl Kind {
+    /// The fastest that takes the system.
+    pub const AUTO: Self = Self("auto");
+    /// Plain loops, the meaning of a program.
+    pub const REFERENCE: Self = Self("reference");
+    /// Kernels for any matrix.
+    pub const GENERAL: Self = Self("general");
+    /// Kernels for rows that repeat on a lattice.
+    pub const REPEATED: Self = Self("repeated");
+
+    /// The name users type.
+    #[must_use]
+    pub const fn id(self) -> &'static str {
+        self.0
+    }
+}
+
+impl Default for Kind {
+    fn default() -> Self {
+        Self::AUTO
+    }
+}
 
 /// Precisions that a machine may compute in.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -40,24 +63,6 @@ pub struct Settings {
     pub instructions: Option<InstructionSet>,
     /// The largest number of threads.
     pub threads: Threads,
-}
-
-impl Settings {
-    /// Checks that what they ask for can be had on a system.
-    ///
-    /// # Errors
-    /// [`Unfit`] where it cannot.
-    pub fn check(&self, system: &dyn System) -> Result<(), Unfit> {
-        let known = self.kind.known();
-        (known.check)(self, system)?;
-        if known.precisions.contains(&self.precision) {
-            return Ok(());
-        }
-        Err(Unfit::Precision {
-            machine: known.id,
-            precision: self.precision.id(),
-        })
-    }
 }
 
 /// Numbers of threads.
