@@ -24,7 +24,6 @@
 mod blocks;
 #[cfg(any(test, feature = "conformance"))]
 pub mod conformance;
-mod damping_matrix;
 mod equilibrium;
 mod gauss_seidel;
 mod machine;

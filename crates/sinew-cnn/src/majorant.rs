@@ -6,7 +6,6 @@ use sinew_core::spectrum::{critical_step, largest_eigenvalue, largest_eigenvalue
 use sinew_core::{BlockMatrix, LinearOperators};
 
 use crate::blocks::{CellBlocks, largest_eigenvalue_of_block};
-use crate::damping_matrix::stiffness_and_dashpots;
 
 /// Margin added to an eigenvalue that an iteration approaches from below.
 const MARGIN: f64 = 1e-3;
@@ -130,7 +129,7 @@ impl Majorant {
         let (matrix, weight) = if operators.damping().extra.is_none() {
             (operators.stiffness().as_ref(), of_stiffness)
         } else {
-            sum = stiffness_and_dashpots(operators, of_stiffness, self.dashpot_weight());
+            sum = operators.stiffness_and_dashpots(of_stiffness, self.dashpot_weight());
             (&sum, 1.0)
         };
         let mut diagonal = CellBlocks::of_mass(matrix.layers(), operators.mass(), 0.0);
@@ -247,7 +246,7 @@ impl Majorant {
     }
 
     /// `out = (dt/2 D + dt^2/4 K) x`: the matrix that P must exceed.
-    pub fn multiply_required(&self, x: &[f64], out: &mut [f64]) {
+    pub(crate) fn multiply_required(&self, x: &[f64], out: &mut [f64]) {
         out.fill(0.0);
         let damping = self.operators.damping();
         let half = self.dt / 2.0;
@@ -329,7 +328,7 @@ fn with_damping(operators: &LinearOperators, undamped: f64, dt: f64) -> f64 {
     if damping.extra.is_none() {
         return undamped / of_stiffness.sqrt();
     }
-    let sum = stiffness_and_dashpots(operators, of_stiffness, 2.0 / dt);
+    let sum = operators.stiffness_and_dashpots(of_stiffness, 2.0 / dt);
     let largest = largest_eigenvalue(operators.mass(), |x, out| sum.multiply(x, out));
     2.0 / largest.max(0.0).sqrt()
 }

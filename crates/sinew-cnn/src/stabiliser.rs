@@ -551,9 +551,10 @@ impl Solver {
                 let (machine, system, state) = parts.as_mut();
                 state.u.copy_from_slice(r);
                 let mut batch = Batch::new(system, Inputs::none(), 1.0, 1);
-                // Matrices refuse nothing.
-                if machine.run(&mut batch, state).is_ok() {
-                    out.copy_from_slice(&state.v);
+                match machine.run(&mut batch, state) {
+                    Ok(()) => out.copy_from_slice(&state.v),
+                    // Matrices refuse nothing; what is not solved is no number.
+                    Err(_) => out.fill(f64::NAN),
                 }
             }
         }

@@ -2,8 +2,6 @@
 
 use sinew_core::{BlockMatrix, Layers, LinearOperators, LinearSystem, LoadTime};
 
-use crate::damping_matrix::damping_matrix;
-
 /// Reasons for which a system has no templates.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -57,12 +55,6 @@ impl Templates {
         self.operators.stiffness().layers()
     }
 
-    /// The cells a cell knows, itself included, increasing.
-    #[must_use]
-    pub fn neighbourhood(&self, cell: usize) -> &[u32] {
-        self.operators.stiffness().pattern().neighbours(cell)
-    }
-
     /// The feedback template A (1/s^2), computed on each call.
     #[must_use]
     pub fn feedback(&self) -> BlockMatrix {
@@ -80,7 +72,7 @@ impl Templates {
     /// The template C (1/s) of the damping, computed on each call.
     #[must_use]
     pub fn damping(&self) -> BlockMatrix {
-        let mut template = damping_matrix(&self.operators);
+        let mut template = self.operators.damping_matrix();
         template.scale_rows(&self.control());
         template
     }

@@ -43,6 +43,25 @@ pub struct Step<'a> {
     pub dt: f64,
 }
 
+/// Parts of the state that the host may read or change as a step ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct HostNeeds<'a> {
+    /// True if it reads all of u, v and the acceleration.
+    pub all: bool,
+    /// Degrees of freedom whose displacement it samples.
+    pub watched: &'a [u32],
+    /// Cells whose u and v contact may read and change: it asks for those near its tools ([`ShowCells`]).
+    pub contact: &'a [u32],
+}
+
+impl HostNeeds<'_> {
+    /// True if it reads and changes nothing.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        !self.all && self.watched.is_empty() && self.contact.is_empty()
+    }
+}
+
 /// Result of a step, as the method reports it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stepped {
@@ -172,11 +191,7 @@ impl<'a> Batch<'a> {
             });
         }
         if let (Some([matrices, loads]), Some(present)) = (state.loads, self.loads) {
-            let is_earlier = || {
-                let linear = self.system.as_linear();
-                linear.is_some_and(|linear| linear.operators().changed_since(matrices).is_some())
-            };
-            let is_same_body = present[0] == matrices || is_earlier();
+            let is_same_body = present[0] == matrices;
             if is_same_body && present[1] != loads && state.velocity != VelocityTime::Same {
                 return Err(SetupError::OtherLoads { integrator });
             }
@@ -268,6 +283,37 @@ impl<'a> Batch<'a> {
     pub fn is_last(&self) -> bool {
         let next = self.parts_taken + 1;
         self.taken + 1 >= self.steps && next == self.parts || next == self.pause
+    }
+
+    /// Parts of the state that the host may read or change as a step or substep ends, `ahead` of them after the next
+    /// one (0).
+    ///
+    /// Known beforehand for a machine with a memory of its own, such as a graphics processor: what no step asks for
+    /// can stay there. The last one of a batch shows all cells, and so does each one where the system reads the state
+    /// after every step. A machine that finds a displacement beyond [`Batch::divergence_limit`], or an error, shows
+    /// all cells as well.
+    #[must_use]
+    pub fn host_needs(&self, ahead: usize) -> HostNeeds<'_> {
+        let next = self.parts_taken as usize + ahead + 1;
+        let left = self.parts_left().min(match self.pause {
+            u32::MAX => usize::MAX,
+            pause => pause.saturating_sub(self.parts_taken) as usize,
+        });
+        let ends_step = next.is_multiple_of(self.parts.max(1) as usize);
+        HostNeeds {
+            all: self.looks_at_steps() || ahead + 1 >= left,
+            watched: if ends_step { self.watched() } else { &[] },
+            contact: self.contact().map_or(&[], Contact::cells),
+        }
+    }
+
+    /// Number of next steps or substeps at whose ends the host reads and changes nothing.
+    #[must_use]
+    pub fn steps_alone(&self) -> usize {
+        // Needs repeat from step to step, but for the end and a pause, which is within a step.
+        let needs = |ahead: &usize| !self.host_needs(*ahead).is_empty();
+        let first = (0..self.parts as usize).find(needs);
+        first.unwrap_or(self.parts_left().saturating_sub(1))
     }
 
     /// The current step.

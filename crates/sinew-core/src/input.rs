@@ -154,7 +154,11 @@ impl Inputs {
 
     /// The forces that act at some time from `from` to `to` (s), both included, found without
     /// looking at the others.
-    pub fn forces_between(&self, from: f64, to: f64) -> impl ExactSizeIterator<Item = &Load> {
+    pub(crate) fn forces_between(
+        &self,
+        from: f64,
+        to: f64,
+    ) -> impl ExactSizeIterator<Item = &Load> {
         self.forces.between(from, to)
     }
 

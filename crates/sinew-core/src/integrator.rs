@@ -1,6 +1,7 @@
 //! The contract of a time integrator.
 
 use crate::batch::Batch;
+use crate::cost_clock::CostClock;
 use crate::input::Inputs;
 use crate::properties::{Properties, StableStep};
 use crate::state::State;
@@ -144,6 +145,11 @@ pub trait Integrator: Send {
     /// for loops of its own.
     fn kernel(&self) -> Option<String> {
         None
+    }
+
+    /// The clock that tells the cost of its steps, once it is set up.
+    fn cost_clock(&self) -> CostClock {
+        CostClock::default()
     }
 }
 

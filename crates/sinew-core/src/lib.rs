@@ -23,13 +23,13 @@
 mod batch;
 #[cfg(feature = "serde")]
 pub mod bytes;
-mod changes;
 mod channel_record;
 mod clock;
 pub mod closed_form;
 #[cfg(any(test, feature = "conformance"))]
 pub mod conformance;
 mod contact;
+mod cost_clock;
 mod counting_allocator;
 mod derived;
 mod elastic_law;
@@ -77,12 +77,13 @@ mod system;
 mod trial;
 mod watch;
 
-pub use batch::{Batch, Step, Stepped, worst_beyond};
+pub use batch::{Batch, HostNeeds, Step, Stepped, worst_beyond};
 #[cfg(feature = "serde")]
 pub use bytes::BytesError;
 pub use channel_record::{Between, InputError};
 pub use clock::Clock;
 pub use contact::{AllShown, Contact, Inertia, Meeting, ShowCells, Shown};
+pub use cost_clock::CostClock;
 pub use counting_allocator::CountingAllocator;
 pub use elastic_law::{Deformed, ElasticLaw, TangentKind, Velocities};
 pub use element_bounds::ElementBounds;

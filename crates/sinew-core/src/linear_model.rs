@@ -19,11 +19,6 @@ impl LinearModel {
     pub fn new(operators: LinearOperators) -> Self {
         Self { operators }
     }
-
-    /// The matrices and loads, to be changed between steps.
-    pub fn operators_mut(&mut self) -> &mut LinearOperators {
-        &mut self.operators
-    }
 }
 
 impl System for LinearModel {

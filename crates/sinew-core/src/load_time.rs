@@ -80,7 +80,7 @@ impl LoadTime<'static> {
 
     /// The loads at `t` (s), or their mean over the time from `from` (s) to `from + dt`.
     #[must_use]
-    pub fn mean_at(t: f64, from: f64, dt: f64) -> Self {
+    pub(crate) fn mean_at(t: f64, from: f64, dt: f64) -> Self {
         let window = Window::Mean {
             from,
             to: from + dt,
@@ -301,7 +301,7 @@ impl Ramp {
     /// value and slope are continuous. A short one is smooth nowhere, so that all steps over it use means of it. Nor is
     /// a sine of a short period smooth, because samples of it would make a slower sine.
     #[must_use]
-    pub fn is_smooth_between(&self, from: f64, to: f64) -> bool {
+    pub(crate) fn is_smooth_between(&self, from: f64, to: f64) -> bool {
         self.is_smooth_in_steps(from, to, to - from)
     }
 

@@ -8,10 +8,8 @@ use std::sync::Arc;
 
 use sinew_sparse::{AssemblyError, BlockMatrix, Layers, Pattern};
 
-use crate::changes::Changes;
 use crate::derived::Derived;
 use crate::element_bounds::ElementBounds;
-use crate::elements::ElementStiffness;
 use crate::energy::Energy;
 use crate::input::Inputs;
 use crate::load::Load;
@@ -55,14 +53,6 @@ pub enum OperatorError {
         /// The rate.
         value: f64,
     },
-    /// An added number that is not finite.
-    #[error("{value} in {what} that is added: expected a finite number")]
-    NotFinite {
-        /// `a matrix` or `a mass`.
-        what: &'static str,
-        /// The number.
-        value: f64,
-    },
     /// A load's ramp.
     #[error("ramp of load {load}: {source}")]
     Ramp {
@@ -103,7 +93,6 @@ struct Matrices {
     /// Bounds that are taken for eigenvalues.
     bounds: Option<ElementBounds>,
     revision: Revision,
-    changes: Changes,
     derived: Derived,
 }
 
@@ -150,7 +139,6 @@ impl LinearOperators {
                 damping,
                 bounds: None,
                 revision: Revision::new(),
-                changes: Changes::default(),
                 derived: Derived::default(),
             }),
             loads: loads.into(),
@@ -196,7 +184,6 @@ impl LinearOperators {
         let matrices = Arc::make_mut(&mut self.matrices);
         matrices.bounds = Some(bounds);
         matrices.revision = Revision::new();
-        matrices.changes = Changes::default();
         matrices.derived = Derived::default();
         self
     }
@@ -205,69 +192,6 @@ impl LinearOperators {
     #[must_use]
     pub fn element_bounds(&self) -> Option<ElementBounds> {
         self.matrices.bounds
-    }
-
-    /// Adds element matrices to K, and masses (kg) by degree of freedom: a cut takes an element's
-    /// matrix away, a burn makes it stiffer. A velocity that stays between two instants is then carried
-    /// over the change by a step of order 1, unless [`crate::State::synchronise`] brings it to the
-    /// displacement's time before. Costs as much as the rows it changes while no other
-    /// clone shares the matrices, and a copy of them otherwise; this clone has a new revision afterwards, and no bounds by elements.
-    ///
-    /// # Errors
-    /// [`OperatorError`] where cells are no neighbours, a size does not fit or a degree of freedom does
-    /// not exist; nothing is changed then. Whether masses stay positive is checked by the integrators.
-    pub fn add_elements(
-        &mut self,
-        elements: &[ElementStiffness],
-        masses: &[(u32, f64)],
-    ) -> Result<(), OperatorError> {
-        let (dofs, layers) = (self.dofs(), self.stiffness().layers().count());
-        for element in elements {
-            self.stiffness()
-                .check_element(&element.cells, &element.matrix)?;
-        }
-        let entries = elements.iter().flat_map(|element| &element.matrix);
-        let entries = entries.map(|value| ("a matrix", *value));
-        let added = masses.iter().map(|(_, mass)| ("a mass", *mass));
-        if let Some((what, value)) = entries.chain(added).find(|(_, value)| !value.is_finite()) {
-            return Err(OperatorError::NotFinite { what, value });
-        }
-        if let Some(&(dof, _)) = masses.iter().find(|(dof, _)| *dof as usize >= dofs) {
-            return Err(OperatorError::Size {
-                what: "the mass",
-                found: dof as usize + 1,
-                expected: dofs,
-            });
-        }
-        let matrices = Arc::make_mut(&mut self.matrices);
-        let stiffness = Arc::make_mut(&mut matrices.stiffness);
-        let mut cells: Vec<u32> = Vec::new();
-        for element in elements {
-            stiffness.add_element(&element.cells, &element.matrix)?;
-            cells.extend(&element.cells);
-        }
-        for &(dof, mass) in masses {
-            matrices.mass[dof as usize] += mass;
-            cells.push(dof / layers as u32);
-        }
-        matrices.changes.push(matrices.revision, cells);
-        matrices.bounds = None;
-        matrices.revision = Revision::new();
-        matrices.derived = Derived::default();
-        Ok(())
-    }
-
-    /// The cells whose rows changed since a revision of these matrices, increasing; `None` where
-    /// that revision is none of theirs, or too long ago.
-    #[must_use]
-    pub fn changed_since(&self, revision: Revision) -> Option<Vec<u32>> {
-        self.matrices.changes.since(revision)
-    }
-
-    /// True if rows changed since the matrices were made.
-    #[must_use]
-    pub fn has_changed(&self) -> bool {
-        !self.matrices.changes.is_empty()
     }
 
     /// Lumped mass of each degree of freedom (kg).
@@ -286,6 +210,44 @@ impl LinearOperators {
     #[must_use]
     pub fn damping(&self) -> &Damping {
         &self.matrices.damping
+    }
+
+    /// D = alpha M + beta K + extra (N s/m) as one matrix, made on each call.
+    #[must_use]
+    pub fn damping_matrix(&self) -> BlockMatrix {
+        let damping = self.damping();
+        let mut whole = self.stiffness_and_dashpots(damping.stiffness, 1.0);
+        let layers = whole.layers().count();
+        for (cell, mass) in self.mass().chunks_exact(layers).enumerate() {
+            // Every row of a pattern has its own cell.
+            let blocks = whole.row_blocks_mut(cell);
+            for (_, block) in blocks.filter(|(column, _)| *column == cell) {
+                let diagonal = block.iter_mut().step_by(layers + 1);
+                for (entry, mass) in diagonal.zip(mass) {
+                    *entry += damping.mass * mass;
+                }
+            }
+        }
+        whole
+    }
+
+    /// `of_stiffness K + of_dashpots extra` as one matrix, made on each call.
+    #[must_use]
+    pub fn stiffness_and_dashpots(&self, of_stiffness: f64, of_dashpots: f64) -> BlockMatrix {
+        let mut sum = BlockMatrix::clone(self.stiffness());
+        sum.scale_rows(&vec![of_stiffness; self.dofs()]);
+        if let Some(dashpots) = &self.damping().extra {
+            for cell in 0..sum.pattern().cells() {
+                // Both have one pattern (`LinearOperators::new`).
+                let blocks = sum.row_blocks_mut(cell).zip(dashpots.row_blocks(cell));
+                for ((_, block), (_, added)) in blocks {
+                    for (entry, added) in block.iter_mut().zip(added) {
+                        *entry += of_dashpots * added;
+                    }
+                }
+            }
+        }
+        sum
     }
 
     /// The loads.
@@ -474,6 +436,17 @@ mod tests {
         for (value, expected) in out.iter().zip(&damping) {
             assert!((value + expected).abs() < 1e-12);
         }
+        // As a matrix, and its block sparse rows one by one: D = .5 M + .1 K + 10 K.
+        let matrix = operators.damping_matrix();
+        let bsr = matrix.to_bsr();
+        let expected = [1.0 + 50.5, -20.2, -20.2, 2.0 + 30.3];
+        for (value, expected) in bsr.blocks.iter().zip(expected) {
+            assert!((value - expected).abs() < 1e-12);
+        }
+        assert_eq!(
+            (&bsr.indptr[..], &*bsr.indices),
+            (&[0, 2, 4][..], &[0, 1, 0, 1][..])
+        );
         operators.net_force(0.0, &u, &v, &mut out);
         for ((value, elastic), damping) in out.iter().zip([1.0, 4.0]).zip(damping) {
             assert!((value + elastic + damping).abs() < 1e-12);

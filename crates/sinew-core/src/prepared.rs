@@ -18,15 +18,6 @@ impl Prepared {
         self.done_for == Some((system.revision(), dt))
     }
 
-    /// The cells whose rows changed since set-up for this step, where set-up was for an earlier
-    /// revision of the same matrices.
-    #[must_use]
-    pub fn changed_cells(&self, system: &dyn System, dt: f64) -> Option<Vec<u32>> {
-        let (revision, step) = self.done_for?;
-        let operators = system.as_linear()?.operators();
-        operators.changed_since(revision).filter(|_| step == dt)
-    }
-
     /// True if set-up for this system, its loads and this step is done.
     #[must_use]
     pub fn is_for_loads(&self, system: &dyn System, dt: f64) -> bool {
@@ -65,7 +56,7 @@ impl Prepared {
     ///
     /// # Errors
     /// [`SetupError::Mass`].
-    pub fn check_masses(
+    pub(crate) fn check_masses(
         integrator: &'static str,
         system: &dyn System,
         mut dofs: impl Iterator<Item = usize>,

@@ -481,7 +481,7 @@ impl Ramp {
     /// True if the value is constant or linear from `t0` up to, but not at, `t1` (s). No breakpoint may lie between
     /// them.
     #[must_use]
-    pub fn is_linear_between(&self, t0: f64, t1: f64) -> bool {
+    pub(crate) fn is_linear_between(&self, t0: f64, t1: f64) -> bool {
         match self {
             Self::Table { .. } | Self::Linear => true,
             Self::Scaled(of, _) | Self::Position(of) => of.is_linear_between(t0, t1),

@@ -21,7 +21,7 @@ impl Scaling {
 
     /// The first instant (s) after `from` and before `to` (s).
     #[must_use]
-    pub fn instant_between(&self, from: f64, to: f64) -> Option<f64> {
+    pub(crate) fn instant_between(&self, from: f64, to: f64) -> Option<f64> {
         let next = self.times.partition_point(|time| *time <= from);
         let next = self.times.get(next).copied();
         next.filter(|time| *time < to)

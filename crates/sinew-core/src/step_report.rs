@@ -50,7 +50,7 @@ impl StepReport {
     };
 
     /// Adds the work of a part of the same step.
-    pub fn add_part(&mut self, part: Self) {
+    pub(crate) fn add_part(&mut self, part: Self) {
         let saturated = self.saturated.max(part.saturated);
         *self += part;
         self.saturated = saturated;

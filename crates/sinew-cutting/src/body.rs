@@ -13,7 +13,7 @@ use crate::report::{Removal, Stroke};
 use crate::seen::SeenNodes;
 use crate::tet::{EDGES, FACES};
 
-use crate::vector::{Vector, bounds_of, length, sub};
+use sinew_mesh::vector::{Vector, bounds_of, length, sub};
 
 /// Marks the absence of a tetrahedron.
 pub(crate) const NONE: u32 = u32::MAX;

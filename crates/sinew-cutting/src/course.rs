@@ -1,6 +1,6 @@
 //! Progress of a stroke through a body.
 
-use crate::vector::Vector;
+use sinew_mesh::vector::Vector;
 
 /// Progress of a stroke through a body so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -8,7 +8,7 @@ use crate::seen::Flat;
 use crate::sheet::Sheet;
 use crate::tet::{EDGES, FACES};
 use crate::uncut::Uncut;
-use crate::vector::{Vector, cross, length, sub};
+use sinew_mesh::vector::{Vector, cross, length, sub};
 
 /// Passes over the tetrahedra that a sheet touches in which these may change sides.
 const SMOOTHING: usize = 2;

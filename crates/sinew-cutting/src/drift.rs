@@ -1,6 +1,6 @@
 //! Motion of tissue along a blade.
 
-use crate::vector::{Vector, add, dot, scaled, sub};
+use sinew_mesh::vector::{Vector, add, dot, scaled, sub};
 
 /// Displacement of tissue along a blade since the blade was at the beginning of a sheet: linear along the blade.
 #[derive(Clone, Copy, Debug, Default)]

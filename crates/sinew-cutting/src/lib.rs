@@ -55,7 +55,6 @@ mod swept;
 mod tet;
 mod touch;
 mod uncut;
-mod vector;
 
 pub use body::{CuttableBody, spare_nodes};
 pub use error::CutError;

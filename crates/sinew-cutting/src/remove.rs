@@ -3,7 +3,7 @@
 use crate::body::{CuttableBody, NONE};
 use crate::error::CutError;
 use crate::report::Removal;
-use crate::vector::mean;
+use sinew_mesh::vector::mean;
 
 impl CuttableBody {
     /// Removes the tetrahedra whose centroid, at these positions of the nodes (m), `is_inside` something. Parts that hang together

@@ -3,7 +3,7 @@
 use crate::body::CuttableBody;
 use crate::tet::EDGES;
 use crate::uncut::CHIP;
-use crate::vector::{Vector, add, dot, length, mean, scaled, sub};
+use sinew_mesh::vector::{Vector, add, dot, length, mean, scaled, sub};
 
 /// Share of an edge by which a stroke that enters the body is more than touch.
 const TOUCH: f64 = 1e-6;

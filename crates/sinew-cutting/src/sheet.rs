@@ -2,7 +2,7 @@
 
 use crate::drift::Drift;
 use crate::seen::Flat;
-use crate::vector::{Vector, add, bounds_of, cross, dot, length, mean, scaled, sub};
+use sinew_mesh::vector::{Vector, add, bounds_of, cross, dot, length, mean, scaled, sub};
 
 /// Share of its size by which the rim of a sheet reaches out, so that nothing is lost between two that follow each other.
 const RIM: f64 = 1e-9;

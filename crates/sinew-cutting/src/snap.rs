@@ -6,7 +6,7 @@ use crate::body::{CuttableBody, NONE};
 use crate::marks::NodeSide;
 use crate::sheet::Sheet;
 use crate::tet::{EDGES, FACES, gradients, quality, volume};
-use crate::vector::{Vector, add, cross, dot, length, scaled, sub};
+use sinew_mesh::vector::{Vector, add, cross, dot, length, scaled, sub};
 
 /// Factor by which nodes that are moved onto sheets may raise the largest frequency of a mesh's tetrahedra, at most.
 pub const FREQUENCY_GROWTH: f64 = 1.25;

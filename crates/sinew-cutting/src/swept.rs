@@ -3,7 +3,7 @@
 use crate::body::CuttableBody;
 use crate::drift::Drift;
 use crate::sheet::Sheet;
-use crate::vector::{Vector, add, bounds_of, dot, length, scaled, sub};
+use sinew_mesh::vector::{Vector, add, bounds_of, dot, length, scaled, sub};
 
 /// Share of the longest edge within which tissue counts in full for how it moves at a blade.
 const NEAR: f64 = 0.5;

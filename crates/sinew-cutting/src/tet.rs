@@ -1,6 +1,6 @@
 //! Measures of one tetrahedron.
 
-use crate::vector::{Vector, cross, dot, scaled, sub};
+use sinew_mesh::vector::{Vector, cross, dot, scaled, sub};
 
 /// The nodes of each face, opposite the node of the same place; their normals point outwards where the volume is positive.
 pub(crate) const FACES: [[usize; 3]; 4] = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];
@@ -55,7 +55,7 @@ pub(crate) fn is_met(vertices: &[Vector; 4], [from, to]: [Vector; 2]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::vector::add;
+    use sinew_mesh::vector::add;
 
     const SKEW: [Vector; 4] = [
         [0.1, 0.0, 0.2],
@@ -76,7 +76,7 @@ mod tests {
 
     #[test]
     fn a_segment_is_met_within_across_and_at_no_other_place() {
-        let middle = crate::vector::mean(SKEW);
+        let middle = sinew_mesh::vector::mean(SKEW);
         let [a, b, c, d] = SKEW;
         for vertices in [[a, b, c, d], [b, a, c, d]] {
             let near = add(middle, [1e-3, 0.0, 0.0]);

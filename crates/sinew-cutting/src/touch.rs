@@ -6,7 +6,7 @@ use crate::passed::Passed;
 use crate::seen::Flat;
 use crate::sheet::Sheet;
 use crate::tet::{EDGES, FACES};
-use crate::vector::{Vector, dot, sub};
+use sinew_mesh::vector::{Vector, dot, sub};
 
 /// Share of its shortest edge within which a node lies on a sheet.
 const ON_SHEET: f64 = 1e-6;

@@ -2,7 +2,7 @@
 
 use crate::body::{CuttableBody, NONE};
 use crate::tet::FACES;
-use crate::vector::{Vector, add, bounds_of, cross, length, mean, scaled, sub};
+use sinew_mesh::vector::{Vector, add, bounds_of, cross, length, mean, scaled, sub};
 
 /// Share of the longest edge within which the end of a sheet and the beginning of the next one are at one place.
 const SAME_PLACE: f64 = 1e-6;

@@ -13,6 +13,17 @@ pub struct Fixed {
     pub axes: [bool; 3],
 }
 
+impl Fixed {
+    /// A support along all three axes.
+    #[must_use]
+    pub fn new(on: impl Into<On>) -> Self {
+        Self {
+            on: on.into(),
+            axes: [true; 3],
+        }
+    }
+}
+
 /// A prescribed motion: components of displacement that follow a course. All nodes move alike; the
 /// displacement is the sum of the courses.
 #[derive(Clone, Debug, PartialEq)]

@@ -234,15 +234,6 @@ impl CutModel {
         Ok(cut_model)
     }
 
-    /// Reserves space in a state for the nodes that the model has space for, so that cuts allocate nothing for it
-    /// either.
-    pub fn make_room(&self, state: &mut State) {
-        let more = 3 * spare_nodes(self.mesh.nodes.len());
-        for values in [&mut state.u, &mut state.v, &mut state.a] {
-            values.reserve(more);
-        }
-    }
-
     /// The model of the body as it is.
     #[must_use]
     pub fn model(&self) -> &Model {
@@ -481,10 +472,9 @@ impl CutModel {
         let frozen = nodes.filter_map(|(node, of_body)| Some((node, *self.frozen.get(of_body)?)));
         let frozen: Vec<(u32, [f64; 3])> = frozen.collect();
         if !frozen.is_empty() {
-            problem.fixed.push(Fixed {
-                on: On::Nodes(frozen.iter().map(|(node, _)| *node).collect()),
-                axes: [true; 3],
-            });
+            problem.fixed.push(Fixed::new(On::Nodes(
+                frozen.iter().map(|(node, _)| *node).collect(),
+            )));
         }
         let built = Model::build_after_cuts(&mesh.mesh, &problem, &frozen);
         let model = built.map_err(|error| match error.cause() {

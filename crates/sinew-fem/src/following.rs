@@ -2,6 +2,7 @@
 
 use sinew_core::{BlockMatrix, ElementStiffness, EvaluationError, LoadTime, Ramp};
 use sinew_mesh::TetMesh;
+use sinew_mesh::vector::{add as plus, cross, sub as minus};
 
 use crate::cells::Cells;
 use crate::elements::moving_part;
@@ -167,20 +168,4 @@ impl FollowingPressure {
             }
         }
     }
-}
-
-fn plus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [0, 1, 2].map(|axis| a[axis] + b[axis])
-}
-
-fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [0, 1, 2].map(|axis| a[axis] - b[axis])
-}
-
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    ]
 }

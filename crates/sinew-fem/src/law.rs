@@ -49,6 +49,15 @@ pub enum SpringRule {
 }
 
 impl Law {
+    /// Linear elasticity of small strain: Young's modulus (Pa) and Poisson's ratio.
+    #[must_use]
+    pub const fn linear(youngs_modulus: f64, poissons_ratio: f64) -> Self {
+        Self::Linear {
+            youngs_modulus,
+            poissons_ratio,
+        }
+    }
+
     /// Young's modulus (Pa) at small strain; NaN for a law that does not exist or cannot have its parameters.
     #[must_use]
     pub fn youngs_modulus(&self) -> f64 {

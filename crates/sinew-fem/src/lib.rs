@@ -2,20 +2,16 @@
 //!
 //! ```
 //! use sinew_core::{Ramp, System};
-//! use sinew_fem::{Element, Fixed, FromMesh, Law, LoadKind, LoadSpec, Model, Problem, Region, Tissue};
+//! use sinew_fem::{Fixed, Law, LoadKind, LoadSpec, Model, Problem, Region};
 //! use sinew_mesh::structured::{self, Split};
 //!
 //! let mesh = structured::cube(4, 0.1, Split::Kuhn)?;
 //! let problem = Problem {
-//!     regions: vec![Region {
-//!         group: None,
-//!         density: 1060.0, // kg/m3
-//!         law: Law::Linear { youngs_modulus: 3500.0, poissons_ratio: 0.45 },
-//!         element: Element::P1,
-//!         tissue: Tissue::default(),
-//!         from_mesh: FromMesh::default(),
-//!     }],
-//!     fixed: vec![Fixed { on: "sides".into(), axes: [true; 3] }],
+//!     regions: vec![Region::new(
+//!         Law::linear(3500.0, 0.45),
+//!         1060.0, // kg/m3
+//!     )],
+//!     fixed: vec![Fixed::new("sides")],
 //!     loads: vec![LoadSpec {
 //!         on: "top".into(),
 //!         kind: LoadKind::Traction([0.0, 0.0, -100.0]), // Pa
@@ -33,14 +29,14 @@
 //!
 //! ```
 //! # use sinew_core::System;
-//! # use sinew_fem::{Element, Fixed, FromMesh, Law, Model, On, Problem, Region, Tissue};
+//! # use sinew_fem::{Fixed, Law, Model, On, Problem, Region};
 //! # use sinew_mesh::structured::{self, Split};
 //! let mesh = structured::cube(4, 0.1, Split::Kuhn)?;
-//! let law = Law::Linear { youngs_modulus: 3500.0, poissons_ratio: 0.0 };
+//! let law = Law::linear(3500.0, 0.0);
 //! let floor: Vec<u32> = (0..25).collect();
 //! let model = Model::build(&mesh, &Problem {
-//!     regions: vec![Region { group: None, density: 1060.0, law, element: Element::P1, tissue: Tissue::default(), from_mesh: FromMesh::default() }],
-//!     fixed: vec![Fixed { on: On::Nodes(floor.clone()), axes: [true; 3] }],
+//!     regions: vec![Region::new(law, 1060.0)],
+//!     fixed: vec![Fixed::new(On::Nodes(floor.clone()))],
 //!     ..Problem::default()
 //! })?;
 //!
@@ -60,13 +56,13 @@
 //!
 //! ```
 //! # use sinew_core::{Ramp, System};
-//! # use sinew_fem::{Element, Course, Fixed, FromMesh, Law, Model, Moving, Problem, Region, Tissue};
+//! # use sinew_fem::{Course, Fixed, Law, Model, Moving, Problem, Region};
 //! # use sinew_mesh::structured::{self, Split};
 //! let mesh = structured::cube(4, 0.1, Split::Kuhn)?;
-//! let law = Law::Linear { youngs_modulus: 3500.0, poissons_ratio: 0.0 };
+//! let law = Law::linear(3500.0, 0.0);
 //! let model = Model::build(&mesh, &Problem {
-//!     regions: vec![Region { group: None, density: 1060.0, law, element: Element::P1, tissue: Tissue::default(), from_mesh: FromMesh::default() }],
-//!     fixed: vec![Fixed { on: "bottom".into(), axes: [true; 3] }],
+//!     regions: vec![Region::new(law, 1060.0)],
+//!     fixed: vec![Fixed::new("bottom")],
 //!     moves: vec![Moving {
 //!         on: "top".into(),
 //!         axes: [true; 3],

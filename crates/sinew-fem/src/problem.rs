@@ -45,6 +45,22 @@ pub struct Region {
     pub from_mesh: FromMesh,
 }
 
+impl Region {
+    /// The whole mesh of one isotropic material on plain elements, the same everywhere: a law and a mass density
+    /// (kg/m^3).
+    #[must_use]
+    pub fn new(law: Law, density: f64) -> Self {
+        Self {
+            group: None,
+            density,
+            law,
+            element: Element::P1,
+            tissue: Tissue::default(),
+            from_mesh: FromMesh::default(),
+        }
+    }
+}
+
 /// Rayleigh damping, `D = alpha M + beta K`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Rayleigh {
@@ -63,6 +79,18 @@ pub struct LoadSpec {
     pub kind: LoadKind,
     /// Its factor over time.
     pub ramp: Ramp,
+}
+
+impl LoadSpec {
+    /// A load of this kind on a part of the mesh, with its factor over time.
+    #[must_use]
+    pub fn new(on: impl Into<On>, kind: LoadKind, ramp: Ramp) -> Self {
+        Self {
+            on: on.into(),
+            kind,
+            ramp,
+        }
+    }
 }
 
 /// A kind of load, with its size.

@@ -189,7 +189,11 @@ pub struct NetworkModulus {
 /// The moduli of the affine tensor `C = (1/V) sum k l^2 n n n n` of springs that fill `volume`
 /// (m^3). `softest` is 0 where some strain meets no resistance.
 #[must_use]
-pub fn network_modulus(points: &[[f64; 3]], springs: &[Spring], volume: f64) -> NetworkModulus {
+pub(crate) fn network_modulus(
+    points: &[[f64; 3]],
+    springs: &[Spring],
+    volume: f64,
+) -> NetworkModulus {
     let mut tensor = Matrix6::zeros();
     for spring in springs {
         let (n, length) = direction(points, spring.nodes);

@@ -73,10 +73,6 @@ impl<E: Explicit> Scheme for E {
 
     type ByHand = Infallible;
 
-    fn survives_change_of_rows(&self) -> bool {
-        true
-    }
-
     fn properties(&self) -> Properties {
         E::properties(self)
     }

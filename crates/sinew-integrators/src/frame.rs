@@ -5,8 +5,8 @@ use std::sync::Arc;
 use sinew_cnn::{Machine, Program};
 use sinew_core::spectrum::Spectrum;
 use sinew_core::{
-    Batch, Fact, Guarding, Integrator, LoadOverStep, Prepared, Properties, SetupError, StableStep,
-    State, StepError, StepReport, System, VelocityTime,
+    Batch, CostClock, Fact, Guarding, Integrator, LoadOverStep, Prepared, Properties, SetupError,
+    StableStep, State, StepError, StepReport, System, VelocityTime,
 };
 
 use sinew_machines::{Chosen, Kind, PrecisionName, Settings};
@@ -189,6 +189,13 @@ impl<M: Scheme> Integrator for Frame<M> {
             Ready::Not | Ready::ByHand(_) => None,
         }
     }
+
+    fn cost_clock(&self) -> CostClock {
+        match &self.ready {
+            Ready::Program(loaded) => loaded.machine.cost_clock(),
+            Ready::Not | Ready::ByHand(_) => CostClock::default(),
+        }
+    }
 }
 
 impl<M: Scheme> Frame<M> {
@@ -201,19 +208,6 @@ impl<M: Scheme> Frame<M> {
         };
         if same {
             return Ok(StepReport::default());
-        }
-        if let Some(cells) = self.prepared.changed_cells(system, dt)
-            && self.scheme.survives_change_of_rows()
-        {
-            let layers = system.layers().count();
-            let dofs = cells.iter().map(|cell| *cell as usize * layers);
-            let dofs = dofs.flat_map(|first| first..first + layers);
-            Prepared::check_masses(M::ID, system, dofs)?;
-            self.prepared.done(system, dt);
-            return Ok(StepReport {
-                cells_set_up: cells.len() as u64,
-                ..StepReport::default()
-            });
         }
         self.prepared.forget();
         let before = match std::mem::replace(&mut self.ready, Ready::Not) {
@@ -270,8 +264,8 @@ impl<M: Scheme> Frame<M> {
             });
         }
         match self.machine.kind {
-            Kind::Auto | Kind::Reference => Ok(()),
-            Kind::General | Kind::Repeated => Err(SetupError::Machine {
+            Kind::AUTO | Kind::REFERENCE => Ok(()),
+            _ => Err(SetupError::Machine {
                 integrator: M::ID,
                 reason: format!("no machine runs these steps: {reason}; leave `machine` out"),
             }),

@@ -1,9 +1,10 @@
 //! `machine`, `precision`, `threads`: where a method's program runs.
 
 use std::num::NonZero;
+use std::sync::{Mutex, PoisonError};
 
 use sinew_core::{OptionError, Options};
-use sinew_machines::{Kind, PrecisionName, Settings, Threads};
+use sinew_machines::{Kind, PrecisionName, Settings, Threads, known_machines};
 
 use crate::{OptionDefault, OptionHelp, OptionKind};
 
@@ -50,24 +51,20 @@ pub(crate) fn take_settings(
     options: &mut Options,
     integrator: &str,
 ) -> Result<Settings, OptionError> {
-    let kind = MACHINE.read(options, integrator, |value| match value.word() {
-        Some("auto") => Some(Kind::Auto),
-        Some("reference") => Some(Kind::Reference),
-        Some("general") => Some(Kind::General),
-        Some("repeated") => Some(Kind::Repeated),
-        _ => None,
+    let kind = options.read(integrator, MACHINE.key, known_ids(), |value| {
+        value.word().and_then(Kind::of)
     })?;
-    let is_plain = kind == Some(Kind::Reference);
-    let precisions = match is_plain {
-        true => "\"f64\", in which machine = \"reference\" computes",
-        false => PRECISION.expected,
+    let kind = kind.unwrap_or_default();
+    let takes = kind.known().precisions;
+    let precisions = match takes.contains(&PrecisionName::F32) {
+        true => PRECISION.expected,
+        false if kind == Kind::REFERENCE => "\"f64\", in which machine = \"reference\" computes",
+        false => "\"f64\", in which this machine computes",
     };
     let precision = options.read(integrator, PRECISION.key, precisions, |value| {
-        match value.word() {
-            Some("f64") => Some(PrecisionName::F64),
-            Some("f32") if !is_plain => Some(PrecisionName::F32),
-            _ => None,
-        }
+        let all = [PrecisionName::F64, PrecisionName::F32].into_iter();
+        let mut taken = all.filter(|precision| takes.contains(precision));
+        taken.find(|precision| value.word() == Some(precision.id()))
     })?;
     let threads = THREADS.read(options, integrator, |value| match value.word() {
         Some(_) => Some(Threads::All),
@@ -77,9 +74,32 @@ pub(crate) fn take_settings(
         options.remove(help.key);
     }
     Ok(Settings {
-        kind: kind.unwrap_or_default(),
-        precision: precision.unwrap_or_default(),
+        kind,
+        precision: precision.or(takes.first().copied()).unwrap_or_default(),
         threads: threads.unwrap_or_default(),
         ..Settings::default()
     })
+}
+
+/// The machines there are, for messages: those of the option's help, and what the program has added.
+fn known_ids() -> &'static str {
+    static TEXTS: Mutex<Vec<(usize, &'static str)>> = Mutex::new(Vec::new());
+    let OptionKind::Words(ours) = MACHINE.kind else {
+        return MACHINE.expected;
+    };
+    let known = known_machines();
+    let added = known.iter().filter(|known| !ours.contains(&known.id));
+    let added: Vec<String> = added.map(|known| format!("{:?}", known.id)).collect();
+    if added.is_empty() {
+        return MACHINE.expected;
+    }
+    // One text for each number of machines: they are added one by one, and none is taken away.
+    let mut texts = TEXTS.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some((_, text)) = texts.iter().find(|(count, _)| *count == known.len()) {
+        return text;
+    }
+    let text = format!("{}, or {}", MACHINE.expected, added.join(" or "));
+    let text: &'static str = Box::leak(text.into_boxed_str());
+    texts.push((known.len(), text));
+    text
 }

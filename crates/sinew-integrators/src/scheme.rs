@@ -50,12 +50,6 @@ pub trait Scheme: Send + Sized + 'static {
         false
     }
 
-    /// True if its steps stay the same when the values of some rows change, as the steps of a program do that contains
-    /// only numbers.
-    fn survives_change_of_rows(&self) -> bool {
-        false
-    }
-
     /// Remedy where loads break the condition of [`Properties::changing_loads`].
     fn load_remedy(&self) -> &'static str {
         "choose a dt that meets that instant"

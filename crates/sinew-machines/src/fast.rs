@@ -140,36 +140,16 @@ impl<T: ElementPrecision> FastMachine<T> {
         &self.layout
     }
 
-    /// Takes rows and masses again that changed since the program was loaded.
-    fn follow_changes(&mut self, system: &dyn System) {
-        let Equations::Linear(linear) = system.equations() else {
-            if let Some(loaded) = self.loaded.take() {
-                let loaded = loaded.into_inner().unwrap_or_else(PoisonError::into_inner);
-                self.load(loaded.program, system);
-            }
+    /// Loads the program again for other matrices than those it was loaded for.
+    fn reload(&mut self, system: &dyn System) {
+        let Some(loaded) = self.loaded.take() else {
             return;
         };
-        let operators = linear.operators();
-        let Some(loaded) = self.loaded.as_mut().map(own) else {
-            return;
-        };
-        let changed = operators.changed_since(loaded.matrices);
-        let cells = changed.filter(|cells| {
-            matches!(self.layout.stiffness, Rows::General(_))
-                && Arc::make_mut(&mut self.layout).take_rows(operators, cells)
-        });
-        match cells {
-            Some(cells) => {
-                loaded.write_constants(&self.layout, operators.mass(), cells.into_iter());
-                loaded.matrices = operators.revision();
-            }
-            None => {
-                let program = Arc::clone(&loaded.program);
-                self.layout = Layout::general(operators);
-                let loaded = Loaded::new(program, &self.layout, operators, None);
-                self.loaded = Some(RwLock::new(loaded));
-            }
+        let loaded = loaded.into_inner().unwrap_or_else(PoisonError::into_inner);
+        if let Equations::Linear(linear) = system.equations() {
+            self.layout = Layout::general(linear.operators());
         }
+        self.load(loaded.program, system);
     }
 }
 
@@ -225,7 +205,7 @@ impl<T: ElementPrecision> Machine for FastMachine<T> {
         };
         let before = self.loaded.as_mut().map(|loaded| own(loaded).matrices);
         if before.is_some_and(|before| before != operators.revision()) {
-            self.follow_changes(system);
+            self.reload(system);
         }
         let Some(loaded) = &mut self.loaded else {
             return Err(StepError::NotPrepared);
@@ -337,18 +317,12 @@ impl<T: ElementPrecision> Loaded<T> {
             sweeps,
             table,
         };
-        let cells = 0..layout.numbering.cells() as u32;
-        loaded.write_constants(layout, operators.mass(), cells);
+        loaded.write_constants(layout, operators.mass());
         loaded
     }
 
-    /// Writes what stays the same from step to step, for some cells.
-    fn write_constants(
-        &mut self,
-        layout: &Layout<T>,
-        mass: &[f64],
-        cells: impl Iterator<Item = u32> + Clone,
-    ) {
+    /// Writes what stays the same from step to step.
+    fn write_constants(&mut self, layout: &Layout<T>, mass: &[f64]) {
         let layers = self.fields.layers();
         let constants = &self.sweeps.constants;
         let registers = self.table.len() - constants.len();
@@ -360,7 +334,7 @@ impl<T: ElementPrecision> Loaded<T> {
             }
             for layer in 0..layers {
                 let values = self.fields.layer(*field as usize, layer);
-                for cell in cells.clone() {
+                for cell in 0..layout.numbering.cells() as u32 {
                     let position = layout.numbering.position(cell);
                     let cell = cell as usize;
                     let dof = cell * layers + layer;
@@ -481,7 +455,8 @@ impl<T: ElementPrecision> Running<'_, '_, T> {
                 damped: program.damped,
                 acceleration,
             };
-            written = is_last || exceeded || batch.looks_at_steps();
+            let needs = batch.host_needs(0);
+            written = needs.all || exceeded;
             if let Some(inertia) = program.inertia().filter(|_| has_contact) {
                 let mut loaded = write(self.loaded);
                 if written {
@@ -505,12 +480,12 @@ impl<T: ElementPrecision> Running<'_, '_, T> {
                 if !written && exceeded {
                     loaded.show(self.layout, state);
                 } else if !written {
-                    loaded.show_watched(self.layout, batch.watched(), state);
+                    loaded.show_watched(self.layout, needs.watched, state);
                 }
             } else if written {
                 write(self.loaded).show(self.layout, state);
-            } else if !batch.watched().is_empty() {
-                write(self.loaded).show_watched(self.layout, batch.watched(), state);
+            } else if !needs.watched.is_empty() {
+                write(self.loaded).show_watched(self.layout, needs.watched, state);
             }
             match exceeded {
                 true => batch.end_step(state, stepped)?,

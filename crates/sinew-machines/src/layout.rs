@@ -91,13 +91,10 @@ impl<T: Precision> Layout<T> {
         Arc::clone(&forces.operators().derived::<BesideElements<T>>(of).0)
     }
 
-    /// Templates on a lattice, where cells are on one and few templates make all rows; made once for all clones of the
-    /// operators. Rows that changed since the matrices were made have none, so that they need not be sought again.
+    /// Templates on a lattice, where cells are on one and few templates make all rows; made once for all
+    /// clones of the operators.
     #[must_use]
     pub fn repeated(system: &dyn LinearSystem) -> Option<Arc<Self>> {
-        if system.operators().has_changed() {
-            return None;
-        }
         let of = |operators: &LinearOperators| {
             Repeated(Self::on_lattice(operators, system.cell_positions()).map(Arc::new))
         };
@@ -189,14 +186,6 @@ impl<T: Precision> Layout<T> {
             return 1;
         }
         (of_sweep / SHARE).max(1)
-    }
-
-    /// Takes the rows of some cells again; whether it can.
-    pub(crate) fn take_rows(&mut self, operators: &LinearOperators, cells: &[u32]) -> bool {
-        let Rows::General(sell) = &mut self.stiffness else {
-            return false;
-        };
-        sell.take_rows(operators.stiffness(), &self.numbering, cells)
     }
 }
 

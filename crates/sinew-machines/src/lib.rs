@@ -5,17 +5,41 @@
 //! the cells in an order of its own, as structures of arrays, makes each sweep in one pass and uses
 //! the best instructions there are, in `f64` or `f32`, with the rows of any matrix or, where they repeat
 //! on a lattice, with a few templates that are stored once. [`Chosen`] takes what fits a system.
+//!
+//! A program outside adds a machine of its own by [`register`], and scenes know it by its id from then on:
+//!
+//! ```
+//! use sinew_cnn::ReferenceMachine;
+//! use sinew_machines::{Kind, KnownMachine, PrecisionName, register};
+//!
+//! let kind = register(KnownMachine {
+//!     id: "plain",
+//!     meaning: "plain loops, of a program outside",
+//!     precisions: &[PrecisionName::F64],
+//!     check: |_settings, _system| Ok(()), // an Unfit where it does not run a system
+//!     build: |_settings, _system| Box::new(ReferenceMachine::default()),
+//! })?;
+//! assert_eq!(Kind::of("plain"), Some(kind));
+//! # Ok::<(), sinew_machines::RegisterError>(())
+//! ```
 
 mod chosen;
 mod compiled;
 mod crew;
 mod fast;
 mod forces;
+mod kinds;
+mod known;
 mod layout;
+mod registry;
+mod settings;
 mod touched;
 mod unfit;
 
-pub use chosen::{Chosen, Kind, PrecisionName, Settings, Threads};
+pub use chosen::Chosen;
 pub use fast::FastMachine;
+pub use known::KnownMachine;
 pub use layout::Layout;
+pub use registry::{RegisterError, known_machines, register};
+pub use settings::{Kind, PrecisionName, Settings, Threads};
 pub use unfit::Unfit;

@@ -1,7 +1,7 @@
 //! Settings that a system does not fit.
 
 /// Why a machine with the settings asked for cannot run a system.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Unfit {
     /// Templates were asked for where rows do not repeat.
@@ -20,4 +20,15 @@ pub enum Unfit {
          reference; leave `precision` out"
     )]
     LawInSinglePrecision,
+    /// A precision that the machine does not compute in.
+    #[error("machine = {machine:?} does not compute in {precision}")]
+    Precision {
+        /// Id of the machine.
+        machine: &'static str,
+        /// Id of the precision.
+        precision: &'static str,
+    },
+    /// The reason of a machine that a program added.
+    #[error("{0}")]
+    Other(String),
 }

@@ -1,6 +1,38 @@
-//! CPU time of the calling thread and of the process.
+//! CPU time of the calling thread and of the process, and the clock that a run names.
 
-use std::time::Duration;
+use std::time::{Duration, Instant};
+
+use sinew_core::CostClock;
+
+/// An instant on all clocks by which a run may be measured.
+#[derive(Clone, Copy, Debug)]
+pub struct CostSince {
+    thread: Duration,
+    process: Duration,
+    wall: Instant,
+}
+
+impl CostSince {
+    /// The present instant.
+    #[must_use]
+    pub fn now() -> Self {
+        Self {
+            thread: thread_cpu_time(),
+            process: process_cpu_time(),
+            wall: Instant::now(),
+        }
+    }
+
+    /// Time since then on the clock that whoever took the steps names ([`sinew_core::Integrator::cost_clock`]).
+    #[must_use]
+    pub fn elapsed(&self, clock: CostClock) -> Duration {
+        match clock {
+            CostClock::CallingThread => thread_cpu_time() - self.thread,
+            CostClock::AllThreads => process_cpu_time() - self.process,
+            CostClock::Wall { .. } => self.wall.elapsed(),
+        }
+    }
+}
 
 /// Thread CPU time since some fixed instant: what other processes do does not count. Wall time
 /// where the platform has no such clock.

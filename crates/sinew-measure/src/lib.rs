@@ -26,7 +26,7 @@ pub use advice::{Advice, AdviceError, Answer, LeftOut, NotMeasured, Question, ad
 pub use case::{Case, CaseError, Span};
 pub use convergence::converge;
 pub use cost::Cost;
-pub use cpu_time::{process_cpu_time, thread_cpu_time};
+pub use cpu_time::{CostSince, process_cpu_time, thread_cpu_time};
 pub use forecast::{Forecast, ForecastError};
 pub use measure::{MeasureError, measure, measure_with};
 pub use method_choice::{MethodChoice, MethodError};

@@ -9,7 +9,7 @@ use sinew_core::{
 use sinew_scene::OverlapWatch;
 
 use crate::case::Case;
-use crate::cpu_time::thread_cpu_time;
+use crate::cpu_time::CostSince;
 use crate::deformation::DeformationWatch;
 use crate::growth::ErrorHistory;
 use crate::method_choice::MethodChoice;
@@ -56,6 +56,7 @@ pub fn measure(
 /// Runs an integrator, of this workspace or not, on a case in steps of `dt` (s). The row has `name`
 /// in the place of an integrator's id, and no options.
 ///
+/// Times are told by the clock that the integrator names ([`Integrator::cost_clock`]).
 /// Set-up, the run that is compared with the reference and the runs that are timed are separate,
 /// so that neither set-up nor comparison is in the times. An integrator that is set up for the
 /// case and the step already has no set-up left to time.
@@ -74,9 +75,9 @@ pub fn measure_with(
     let system = case.simulation().system();
     let start = case.simulation().initial_state();
 
-    let before = thread_cpu_time();
+    let before = CostSince::now();
     let setup = integrator.prepare(system, dt)?;
-    let setup_cpu = thread_cpu_time() - before;
+    let setup_cpu = before.elapsed(integrator.cost_clock());
 
     let compare = |integrator: &mut dyn Integrator, run: &Run| {
         let mut comparison = Comparison::new(&track, stride, run);

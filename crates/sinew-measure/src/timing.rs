@@ -1,10 +1,10 @@
-//! The cost of a run: its median CPU time over repeats.
+//! The cost of a run: its median time over repeats, by the clock that its method names.
 
 use std::time::Duration;
 
 use sinew_core::{Integrator, Run, SimulateError, State, System, simulate};
 
-use crate::cpu_time::thread_cpu_time;
+use crate::cpu_time::CostSince;
 
 /// The repeats and the time that go into measuring the cost of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,7 +34,7 @@ impl Effort {
     };
 }
 
-/// Median thread CPU time (s) of the run.
+/// Median time (s) of the run, by the clock that the integrator names.
 pub(crate) fn time_run(
     system: &dyn System,
     integrator: &mut dyn Integrator,
@@ -46,12 +46,12 @@ pub(crate) fn time_run(
     let run = Run { steps, ..*run };
     let mut state = start.clone();
     median_time(effort, |runs| {
-        let before = thread_cpu_time();
+        let before = CostSince::now();
         for _ in 0..runs {
             state.clone_from(start);
             simulate(system, integrator, &mut state, &run, &mut ())?;
         }
-        Ok(thread_cpu_time() - before)
+        Ok(before.elapsed(integrator.cost_clock()))
     })
 }
 

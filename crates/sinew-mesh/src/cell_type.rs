@@ -118,15 +118,6 @@ cell_types! {
 }
 
 impl CellType {
-    /// The kind with this meshio name, e.g. `"tetra"`.
-    #[must_use]
-    pub fn from_name(name: &str) -> Option<CellType> {
-        CellType::ALL
-            .iter()
-            .copied()
-            .find(|kind| kind.name() == name)
-    }
-
     /// True if the shape is a tetrahedron of any order. Its corners are the first four nodes.
     #[must_use]
     pub fn is_tetrahedron(self) -> bool {
@@ -193,10 +184,8 @@ mod tests {
         assert_eq!(CellType::ALL.len(), 65);
         for &kind in CellType::ALL {
             assert_eq!(CellType::from_gmsh_id(kind.gmsh_id()), Some(kind));
-            assert_eq!(CellType::from_name(kind.name()), Some(kind));
         }
         assert_eq!(CellType::from_gmsh_id(34), None);
-        assert_eq!(CellType::from_name("tetra11"), None);
     }
 
     #[test]

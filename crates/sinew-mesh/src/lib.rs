@@ -55,6 +55,7 @@ mod selection;
 pub mod structured;
 mod tet_mesh;
 mod unstructured;
+pub mod vector;
 mod vtk;
 pub mod vtu;
 mod warning;

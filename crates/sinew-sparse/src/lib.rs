@@ -4,7 +4,8 @@
 //! neighbour pair: 3x3 for a network of three coupled layers (x, y, z), 1x1 for a one-layer network.
 //! Vectors are node-major: the `layers` entries of cell 0, then those of cell 1, and so on.
 //!
-//! The storage order is private; assembly, block access and products are the contract.
+//! The storage order is private; assembly, block access, products and block sparse rows
+//! ([`BlockMatrix::to_bsr`]) are the contract.
 //!
 //! ```
 //! use std::sync::Arc;
@@ -21,6 +22,7 @@
 //! # Ok::<(), sinew_sparse::AssemblyError>(())
 //! ```
 
+mod bsr;
 mod error;
 mod incidence;
 mod matrix;
@@ -32,6 +34,7 @@ pub mod simd;
 pub mod sweep;
 pub mod vectors;
 
+pub use bsr::Bsr;
 pub use error::AssemblyError;
 pub use matrix::{BlockMatrix, Layers};
 pub use pattern::Pattern;

@@ -67,20 +67,6 @@ impl BlockMatrix {
         }
     }
 
-    /// Checks what [`BlockMatrix::add_element`] checks, and adds nothing.
-    ///
-    /// # Errors
-    /// Same as [`BlockMatrix::add_element`].
-    pub fn check_element(&self, nodes: &[u32], element: &[f64]) -> Result<(), AssemblyError> {
-        self.check_size(nodes, element)?;
-        for &row in nodes {
-            for &column in nodes {
-                self.position(row, column)?;
-            }
-        }
-        Ok(())
-    }
-
     fn check_size(&self, nodes: &[u32], element: &[f64]) -> Result<(), AssemblyError> {
         let side = nodes.len() * self.layers.count();
         if element.len() != side * side {

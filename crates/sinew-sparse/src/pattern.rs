@@ -205,6 +205,11 @@ impl Pattern {
         }
     }
 
+    /// Columns at all positions.
+    pub(crate) fn columns(&self) -> &[u32] {
+        &self.columns
+    }
+
     pub(crate) fn columns_at(&self, position: usize) -> usize {
         self.columns[position] as usize
     }

@@ -15,7 +15,7 @@ use std::time::{Duration, Instant};
 
 use sinew_core::{Batch, Inputs, Integrator, Options, State, System};
 use sinew_fem::hyperelastic::Parameters;
-use sinew_fem::{Element, Fixed, FromMesh, Law, Model, Problem, Region, Tissue};
+use sinew_fem::{Fixed, Law, Model, Problem, Region};
 use sinew_mesh::structured::{Split, cube};
 use sinew_tools::{Convex, Motion, Row, Shape, Table, Tool, Tools, TouchedCell};
 
@@ -53,10 +53,7 @@ fn main() {
 }
 
 fn laws() -> [(&'static str, Law); 2] {
-    let linear = Law::Linear {
-        youngs_modulus: 3500.0,
-        poissons_ratio: 0.45,
-    };
+    let linear = Law::linear(3500.0, 0.45);
     let large = Law::Hyperelastic {
         id: "neo-hookean",
         parameters: Parameters::new(3500.0, 0.45),
@@ -79,18 +76,8 @@ impl Lap {
     fn new(cells: usize, law: Law, height: Option<f64>) -> Self {
         let mesh = cube(cells, EDGE, Split::Kuhn).expect("the mesh is small enough");
         let problem = Problem {
-            regions: vec![Region {
-                group: None,
-                density: 1060.0,
-                law,
-                element: Element::P1,
-                tissue: Tissue::default(),
-                from_mesh: FromMesh::default(),
-            }],
-            fixed: vec![Fixed {
-                on: "bottom".into(),
-                axes: [true; 3],
-            }],
+            regions: vec![Region::new(law, 1060.0)],
+            fixed: vec![Fixed::new("bottom")],
             ..Problem::default()
         };
         let mut model = Model::build(&mesh, &problem).expect("it can be built");

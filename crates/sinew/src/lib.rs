@@ -10,15 +10,11 @@
 //!
 //! let mesh = structured::cube(4, 0.1, Split::Kuhn)?;
 //! let model = Model::build(&mesh, &Problem {
-//!     regions: vec![Region {
-//!         group: None,
-//!         density: 1060.0,
-//!         law: Law::Linear { youngs_modulus: 3500.0, poissons_ratio: 0.45 },
-//!         element: Element::P1,
-//!         tissue: Tissue::default(),
-//!         from_mesh: FromMesh::default(),
-//!     }],
-//!     fixed: vec![Fixed { on: "bottom".into(), axes: [true; 3] }],
+//!     regions: vec![Region::new(
+//!         Law::linear(3500.0, 0.45),
+//!         1060.0, // kg/m3
+//!     )],
+//!     fixed: vec![Fixed::new("bottom")],
 //!     gravity: Some([0.0, 0.0, -9.81]),
 //!     ..Problem::default()
 //! })?;

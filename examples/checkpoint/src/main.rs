@@ -20,9 +20,7 @@ use std::path::Path;
 use std::process::{Command, ExitCode, Output};
 
 use sinew_core::{Inputs, Options, Ramp, Run, State, System, simulate_under};
-use sinew_fem::{
-    Element, Fixed, FromMesh, Law, LoadKind, LoadSpec, Model, Problem, Rayleigh, Region, Tissue,
-};
+use sinew_fem::{Fixed, Law, LoadKind, LoadSpec, Model, Problem, Rayleigh, Region};
 use sinew_mesh::structured::{Split, cube};
 
 const STEP: f64 = 0.004;
@@ -193,25 +191,15 @@ fn advance(
 fn block(cells: usize, youngs_modulus: f64) -> Result<Model, Box<dyn Error>> {
     let duration = STEP * STEPS as f64;
     let problem = Problem {
-        regions: vec![Region {
-            group: None,
-            density: 1060.0, // kg/m3
-            law: Law::Linear {
-                youngs_modulus,
-                poissons_ratio: 0.4,
-            },
-            element: Element::P1,
-            tissue: Tissue::default(),
-            from_mesh: FromMesh::default(),
-        }],
+        regions: vec![Region::new(
+            Law::linear(youngs_modulus, 0.4),
+            1060.0, // kg/m3
+        )],
         damping: Rayleigh {
             mass: 5.0,
             stiffness: 0.001,
         },
-        fixed: vec![Fixed {
-            on: "bottom".into(),
-            axes: [true; 3],
-        }],
+        fixed: vec![Fixed::new("bottom")],
         loads: vec![LoadSpec {
             on: "top".into(),
             kind: LoadKind::Traction([0.0, 20.0, -50.0]), // Pa

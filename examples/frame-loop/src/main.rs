@@ -23,10 +23,7 @@ use std::error::Error;
 use std::time::{Duration, Instant};
 
 use sinew_core::{Inputs, LoadTime, Options, State, System, worst_beyond};
-use sinew_fem::{
-    Element, Fixed, FromMesh, Law, Model, NodalForces, On, Problem, Rayleigh, Region, Tissue,
-    stress::von_mises,
-};
+use sinew_fem::{Fixed, Law, Model, NodalForces, On, Problem, Rayleigh, Region, stress::von_mises};
 use sinew_integrators::{Stepper, build};
 use sinew_mesh::structured::{Split, block};
 
@@ -50,22 +47,12 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let density = 1060.0; // kg/m3
     let problem = Problem {
-        regions: vec![Region {
-            group: None,
-            density,
-            law,
-            element: Element::P1,
-            tissue: Tissue::default(),
-            from_mesh: FromMesh::default(),
-        }],
+        regions: vec![Region::new(law, density)],
         damping: Rayleigh {
             mass: 40.0,
             stiffness: 0.0,
         },
-        fixed: vec![Fixed {
-            on: On::Nodes(floor.clone()),
-            axes: [true; 3],
-        }],
+        fixed: vec![Fixed::new(On::Nodes(floor.clone()))],
         ..Problem::default()
     };
     let model = Model::build(&mesh, &problem)?;

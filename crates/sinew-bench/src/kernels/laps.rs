@@ -119,7 +119,7 @@ pub(super) fn rows(body: &Body, quick: bool) -> Result<Vec<KernelRow>, KernelBen
             nodes: body.nodes,
             tets: body.tets,
             kernel: match runner.variant.kind {
-                Kind::Repeated => "template lattice".into(),
+                Kind::REPEATED => "template lattice".into(),
                 _ => "general".into(),
             },
             precision: match runner.variant.precision {
@@ -190,7 +190,7 @@ fn runner_in<T: ElementPrecision>(
     program: &Arc<Program>,
 ) -> Option<Runner> {
     let layout = match variant.kind {
-        Kind::Repeated => Layout::<T>::repeated(model)?,
+        Kind::REPEATED => Layout::<T>::repeated(model)?,
         _ => Layout::general(model.operators()),
     };
     let (templates, bytes) = (layout.templates(), layout.bytes());

@@ -14,7 +14,7 @@ pub(super) struct Variant {
 pub(super) fn variants() -> Vec<Variant> {
     let most = sinew_machines::Threads::All.most();
     let mut variants = Vec::new();
-    for kind in [Kind::General, Kind::Repeated] {
+    for kind in [Kind::GENERAL, Kind::REPEATED] {
         for precision in [PrecisionName::F64, PrecisionName::F32] {
             let several = (most > 1).then_some(most);
             for threads in [Some(1), several].into_iter().flatten() {

@@ -7,7 +7,7 @@ mod reference;
 
 use std::sync::Arc;
 
-use sinew_core::{Batch, State, StepError, System};
+use sinew_core::{Batch, CostClock, State, StepError, System};
 
 pub use host::{FollowedLoad, StepTime};
 pub use reference::ReferenceMachine;
@@ -32,6 +32,11 @@ pub trait Machine: Send + std::fmt::Debug {
     /// Description for plans: kernels, number format, threads.
     fn in_words(&self) -> String {
         "plain loops in f64".to_owned()
+    }
+
+    /// The clock that tells the cost of its steps: the calling thread's unless it works elsewhere.
+    fn cost_clock(&self) -> CostClock {
+        CostClock::default()
     }
 
     /// Takes a program for a system, and allocates what it needs: afterwards a batch allocates nothing.

@@ -377,7 +377,7 @@ impl Sweep {
 
     /// True if the sweep reads neighbours.
     #[must_use]
-    pub fn reads_neighbours(&self) -> bool {
+    pub(crate) fn reads_neighbours(&self) -> bool {
         !matches!(
             self.forces,
             Forces::Products {

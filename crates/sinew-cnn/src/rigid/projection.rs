@@ -29,7 +29,7 @@ impl Projection {
     }
 
     /// `r = Z' r`.
-    pub fn take_out(&self, r: &mut [f64]) {
+    pub(crate) fn take_out(&self, r: &mut [f64]) {
         for part in &self.parts {
             let sums = part.sums(&part.motions, r).map(|sum| -sum);
             part.add(&part.weighted, &sums, r);
@@ -37,7 +37,7 @@ impl Projection {
     }
 
     /// `x = Z x + R (R'M' R)^-1 R' r`.
-    pub fn put_back(&self, r: &[f64], x: &mut [f64]) {
+    pub(crate) fn put_back(&self, r: &[f64], x: &mut [f64]) {
         for part in &self.parts {
             let mut sums = part.sums(&part.motions, r);
             let own = part.sums(&part.weighted, x);

@@ -8,7 +8,7 @@ use sinew_core::{
     BlockMatrix, Damping, Layers, LinearModel, LinearOperators, LinearSystem, LoadTime, Pattern,
     State, System,
 };
-use sinew_fem::{Element, Fixed, FromMesh, Law, Model, Problem, Region, Tissue};
+use sinew_fem::{Fixed, Law, Model, Problem, Region};
 use sinew_mesh::structured::{self, Split};
 use sinew_testkit::body::bodies;
 use sinew_testkit::dense::{ROUNDING, dense, dense_damping, row_product};
@@ -102,8 +102,8 @@ proptest! {
     #[test]
     fn neighbourhoods_are_the_edges_of_the_mesh(body in bodies()) {
         let model = body.model();
-        let templates = templates(&model);
-        prop_assert_eq!(templates.cells(), model.nodes().len());
+        prop_assert_eq!(templates(&model).cells(), model.nodes().len());
+        let pattern = model.operators().stiffness().pattern();
         let mut expected: Vec<Vec<u32>> = (0..model.nodes().len() as u32).map(|cell| vec![cell]).collect();
         for edge in body.mesh.edges() {
             if let [Some(a), Some(b)] = edge.map(|node| model.cell_of_node(node)) {
@@ -113,7 +113,7 @@ proptest! {
         }
         for (cell, mut expected) in expected.into_iter().enumerate() {
             expected.sort_unstable();
-            prop_assert_eq!(templates.neighbourhood(cell), &expected[..], "cell {}", cell);
+            prop_assert_eq!(pattern.neighbours(cell), &expected[..], "cell {}", cell);
         }
     }
 
@@ -166,21 +166,8 @@ fn a_node_of_no_tetrahedron_is_refused_by_its_tag() {
     mesh.points.push([1.0; 3]);
     mesh.node_tags.push(77);
     let problem = Problem {
-        regions: vec![Region {
-            group: None,
-            density: 1000.0,
-            law: Law::Linear {
-                youngs_modulus: 1000.0,
-                poissons_ratio: 0.3,
-            },
-            element: Element::P1,
-            tissue: Tissue::default(),
-            from_mesh: FromMesh::default(),
-        }],
-        fixed: vec![Fixed {
-            on: "bottom".into(),
-            axes: [true; 3],
-        }],
+        regions: vec![Region::new(Law::linear(1000.0, 0.3), 1000.0)],
+        fixed: vec![Fixed::new("bottom")],
         ..Problem::default()
     };
     let model = Model::build(&mesh, &problem).unwrap();

@@ -5,7 +5,6 @@ use std::sync::Arc;
 use sinew_sparse::RowsOfCells;
 
 use super::{LinearOperators, OperatorError};
-use crate::changes::Changes;
 use crate::derived::Derived;
 use crate::revision::Revision;
 
@@ -100,7 +99,6 @@ impl LinearOperators {
                 None => matrices.mass.extend_from_slice(mass),
             }
         }
-        matrices.changes = Changes::default();
         matrices.revision = Revision::new();
         matrices.derived = Derived::default();
         Ok(laid_out)

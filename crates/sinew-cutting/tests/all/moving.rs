@@ -3,6 +3,7 @@ use crate::common::{body, topology};
 use sinew_cutting::{CuttableBody, Sheet};
 use sinew_mesh::TetMesh;
 use sinew_mesh::structured::{self, Split};
+use sinew_mesh::vector::{cross, dot};
 
 /// Numbers from -1 to 1, by the constants of Knuth's generator MMIX.
 struct Random(u64);
@@ -23,18 +24,6 @@ impl Random {
 
 fn add(a: [f64; 3], b: [f64; 3], factor: f64) -> [f64; 3] {
     std::array::from_fn(|axis| a[axis] + factor * b[axis])
-}
-
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    (0..3).map(|axis| a[axis] * b[axis]).sum()
-}
-
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    ]
 }
 
 fn unit(a: [f64; 3]) -> [f64; 3] {

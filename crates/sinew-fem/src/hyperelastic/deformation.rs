@@ -56,7 +56,7 @@ impl<N: Number> Deformation<N> {
     /// `F'F - I`: twice Green's strain.
     #[inline(always)]
     #[must_use]
-    pub fn twice_green_strain(&self) -> Tensor<N> {
+    pub(crate) fn twice_green_strain(&self) -> Tensor<N> {
         let h = self.displacement_gradient;
         h + h.transposed() + h.transposed_times(h)
     }

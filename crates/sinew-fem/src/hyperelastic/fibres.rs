@@ -172,7 +172,7 @@ impl Fibres {
 
     /// The modulus (Pa) by which a stretch along the fibres raises the energy, `d2 psi/dX2` at rest on the side of tension.
     #[must_use]
-    pub fn modulus_at_rest(&self) -> f64 {
+    pub(crate) fn modulus_at_rest(&self) -> f64 {
         match self.stiffening {
             Stiffening::Quadratic { eta } => eta,
             Stiffening::Exponential { k1, .. } => k1,
@@ -181,7 +181,7 @@ impl Fibres {
 
     /// Half of dX/dF at rest, where X is freed of volume change as far as it is so.
     #[must_use]
-    pub fn half_slope_at_rest(&self, direction: [f64; 3]) -> Tensor<f64> {
+    pub(crate) fn half_slope_at_rest(&self, direction: [f64; 3]) -> Tensor<f64> {
         self.at(&Deformation::of(Tensor::zero()), direction).slope
     }
 
@@ -237,7 +237,7 @@ impl Fibres {
     /// A positive semidefinite tangent: the exact one, or where the invariants are freed of volume change only what the second derivative of the energy
     /// brings.
     #[inline(always)]
-    pub fn semidefinite_tangent<N: Number>(
+    pub(crate) fn semidefinite_tangent<N: Number>(
         &self,
         at: &FibrePoint<N>,
         change: Tensor<N>,
@@ -292,7 +292,7 @@ impl Fibres {
 impl<N: Number> FibrePoint<N> {
     /// The same with the stiffness and the viscosity of fibres in tension where they are idle: no state near this one is stiffer by much.
     #[must_use]
-    pub fn as_if_pulled(self) -> Self {
+    pub(crate) fn as_if_pulled(self) -> Self {
         let [first, _] = self.derivatives;
         Self {
             derivatives: [first, self.second_when_pulled],

@@ -58,7 +58,7 @@ pub fn relaxing(terms: &[Term]) -> f64 {
 
 /// The factor from long-term moduli to the instantaneous ones that laws have.
 #[must_use]
-pub fn instantaneous_over_longterm(terms: &[Term]) -> f64 {
+pub(crate) fn instantaneous_over_longterm(terms: &[Term]) -> f64 {
     1.0 / (1.0 - relaxing(terms))
 }
 

@@ -312,9 +312,7 @@ mod tests {
     use crate::hyperelastic::fibres::{Fibres, Stiffening};
     use crate::hyperelastic::prony::Term;
     use crate::shares::Shares;
-    use crate::{
-        Element, FibreFamily, FromMesh, Law, Memory, Moduli, Problem, Region, Tissue, ViscousPart,
-    };
+    use crate::{Element, FibreFamily, Law, Memory, Moduli, Problem, Region, Tissue, ViscousPart};
     use sinew_mesh::structured::{Split, cube};
     use sinew_sparse::simd::SharedSlice;
 
@@ -374,12 +372,9 @@ mod tests {
         let law = Hyperelastic::new(id, &parameters).unwrap();
         let problem = Problem {
             regions: vec![Region {
-                group: None,
-                density: 1060.0,
-                law: Law::Hyperelastic { id, parameters },
                 element,
                 tissue: tissue.clone(),
-                from_mesh: FromMesh::default(),
+                ..Region::new(Law::Hyperelastic { id, parameters }, 1060.0)
             }],
             ..Problem::default()
         };

@@ -110,20 +110,6 @@ impl Model {
         self.reaction_of_nodes(when, u, v, &nodes)
     }
 
-    /// The force (N) of the supports on the body at a node (0-based), see [`Model::reactions`].
-    ///
-    /// # Errors
-    /// Same as [`Model::reaction`].
-    pub fn node_reaction<'a>(
-        &self,
-        when: impl Into<LoadTime<'a>>,
-        u: &[f64],
-        v: &[f64],
-        node: u32,
-    ) -> Result<[f64; 3], FieldError> {
-        self.reaction_of_nodes(when, u, v, &[node])
-    }
-
     /// The force (N) of the supports on the body at some nodes (0-based) together, each as often as it is
     /// named, see [`Model::reactions`].
     ///

@@ -18,10 +18,7 @@ fn cube(cells: usize) -> Arc<TetMesh> {
 
 fn held(problem: Problem) -> Problem {
     Problem {
-        fixed: vec![Fixed {
-            on: "bottom".into(),
-            axes: [true; 3],
-        }],
+        fixed: vec![Fixed::new("bottom")],
         ..problem
     }
 }
@@ -197,11 +194,7 @@ fn a_split_keeps_mass_momentum_and_energy() {
 #[test]
 fn supports_hold_copies_tractions_follow_triangles_and_forces_stay_with_their_nodes() {
     let mesh = cube(4);
-    let load = |on: On, kind| LoadSpec {
-        on,
-        kind,
-        ramp: Ramp::Step,
-    };
+    let load = |on: On, kind| LoadSpec::new(on, kind, Ramp::Step);
     let problem = Problem {
         loads: vec![
             load("top".into(), LoadKind::Traction([1.0, 0.0, -5.0])),

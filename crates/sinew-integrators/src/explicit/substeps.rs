@@ -5,8 +5,9 @@ use sinew_core::spectrum::{
     PRODUCTS_OF_BEGINNING, PRODUCTS_OF_ESTIMATE, Spectrum, follow_largest_eigenvalue,
 };
 use sinew_core::{
-    Batch, Damping, ElasticLaw, Fact, Integrator, LoadTime, OptionError, Options, Prepared,
-    Properties, SetupError, StableStep, State, StepCut, StepError, StepReport, System, Trial,
+    Batch, CostClock, Damping, ElasticLaw, Fact, Integrator, LoadTime, OptionError, Options,
+    Prepared, Properties, SetupError, StableStep, State, StepCut, StepError, StepReport, System,
+    Trial,
 };
 
 use crate::{OptionDefault, OptionHelp, OptionKind, Stepper};
@@ -88,7 +89,10 @@ impl Substeps {
     ///
     /// # Errors
     /// [`OptionError::Value`] for anything but a whole number from 1 to 10000 or "auto".
-    pub fn take_from(options: &mut Options, integrator: &str) -> Result<Option<Self>, OptionError> {
+    pub(crate) fn take_from(
+        options: &mut Options,
+        integrator: &str,
+    ) -> Result<Option<Self>, OptionError> {
         let substeps = Self::HELP.read(options, integrator, |value| match value.word() {
             Some(_) => Some(Self::Auto),
             None => value.count(MOST_FIXED).map(Self::Fixed),
@@ -562,6 +566,10 @@ impl Integrator for Substepped {
 
     fn kernel(&self) -> Option<String> {
         self.inner.kernel()
+    }
+
+    fn cost_clock(&self) -> CostClock {
+        self.inner.cost_clock()
     }
 
     fn facts(&self) -> Vec<Fact> {

@@ -137,27 +137,6 @@ impl Propagator {
         )
     }
 
-    /// The method with this degree; refused where it leaves out more than `tolerance`.
-    #[must_use]
-    pub fn with_degree(kind: PropagatorKind, degree: usize, tolerance: f64) -> Self {
-        Self::new(
-            kind,
-            Resolution {
-                tolerance,
-                degree: Some(degree),
-            },
-        )
-    }
-
-    /// The two-step form fitted to the loads, of the smallest degree whose estimated error meets `tolerance`.
-    #[must_use]
-    pub fn fitted_to_loads(tolerance: f64) -> Self {
-        Self {
-            fit: Fit::Load,
-            ..Self::with_tolerance(PropagatorKind::TwoStep, tolerance)
-        }
-    }
-
     fn new(kind: PropagatorKind, resolution: Resolution) -> Self {
         Self {
             kind,

@@ -183,7 +183,7 @@ fn neither_do_the_fields_of_a_frame() {
         model.strain(0.0, &u, &mut tensors).unwrap();
         model.stress(0.0, &u, &mut tensors).unwrap();
         model.reactions(0.1, &u, &v, &mut nodal).unwrap();
-        model.node_reaction(0.1, &u, &v, 0).unwrap();
+        model.reaction_of_nodes(0.1, &u, &v, &[0]).unwrap();
     };
     assert!(
         CountingAllocator::count(&mut frame) > 0,
@@ -243,11 +243,11 @@ fn a_frame_of_a_simulator_allocates_nothing() {
             ramp: Ramp::Input(clamp),
         }],
     }];
-    problem.loads = vec![LoadSpec {
-        on: "sides".into(),
-        kind: LoadKind::Pressure(50.0),
-        ramp: Ramp::Input(cuff),
-    }];
+    problem.loads = vec![LoadSpec::new(
+        "sides",
+        LoadKind::Pressure(50.0),
+        Ramp::Input(cuff),
+    )];
     let model = Model::build(&mesh, &problem).unwrap();
     let options = Options::new().with_text("substeps", "auto");
     let mut method = build("central-difference", &options);

@@ -8,9 +8,7 @@ use sinew_core::CountingAllocator;
 use sinew_core::{Batch, ElementPrecision, Equations, Inputs, State, StepError, System};
 use sinew_fem::hyperelastic::Parameters;
 use sinew_fem::hyperelastic::fibres::{Fibres, Stiffening};
-use sinew_fem::{
-    Course, Element, FibreFamily, Fixed, FromMesh, Law, Model, Moving, Problem, Region, Tissue,
-};
+use sinew_fem::{Course, Element, FibreFamily, Fixed, Law, Model, Moving, Problem, Region};
 use sinew_machines::{FastMachine, Layout};
 use sinew_mesh::structured::{Split, cube};
 use sinew_mesh::{TetData, TetMesh};
@@ -30,17 +28,10 @@ fn law(id: &'static str) -> Law {
 fn problem(law: Law, element: Element) -> Problem {
     Problem {
         regions: vec![Region {
-            group: None,
-            density: 1060.0,
-            law,
             element,
-            tissue: Tissue::default(),
-            from_mesh: FromMesh::default(),
+            ..Region::new(law, 1060.0)
         }],
-        fixed: vec![Fixed {
-            on: "bottom".into(),
-            axes: [true; 3],
-        }],
+        fixed: vec![Fixed::new("bottom")],
         ..Problem::default()
     }
 }

@@ -43,14 +43,7 @@ fn a_free_cube_has_a_template_for_each_kind_of_node() {
     // Inside, 6 faces, 12 edges and 8 corners, the corners on the diagonal of their own.
     let mesh = cube(9, 0.1, Split::Kuhn).unwrap();
     let law = bodies::TISSUE;
-    let regions = vec![Region {
-        group: None,
-        density: 1060.0,
-        law,
-        element: Element::P1,
-        tissue: Tissue::default(),
-        from_mesh: FromMesh::default(),
-    }];
+    let regions = vec![Region::new(law, 1060.0)];
     let model = Model::build(
         &mesh,
         &Problem {
@@ -79,18 +72,8 @@ fn springs_repeat_as_tetrahedra_do() {
         damping_ratio: 0.1,
     };
     let problem = Problem {
-        regions: vec![Region {
-            group: None,
-            density: 1060.0,
-            law,
-            element: Element::P1,
-            tissue: Tissue::default(),
-            from_mesh: FromMesh::default(),
-        }],
-        fixed: vec![Fixed {
-            on: "sides".into(),
-            axes: [true; 3],
-        }],
+        regions: vec![Region::new(law, 1060.0)],
+        fixed: vec![Fixed::new("sides")],
         ..Problem::default()
     };
     let model = Model::build(&mesh, &problem).unwrap();
@@ -112,10 +95,7 @@ fn with_moduli(cells: usize, modulus: impl Fn(&TetMesh, usize) -> f64) -> Model 
     let regions = vec![Region {
         group: None,
         density: 1060.0,
-        law: Law::Linear {
-            youngs_modulus: 1.0,
-            poissons_ratio: 0.45,
-        },
+        law: Law::linear(1.0, 0.45),
         element: Element::P1,
         tissue: Tissue::default(),
         from_mesh: FromMesh {
@@ -123,10 +103,7 @@ fn with_moduli(cells: usize, modulus: impl Fn(&TetMesh, usize) -> f64) -> Model 
             ..FromMesh::default()
         },
     }];
-    let fixed = vec![Fixed {
-        on: "sides".into(),
-        axes: [true; 3],
-    }];
+    let fixed = vec![Fixed::new("sides")];
     let problem = Problem {
         regions,
         fixed,
@@ -196,14 +173,7 @@ fn voxels(cells: usize) -> Model {
         ..grid
     };
     let problem = Problem {
-        regions: vec![Region {
-            group: None,
-            density: 1060.0,
-            law: bodies::TISSUE,
-            element: Element::P1,
-            tissue: Tissue::default(),
-            from_mesh: FromMesh::default(),
-        }],
+        regions: vec![Region::new(bodies::TISSUE, 1060.0)],
         ..Problem::default()
     };
     Model::build(&mesh, &problem).unwrap()

@@ -1,8 +1,10 @@
 //! An integrator that is in no list is measured as those in the list are.
 
+use std::time::Duration;
+
 use sinew_core::{
-    Batch, EnergyBehaviour, Integrator, LoadTime, Needs, Options, Prepared, Properties, SetupError,
-    StableStep, State, StepError, StepReport, Stepped, System,
+    Batch, CostClock, EnergyBehaviour, Integrator, LoadTime, Needs, Options, Prepared, Properties,
+    SetupError, StableStep, State, StepError, StepReport, Stepped, System,
 };
 use sinew_measure::{
     Case, Effort, MeasureError, MethodChoice, Row, RowOutcome, measure, measure_with,
@@ -13,6 +15,9 @@ use sinew_scene::{Scene, SceneSource};
 #[derive(Default)]
 struct Foreign {
     a: Vec<f64>,
+    /// Time that a device takes for a step, while this thread waits.
+    waits: Duration,
+    clock: CostClock,
 }
 
 impl Integrator for Foreign {
@@ -38,8 +43,13 @@ impl Integrator for Foreign {
         Ok(StableStep::Unknown)
     }
 
+    fn cost_clock(&self) -> CostClock {
+        self.clock
+    }
+
     fn run(&mut self, batch: &mut Batch<'_>, state: &mut State) -> Result<(), StepError> {
         batch.each(state, |step, state| {
+            std::thread::sleep(self.waits);
             let load = LoadTime::start_of(state.t(), step.dt);
             step.acceleration(load, state, &mut self.a)?;
             for ((u, v), a) in state.u.iter_mut().zip(&mut state.v).zip(&self.a) {
@@ -104,4 +114,30 @@ fn what_it_refuses_is_the_error_of_the_measurement() {
         matches!(refused, Err(MeasureError::Setup(_))),
         "{refused:?}"
     );
+}
+
+/// A device takes 1 ms for each of 100 steps, in which the thread that waits for it spends next to nothing.
+#[test]
+fn its_cost_is_told_by_the_clock_that_it_names() {
+    let mut case = cube();
+    let mut cost = |clock| {
+        let mut device = Foreign {
+            waits: Duration::from_millis(1),
+            clock,
+            ..Foreign::default()
+        };
+        let row = measure_with(&mut case, "device", &mut device, 0.004, Effort::QUICK).unwrap();
+        row.cpu_s_per_s * 0.4
+    };
+    let wall = CostClock::Wall {
+        reason: "the steps run on a device",
+    };
+    assert_eq!(
+        wall.in_words(),
+        "wall time, since the steps run on a device"
+    );
+    let by_wall = cost(wall);
+    assert!(by_wall >= 0.1, "{by_wall} s");
+    let by_thread = cost(CostClock::CallingThread);
+    assert!(by_thread < 0.5 * by_wall, "{by_thread} s");
 }

@@ -202,7 +202,7 @@ impl Mesh {
 
     /// Does the same as [`Mesh::check`], with other limits.
     #[must_use]
-    pub fn check_against(&self, limits: &CheckLimits) -> MeshCheck {
+    pub(crate) fn check_against(&self, limits: &CheckLimits) -> MeshCheck {
         let mut check = MeshCheck::default();
         check_shapes(self, limits, &mut check);
         check_nodes_of_cells(self, &mut check);

@@ -2,7 +2,7 @@
 
 use crate::cell_type::CellType;
 use crate::mesh::Mesh;
-use crate::tet_mesh::{cross, dot, sub};
+use crate::vector::{cross, dot, sub};
 
 /// The corners of a cell if it is a tetrahedron of any order.
 pub(crate) fn tet_corners(mesh: &Mesh, kind: CellType, row: &[u32]) -> Option<[[f64; 3]; 4]> {

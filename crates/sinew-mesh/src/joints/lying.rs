@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use crate::tet_mesh::{cross, dot, sub};
+use crate::vector::{cross, dot, sub};
 
 /// Farthest that a face is outside another which it lies on, as a share of its longest edge; and how deep inside.
 const OUTSIDE: f64 = 1e-3;

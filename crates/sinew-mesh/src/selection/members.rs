@@ -5,7 +5,8 @@ use std::collections::{HashMap, HashSet};
 use super::data::{self, First, Met};
 use super::{Condition, Selection, SelectionError};
 use crate::TetMesh;
-use crate::tet_mesh::{OUTWARD_FACES, cross, dot, sub};
+use crate::tet_mesh::OUTWARD_FACES;
+use crate::vector::{cross, dot, length, sub};
 
 /// Share of the longest edge of the bounding box by which bounds are moved outward.
 const ROUNDING: f64 = 1e-9;
@@ -251,8 +252,4 @@ fn looks_along(mesh: &TetMesh, triangle: &[u32; 3], direction: [f64; 3], angle: 
     // The angle by its tangent, since a cosine cannot tell small angles apart.
     let (along, across) = (dot(normal, direction), length(cross(normal, direction)));
     lengths > 0.0 && across.atan2(along).to_degrees() <= angle + 1e-9
-}
-
-fn length(vector: [f64; 3]) -> f64 {
-    dot(vector, vector).sqrt()
 }

@@ -20,7 +20,6 @@ mod split_in_place;
 mod surface;
 mod tet_data;
 mod to_mesh;
-mod vector;
 
 pub use add_group::AddGroupError;
 pub use boundary_surface::BoundarySurface;
@@ -35,7 +34,8 @@ pub use split_in_place::{Split, SplitFollower};
 pub(crate) use surface::OUTWARD_FACES;
 pub use surface::SurfaceError;
 pub use tet_data::TetData;
-pub(crate) use vector::{cross, dot, sub};
+
+use crate::vector::{cross, dot, sub};
 
 /// The vertices of each edge of a tetrahedron.
 const EDGES: [(usize, usize); 6] = [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)];

@@ -1,6 +1,7 @@
 //! The volume in which the faces of cuts overlap.
 
-use super::{CutMesh, cross, dot, sub};
+use super::CutMesh;
+use crate::vector::{cross, dot, sub};
 
 type Corners = [[f64; 3]; 4];
 

@@ -1,6 +1,7 @@
 //! Size and orientation of a mesh in space.
 
-use super::{TetMesh, cross, dot};
+use super::TetMesh;
+use crate::vector::{cross, dot};
 
 impl TetMesh {
     /// Multiplies all coordinates by `factor`: 0.001 turns millimetres into metres.

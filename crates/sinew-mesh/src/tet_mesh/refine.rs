@@ -1,6 +1,7 @@
 //! Refinement: each tetrahedron cut into eight.
 
-use super::{Group, GroupMembers, TetData, TetMesh, dot, sub};
+use super::{Group, GroupMembers, TetData, TetMesh};
+use crate::vector::{dot, sub};
 
 /// A mesh cannot be refined.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]

@@ -2,7 +2,8 @@
 
 use std::collections::HashMap;
 
-use super::{TetMesh, cross, dot, sub};
+use super::TetMesh;
+use crate::vector::{cross, dot, sub};
 
 /// The faces of a tetrahedron, each opposite the node of the same index; their normals point outwards if the tetrahedron
 /// is positively oriented.

@@ -28,18 +28,7 @@ impl Units {
         Self(cells.map(|cell| unit::<T>(matrix, cell)).collect())
     }
 
-    pub(super) fn is_empty(&self) -> bool {
-        self.0.is_empty()
-    }
-
-    /// Takes the unit of a cell again whose row has changed.
-    pub(super) fn renew<T: Real>(&mut self, matrix: &BlockMatrix, cell: usize) {
-        if let Some(of_cell) = self.0.get_mut(cell) {
-            *of_cell = unit::<T>(matrix, cell);
-        }
-    }
-
-    /// The unit of the block between two cells, the larger of theirs; 0 without units.
+    /// The unit of the block between two cells, the larger of theirs; 0 where there are none.
     pub(super) fn between(&self, cell: usize, other: usize) -> f64 {
         let of = |cell: usize| self.0.get(cell).copied().unwrap_or(0.0);
         of(cell).max(of(other))

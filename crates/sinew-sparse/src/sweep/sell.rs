@@ -70,58 +70,6 @@ impl<T: Real> Sell<T> {
         sell
     }
 
-    /// Takes the rows of some cells again; returns false if they do not fit into its slices, or if the numbering has
-    /// another number of positions than that with which it was made. Where digits are few, their neighbours' rows
-    /// follow, so that the matrix stays symmetric.
-    #[must_use]
-    pub fn take_rows(
-        &mut self,
-        matrix: &BlockMatrix,
-        numbering: &Numbering,
-        cells: &[u32],
-    ) -> bool {
-        let is_numbered = self.is_on(numbering.positions(), matrix.layers().count())
-            && matrix.pattern().cells() <= numbering.cells();
-        if !is_numbered
-            || !cells
-                .iter()
-                .all(|cell| self.has_room(matrix, numbering, *cell))
-        {
-            return false;
-        }
-        for cell in cells {
-            self.units.renew::<T>(matrix, *cell as usize);
-        }
-        for cell in cells {
-            self.set_row(matrix, numbering, *cell);
-            if !self.units.is_empty() {
-                for neighbour in matrix.pattern().neighbours(*cell as usize) {
-                    self.set_row(matrix, numbering, *neighbour);
-                }
-            }
-        }
-        true
-    }
-
-    /// True if the row of a cell fits its slice. In a precision of few digits the rows of its neighbours must fit
-    /// theirs, too.
-    fn has_room(&self, matrix: &BlockMatrix, numbering: &Numbering, cell: u32) -> bool {
-        let pattern = matrix.pattern();
-        if cell as usize >= pattern.cells() {
-            return false;
-        }
-        let fits = |cell: u32| {
-            let slice = numbering.position(cell) / T::LANES;
-            pattern.neighbours(cell as usize).len() <= self.blocks(slice).len()
-        };
-        fits(cell)
-            && (self.units.is_empty()
-                || pattern
-                    .neighbours(cell as usize)
-                    .iter()
-                    .all(|other| fits(*other)))
-    }
-
     fn set_row(&mut self, matrix: &BlockMatrix, numbering: &Numbering, cell: u32) {
         let lanes = T::LANES;
         let position = numbering.position(cell);
@@ -197,43 +145,5 @@ impl<T: Real> Sell<T> {
                 }
             }
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use std::sync::Arc;
-
-    use super::*;
-    use crate::{Layers, Pattern};
-
-    fn chain(cells: usize) -> (BlockMatrix, Numbering) {
-        let springs: Vec<[u32; 2]> = (1..cells as u32).map(|cell| [cell - 1, cell]).collect();
-        let pattern = Arc::new(Pattern::from_elements(cells, &springs).unwrap());
-        let mut matrix = BlockMatrix::zeros(Arc::clone(&pattern), Layers::One);
-        for spring in &springs {
-            matrix.add_element(spring, &[1.0, -1.0, -1.0, 1.0]).unwrap();
-        }
-        (matrix, Numbering::near_neighbours(&pattern, f64::LANES))
-    }
-
-    #[test]
-    fn rows_of_another_body_or_numbering_are_not_taken() {
-        let (matrix, numbering) = chain(20);
-        let mut sell = Sell::<f64>::new(&matrix, &numbering);
-        let before = (sell.columns.clone(), sell.values.clone());
-        let (larger, foreign) = chain(4000);
-        assert!(!sell.take_rows(&matrix, &foreign, &[3]));
-        assert!(!sell.take_rows(&larger, &foreign, &[3]));
-        assert!(!sell.take_rows(&larger, &numbering, &[3]));
-        assert!(!sell.take_rows(&matrix, &numbering, &[20]));
-        // A cell with more neighbours than its slice is wide.
-        let all: Vec<[u32; 2]> = (1..20).map(|cell| [0, cell]).collect();
-        let star = Arc::new(Pattern::from_elements(20, &all).unwrap());
-        let star = BlockMatrix::zeros(star, Layers::One);
-        assert!(!sell.take_rows(&star, &numbering, &[0]));
-        assert!(before == (sell.columns.clone(), sell.values.clone()));
-        assert!(sell.take_rows(&matrix, &numbering, &[3, 19]));
-        assert!(before == (sell.columns, sell.values));
     }
 }

@@ -170,7 +170,7 @@ impl Convex {
 
     /// The smallest radius of curvature (m) of a round shape; none for shapes with flat faces.
     #[must_use]
-    pub fn smallest_radius(&self) -> Option<f64> {
+    pub(crate) fn smallest_radius(&self) -> Option<f64> {
         match *self {
             Self::Sphere { radius } | Self::Capsule { radius, .. } => Some(radius),
             Self::Plane | Self::Cuboid { .. } => None,

@@ -53,25 +53,12 @@ fn a_frame_loop_needs_no_other_import() {
     let mut inputs = Inputs::new();
     let clamp: Channel = inputs.add_channel(Between::Line);
     let problem = Problem {
-        regions: vec![Region {
-            group: None,
-            density: 1060.0,
-            law: Law::Linear {
-                youngs_modulus: 3500.0,
-                poissons_ratio: 0.4,
-            },
-            element: Element::P1,
-            tissue: Tissue::default(),
-            from_mesh: FromMesh::default(),
-        }],
+        regions: vec![Region::new(Law::linear(3500.0, 0.4), 1060.0)],
         damping: Rayleigh {
             mass: 5.0,
             stiffness: 0.0,
         },
-        fixed: vec![Fixed {
-            on: On::from("bottom"),
-            axes: [true; 3],
-        }],
+        fixed: vec![Fixed::new(On::from("bottom"))],
         moves: vec![Moving {
             on: "top".into(),
             axes: [true; 3],

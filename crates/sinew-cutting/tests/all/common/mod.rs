@@ -11,6 +11,7 @@ pub(crate) mod topology;
 use sinew_cutting::{CuttableBody, Sheet, TetProperties};
 use sinew_mesh::TetMesh;
 use sinew_mesh::structured::{self, Split};
+use sinew_mesh::vector::{cross, dot, sub};
 
 pub(crate) const DENSITY: f64 = 1060.0;
 pub(crate) const YOUNGS_MODULUS: f64 = 3500.0;
@@ -47,22 +48,6 @@ pub(crate) fn kuhn_cube() -> TetMesh {
 
 pub(crate) fn body(mesh: &TetMesh, poissons_ratio: f64) -> CuttableBody {
     CuttableBody::new(mesh, Box::new(Tissue { poissons_ratio })).unwrap()
-}
-
-fn sub(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    std::array::from_fn(|axis| a[axis] - b[axis])
-}
-
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    (0..3).map(|axis| a[axis] * b[axis]).sum()
-}
-
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    ]
 }
 
 fn signed_volume([a, b, c, d]: [[f64; 3]; 4]) -> f64 {

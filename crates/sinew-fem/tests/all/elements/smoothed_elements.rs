@@ -6,9 +6,7 @@ use crate::common::{
 };
 use nalgebra::{Matrix3, Vector3};
 use sinew_core::{ElementStiffness, Elements, LinearSystem, System};
-use sinew_fem::{
-    Cause, Element, FromMesh, Law, LoadKind, Model, Problem, Region, SpringRule, Tissue,
-};
+use sinew_fem::{Cause, Element, Law, LoadKind, Model, Problem, Region, SpringRule};
 use sinew_mesh::structured::{self, Split};
 use sinew_mesh::{Group, GroupMembers, TetMesh};
 
@@ -232,11 +230,8 @@ fn regions_of_different_elements_share_nodes_and_nothing_else() {
     }
     let region = |group: &str, element, stiff| Region {
         group: Some(group.into()),
-        density: 1060.0,
-        law: linear(if stiff { 3500.0 } else { 3500e-20 }, 0.45),
         element,
-        tissue: Tissue::default(),
-        from_mesh: FromMesh::default(),
+        ..Region::new(linear(if stiff { 3500.0 } else { 3500e-20 }, 0.45), 1060.0)
     };
     let model = |low_is_stiff| {
         let regions = vec![

@@ -7,9 +7,7 @@ use crate::common::{
 use nalgebra::{Matrix3, Vector3};
 use sinew_core::System;
 use sinew_fem::stress::von_mises;
-use sinew_fem::{
-    Element, FieldError, FromMesh, LoadKind, Model, Problem, Region, SpringRule, Tissue,
-};
+use sinew_fem::{FieldError, LoadKind, Model, Problem, Region, SpringRule};
 use sinew_mesh::structured::{self, Split};
 use sinew_mesh::{Group, GroupMembers, TetMesh};
 
@@ -155,11 +153,7 @@ fn half_springs() -> (TetMesh, Model) {
     }
     let region = |group: &str, law| Region {
         group: Some(group.into()),
-        density: 1000.0,
-        law,
-        element: Element::P1,
-        tissue: Tissue::default(),
-        from_mesh: FromMesh::default(),
+        ..Region::new(law, 1000.0)
     };
     let problem = Problem {
         regions: vec![

@@ -10,6 +10,7 @@ use sinew_fem::hyperelastic::Hyperelastic;
 use sinew_fem::hyperelastic::fibres::{Fibres, Stiffening};
 use sinew_fem::{Course, Element, FibreFamily, Law, Model, Moving, Problem, Tissue};
 use sinew_mesh::TetMesh;
+use sinew_mesh::vector::cross;
 
 const YOUNGS_MODULUS: f64 = 3500.0;
 const NU: f64 = 0.45;
@@ -74,10 +75,6 @@ fn damping(model: &Model, u: &[f64], v: &[f64]) -> Vec<f64> {
     };
     let (moving, resting) = (net(v), net(&still));
     resting.iter().zip(moving).map(|(a, b)| a - b).collect()
-}
-
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [0, 1, 2].map(|k| a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3])
 }
 
 /// The velocities (m/s) of a turn about the origin, of the body where it is.

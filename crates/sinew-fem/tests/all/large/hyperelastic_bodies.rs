@@ -6,7 +6,7 @@ use crate::common::{
 };
 use sinew_core::{BlockMatrix, ElasticLaw, ForceLaw, Layers, Pattern, System, TangentKind};
 use sinew_fem::hyperelastic::{Hyperelastic, Parameters};
-use sinew_fem::{Element, FromMesh, Law, Model, Problem, Region, Tissue};
+use sinew_fem::{Element, Law, Model, Problem, Region};
 use sinew_mesh::structured::{self, Split};
 use sinew_mesh::{Group, GroupMembers, TetMesh};
 
@@ -339,11 +339,8 @@ fn regions_of_different_laws_and_elements_add_up() {
                 }
                 Region {
                     group: Some((*group).into()),
-                    density: 1060.0,
-                    law,
                     element: *element,
-                    tissue: Tissue::default(),
-                    from_mesh: FromMesh::default(),
+                    ..Region::new(law, 1060.0)
                 }
             });
         build(

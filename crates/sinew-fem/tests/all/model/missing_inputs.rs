@@ -24,7 +24,7 @@ fn answers(model: &Model, when: LoadTime<'_>) -> [Vec<Result<(), FieldError>>; 2
     let forces = vec![
         model.reactions(when, &u, &v, &mut nodal),
         model.reaction(when, &u, &v, &"bottom".into()).map(|_| ()),
-        model.node_reaction(when, &u, &v, 0).map(|_| ()),
+        model.reaction_of_nodes(when, &u, &v, &[0]).map(|_| ()),
         model.reaction_of_nodes(when, &u, &v, &[0, 1]).map(|_| ()),
         model.moving_reactions(when, [&zero; 3], &mut nodal),
     ];
@@ -39,11 +39,8 @@ fn a_time_without_the_inputs_that_a_body_follows_is_refused() {
     let cuff = inputs.add_channel(Between::Hold);
     let mut problem = body(linear(3500.0, 0.3));
     problem.fixed = vec![held("bottom")];
-    let press = |on: &str| LoadSpec {
-        on: on.into(),
-        kind: LoadKind::Traction([0.0, 0.0, -10.0]),
-        ramp: Ramp::Input(cuff),
-    };
+    let press =
+        |on: &str| LoadSpec::new(on, LoadKind::Traction([0.0, 0.0, -10.0]), Ramp::Input(cuff));
     let course = Course {
         displacement: [0.0, 0.0, 0.01],
         ramp: Ramp::Input(clamp),

@@ -149,7 +149,7 @@ fn reactions_of_held_and_moved_parts_balance_all_loads() {
             assert!((top[axis] + bottom[axis] - reactions[axis]).abs() < 1e-12);
         }
         let node = mesh.group_nodes(mesh.group("top").unwrap())[3];
-        let one = model.node_reaction(9.0, &u, &v, node).unwrap();
+        let one = model.reaction_of_nodes(9.0, &u, &v, &[node]).unwrap();
         assert_eq!(one, forces[node as usize]);
     }
 }

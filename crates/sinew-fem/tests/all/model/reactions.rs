@@ -89,7 +89,7 @@ fn at_rest_reactions_balance_all_loads() {
             at_most(&format!("{law}: reactions and loads"), off / weight, 1e-10);
         }
         for (node, reaction) in (0..).zip(&reactions) {
-            assert_eq!(model.node_reaction(0.0, &u, &v, node), Ok(*reaction));
+            assert_eq!(model.reaction_of_nodes(0.0, &u, &v, &[node]), Ok(*reaction));
         }
         let everywhere = model.reaction(0.0, &u, &v, &"tissue".into()).unwrap();
         for (axis, reached) in everywhere.into_iter().enumerate() {
@@ -125,7 +125,7 @@ fn a_pulled_bar_is_held_by_the_opposite_force() {
         .operators()
         .external_force(LoadTime::at(0.0), &mut expected);
     let expected = expected[3 * corner as usize + 2];
-    let reached = model.node_reaction(0.0, &u, &v, corner).unwrap()[2];
+    let reached = model.reaction_of_nodes(0.0, &u, &v, &[corner]).unwrap()[2];
     figure(
         "reaction at a corner / F",
         reached / force,
@@ -282,7 +282,7 @@ fn what_cannot_be_asked_is_refused() {
         Err(FieldError::Place(unknown.clone()))
     );
     assert_eq!(
-        model.node_reaction(0.0, &zero, &zero, 500),
+        model.reaction_of_nodes(0.0, &zero, &zero, &[500]),
         Err(FieldError::Place(unknown))
     );
     assert!(matches!(

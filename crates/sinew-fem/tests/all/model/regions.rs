@@ -5,7 +5,7 @@ use crate::common::{
     relative_difference,
 };
 use sinew_core::{BlockMatrix, LinearSystem, System};
-use sinew_fem::{Element, FromMesh, Law, LoadKind, Model, Problem, Region, SpringRule, Tissue};
+use sinew_fem::{Law, LoadKind, Model, Problem, Region, SpringRule};
 use sinew_mesh::structured::{self, Split};
 use sinew_mesh::{Group, GroupMembers, TetMesh};
 
@@ -34,11 +34,7 @@ fn bar() -> TetMesh {
 fn in_two_regions(lower: Law, upper: Law) -> Problem {
     let region = |group: &str, law| Region {
         group: Some(group.into()),
-        density: DENSITY,
-        law,
-        element: Element::P1,
-        tissue: Tissue::default(),
-        from_mesh: FromMesh::default(),
+        ..Region::new(law, DENSITY)
     };
     Problem {
         regions: vec![region("lower", lower), region("upper", upper)],

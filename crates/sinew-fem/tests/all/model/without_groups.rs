@@ -27,11 +27,7 @@ fn problem(on: impl Fn(&str, bool) -> On) -> Problem {
         on: on(group, false),
         axes,
     };
-    let load = |group, surface, kind| LoadSpec {
-        on: on(group, surface),
-        kind,
-        ramp: Ramp::Step,
-    };
+    let load = |group, surface, kind| LoadSpec::new(on(group, surface), kind, Ramp::Step);
     Problem {
         fixed: vec![
             fixed("bottom", [true; 3]),

@@ -8,8 +8,8 @@ mod option;
 use sinew_cnn::Program;
 use sinew_core::spectrum::Spectrum;
 use sinew_core::{
-    Batch, Fact, Guarding, Integrator, Prepared, Properties, Revision, SetupError, StableStep,
-    Start, State, StepError, StepReport, System,
+    Batch, CostClock, Fact, Guarding, Integrator, Prepared, Properties, Revision, SetupError,
+    StableStep, Start, State, StepError, StepReport, System,
 };
 
 use crate::Stepper;
@@ -219,6 +219,10 @@ impl Integrator for Guarded {
 
     fn kernel(&self) -> Option<String> {
         self.inner.kernel()
+    }
+
+    fn cost_clock(&self) -> CostClock {
+        self.inner.cost_clock()
     }
 
     fn facts(&self) -> Vec<Fact> {

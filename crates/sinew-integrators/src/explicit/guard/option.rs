@@ -54,7 +54,7 @@ impl GuardOption {
     ///
     /// # Errors
     /// [`OptionError::Value`] for anything but a finite number above 0, "auto" or "off".
-    pub fn take_from(
+    pub(crate) fn take_from(
         self,
         options: &mut Options,
         integrator: &str,

@@ -103,10 +103,6 @@ impl Scheme for PatchedCentralDifference {
         }
     }
 
-    fn survives_change_of_rows(&self) -> bool {
-        !self.auto
-    }
-
     fn stable_step(
         &self,
         system: &dyn System,

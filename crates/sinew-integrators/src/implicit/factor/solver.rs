@@ -41,7 +41,7 @@ impl Solver {
     ///
     /// # Errors
     /// As [`Solver::analyse`].
-    pub fn analyse_within<'m>(
+    pub(crate) fn analyse_within<'m>(
         matrices: impl Into<Matrices<'m>>,
         memory: Memory,
     ) -> Result<Self, FactorError> {
@@ -64,7 +64,7 @@ impl Solver {
     ///
     /// # Errors
     /// [`FactorError`] when there is no memory for them.
-    pub fn without_factor<'m>(
+    pub(crate) fn without_factor<'m>(
         matrices: impl Into<Matrices<'m>>,
         tolerance: f64,
     ) -> Result<Self, FactorError> {
@@ -77,7 +77,7 @@ impl Solver {
 
     /// The factor, where it is one.
     #[must_use]
-    pub fn into_factor(self) -> Option<Factor> {
+    pub(crate) fn into_factor(self) -> Option<Factor> {
         match self.0 {
             Kind::Factor(factor) => Some(*factor),
             Kind::Gradients { .. } => None,

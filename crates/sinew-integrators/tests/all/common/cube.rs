@@ -40,11 +40,11 @@ pub(crate) fn problem(law: Law, damping: Rayleigh, traction: [f64; 3]) -> Proble
     Problem {
         damping,
         fixed: vec![held("sides", [true; 3])],
-        loads: vec![LoadSpec {
-            on: "top".into(),
-            kind: LoadKind::Traction(traction),
-            ramp: Ramp::Step,
-        }],
+        loads: vec![LoadSpec::new(
+            "top",
+            LoadKind::Traction(traction),
+            Ramp::Step,
+        )],
         ..body(law)
     }
 }

@@ -11,11 +11,11 @@ pub(crate) fn model(mesh: &TetMesh, damping: Rayleigh) -> Model {
     let problem = Problem {
         damping,
         fixed: vec![held("bottom", [true; 3])],
-        loads: vec![LoadSpec {
-            on: "top".into(),
-            kind: LoadKind::Traction([0.0, 0.0, -20.0]),
-            ramp: Ramp::Step,
-        }],
+        loads: vec![LoadSpec::new(
+            "top",
+            LoadKind::Traction([0.0, 0.0, -20.0]),
+            Ramp::Step,
+        )],
         ..body(linear(3500.0, 0.3))
     };
     Model::build(mesh, &problem).unwrap()

@@ -10,7 +10,7 @@ use sinew_core::{
     BlockMatrix, Damping, Integrator, Layers, LinearModel, LinearOperators, LinearSystem, Load,
     OptionValue, Options, Pattern, Ramp, StableStep, State, System,
 };
-use sinew_fem::{Element, FromMesh, LoadKind, LoadSpec, Model, Problem, Rayleigh, Region, Tissue};
+use sinew_fem::{LoadKind, LoadSpec, Model, Problem, Rayleigh, Region};
 use sinew_integrators::explicit::Guarded;
 use sinew_mesh::structured::{self, Split};
 use sinew_mesh::{Group, GroupMembers, TetMesh};
@@ -73,22 +73,15 @@ fn assert_untouched(system: &dyn System, start: &State, shares: &[f64], steps: u
 }
 
 fn tissue() -> Region {
-    Region {
-        group: None,
-        density: 1060.0,
-        law: linear(3500.0, 0.3),
-        element: Element::P1,
-        tissue: Tissue::default(),
-        from_mesh: FromMesh::default(),
-    }
+    Region::new(linear(3500.0, 0.3), 1060.0)
 }
 
 fn pulse(group: &str, traction: [f64; 3], to: f64) -> LoadSpec {
-    LoadSpec {
-        on: group.into(),
-        kind: LoadKind::Traction(traction),
-        ramp: Ramp::Pulse { from: 0.0, to },
-    }
+    LoadSpec::new(
+        group,
+        LoadKind::Traction(traction),
+        Ramp::Pulse { from: 0.0, to },
+    )
 }
 
 /// A bar whose width at each height (between 0 and 1) is this share of that of the block.
@@ -187,11 +180,7 @@ impl Slender {
             regions[0].group = Some("lower".into());
             regions.push(Region {
                 group: Some("upper".into()),
-                density,
-                law: linear(modulus, self.poissons_ratio),
-                element: Element::P1,
-                tissue: Tissue::default(),
-                from_mesh: FromMesh::default(),
+                ..Region::new(linear(modulus, self.poissons_ratio), density)
             });
         }
         let fixed = vec![held("bottom", [true; 3])];

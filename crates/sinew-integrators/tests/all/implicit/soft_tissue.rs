@@ -28,11 +28,11 @@ fn cube() -> TetMesh {
 fn push(mesh: &TetMesh) -> Model {
     let mut problem = neo_hookean();
     problem.damping.mass = 10.0;
-    problem.loads = vec![LoadSpec {
-        on: "top".into(),
-        kind: LoadKind::Traction([0.0, 0.0, -1200.0]),
-        ramp: Ramp::Sin2 { rise: 0.2 },
-    }];
+    problem.loads = vec![LoadSpec::new(
+        "top",
+        LoadKind::Traction([0.0, 0.0, -1200.0]),
+        Ramp::Sin2 { rise: 0.2 },
+    )];
     Model::build(mesh, &problem).unwrap()
 }
 
@@ -123,11 +123,11 @@ fn a_cantilever_bends_far() {
     });
     problem.fixed = vec![held("bottom", [true; 3])];
     let force = 0.5 * 1.3 * 3.0 * 3500.0 * 0.1_f64.powi(4) / 12.0;
-    problem.loads = vec![LoadSpec {
-        on: "top".into(),
-        kind: LoadKind::Traction([force / 0.01, 0.0, 0.0]),
-        ramp: Ramp::Step,
-    }];
+    problem.loads = vec![LoadSpec::new(
+        "top",
+        LoadKind::Traction([force / 0.01, 0.0, 0.0]),
+        Ramp::Step,
+    )];
     let model = Model::build(&mesh, &problem).unwrap();
     let mut load = vec![0.0; model.dofs()];
     let system: &dyn System = &model;

@@ -6,12 +6,11 @@ use sinew_core::{
     System, Trial,
 };
 use sinew_fem::hyperelastic::Parameters;
-use sinew_fem::{
-    Element, Fixed, FromMesh, Law, LoadKind, LoadSpec, Model, On, Problem, Region, Tissue,
-};
+use sinew_fem::{Element, Fixed, Law, LoadKind, LoadSpec, Model, On, Problem, Region};
 use sinew_integrators::static_solution_under;
 use sinew_mesh::TetMesh;
 use sinew_mesh::structured::{self, Split};
+use sinew_mesh::vector::cross;
 
 const SIZE: f64 = 0.1;
 
@@ -24,24 +23,19 @@ fn block(cells: usize) -> TetMesh {
 
 fn neo_hookean(element: Element) -> Region {
     Region {
-        group: None,
-        density: 1060.0,
-        law: Law::Hyperelastic {
-            id: "neo-hookean",
-            parameters: Parameters::new(3500.0, 0.45),
-        },
         element,
-        tissue: Tissue::default(),
-        from_mesh: FromMesh::default(),
+        ..Region::new(
+            Law::Hyperelastic {
+                id: "neo-hookean",
+                parameters: Parameters::new(3500.0, 0.45),
+            },
+            1060.0,
+        )
     }
 }
 
 fn load(group: &str, kind: LoadKind) -> LoadSpec {
-    LoadSpec {
-        on: group.into(),
-        kind,
-        ramp: Ramp::Step,
-    }
+    LoadSpec::new(group, kind, Ramp::Step)
 }
 
 /// Under pressure (Pa) on these groups.
@@ -86,10 +80,6 @@ fn volume(model: &Model, u: &[f64]) -> f64 {
         }
     }
     mesh.signed_volumes().iter().sum()
-}
-
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [0, 1, 2].map(|k| a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3])
 }
 
 #[test]
@@ -267,10 +257,7 @@ fn a_cube_under_pressure_all_round_shrinks_as_the_closed_form_says() {
 fn supports_carry_what_the_pressure_on_the_deformed_surface_asks() {
     let pressure = 800.0;
     let mut problem = pressed(Element::P1, pressure, &["sides", "top"]);
-    problem.fixed = vec![Fixed {
-        on: "bottom".into(),
-        axes: [true; 3],
-    }];
+    problem.fixed = vec![Fixed::new("bottom")];
     problem
         .loads
         .push(load("top", LoadKind::Traction([300.0, 0.0, 0.0])));
@@ -350,10 +337,7 @@ fn cellular_energy_steps_follow_a_surface_by_implicit_euler_alone() {
 fn a_cube_finds_its_equilibrium_under_pressure_on_one_side() {
     for (cells, pressure) in [(2, -2500.0), (4, -1500.0), (4, 1500.0)] {
         let mut problem = pressed(Element::P1, pressure, &["top"]);
-        problem.fixed = vec![Fixed {
-            on: "bottom".into(),
-            axes: [true; 3],
-        }];
+        problem.fixed = vec![Fixed::new("bottom")];
         let model = Model::build(&block(cells), &problem).unwrap();
         let u = static_solution_under(&model, &model.full_loads(&[0])).unwrap();
         let trial = Trial {

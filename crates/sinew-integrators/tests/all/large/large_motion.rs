@@ -10,8 +10,8 @@ use sinew_core::{
 use sinew_fem::hyperelastic::Parameters;
 use sinew_fem::hyperelastic::fibres::{Fibres, Stiffening};
 use sinew_fem::{
-    Element, FibreFamily, Fixed, FromMesh, Law, LoadKind, LoadSpec, Model, On, Problem, Rayleigh,
-    Region, Tissue,
+    Element, FibreFamily, Fixed, Law, LoadKind, LoadSpec, Model, On, Problem, Rayleigh, Region,
+    Tissue,
 };
 use sinew_mesh::TetMesh;
 use sinew_mesh::structured::{self, Split};
@@ -34,21 +34,14 @@ impl Scene {
         let mesh = structured::block(cells, size, Split::Mirrored).unwrap();
         let parameters = Parameters::new(3500.0, 0.45);
         let mut problem = Problem {
-            regions: vec![Region {
-                group: None,
-                density: 1060.0,
-                law: Law::Hyperelastic {
+            regions: vec![Region::new(
+                Law::Hyperelastic {
                     id: "neo-hookean",
                     parameters,
                 },
-                element: Element::P1,
-                tissue: Tissue::default(),
-                from_mesh: FromMesh::default(),
-            }],
-            fixed: vec![Fixed {
-                on: "bottom".into(),
-                axes: [true; 3],
-            }],
+                1060.0,
+            )],
+            fixed: vec![Fixed::new("bottom")],
             ..Problem::default()
         };
         change(&mesh, &mut problem);
@@ -111,11 +104,11 @@ impl Scene {
                 });
                 let nodes: Vec<u32> = nodes.map(|(node, _)| node).collect();
                 let weight = nodes.len() as f64 * 0.5_f64.powi(rim as i32);
-                problem.loads.push(LoadSpec {
-                    on: On::Nodes(nodes),
-                    kind: LoadKind::Force([0.0, 0.0, -12.0 * weight / 36.0]),
-                    ramp: Ramp::Sin2 { rise: 0.2 },
-                });
+                problem.loads.push(LoadSpec::new(
+                    On::Nodes(nodes),
+                    LoadKind::Force([0.0, 0.0, -12.0 * weight / 36.0]),
+                    Ramp::Sin2 { rise: 0.2 },
+                ));
             }
         })
     }
@@ -262,11 +255,11 @@ fn steps_follow_the_current_stiffness() {
 fn steps_that_fibres_stop_are_taken_again_in_shorter_parts() {
     let mut scene = Scene::new(([4; 3], [0.04; 3]), 0.1, |_, problem| {
         problem.damping.mass = 10.0;
-        problem.loads = vec![LoadSpec {
-            on: "top".into(),
-            kind: LoadKind::Traction([0.0, 0.0, 4000.0]),
-            ramp: Ramp::Step,
-        }];
+        problem.loads = vec![LoadSpec::new(
+            "top",
+            LoadKind::Traction([0.0, 0.0, 4000.0]),
+            Ramp::Step,
+        )];
     });
     scene.take_fibres("neo-hookean", Parameters::new(5000.0, 0.45), [2000.0, 20.0]);
     let (options, dt, steps) = (plain().with_text("substeps", "auto"), 2e-3, 50);

@@ -53,11 +53,11 @@ fn pulled(mesh: &TetMesh, element: Element) -> Problem {
             axes: [0, 1, 2].map(|of| of == axis),
         })
         .collect();
-    problem.loads = vec![LoadSpec {
-        on: "top".into(),
-        kind: LoadKind::Traction([0.0, 0.0, PULL]),
-        ramp: Ramp::Step,
-    }];
+    problem.loads = vec![LoadSpec::new(
+        "top",
+        LoadKind::Traction([0.0, 0.0, PULL]),
+        Ramp::Step,
+    )];
     problem.damping.mass = 40.0;
     problem
 }

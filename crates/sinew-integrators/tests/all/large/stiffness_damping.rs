@@ -4,8 +4,7 @@ use crate::common::{advance, build, plain, relative_error};
 use sinew_core::{ElasticLaw, LoadTime, Options, Ramp, State, System, Trial};
 use sinew_fem::hyperelastic::Parameters;
 use sinew_fem::{
-    Course, Element, Fixed, FromMesh, Law, LoadKind, LoadSpec, Model, Moving, Problem, Rayleigh,
-    Region, Tissue,
+    Course, Element, Fixed, Law, LoadKind, LoadSpec, Model, Moving, Problem, Rayleigh, Region,
 };
 use sinew_mesh::TetMesh;
 use sinew_mesh::structured::{self, Split};
@@ -13,15 +12,14 @@ use sinew_mesh::structured::{self, Split};
 fn tissue(id: &'static str, element: Element) -> Problem {
     Problem {
         regions: vec![Region {
-            group: None,
-            density: 1000.0,
-            law: Law::Hyperelastic {
-                id,
-                parameters: Parameters::new(5000.0, 0.3),
-            },
             element,
-            tissue: Tissue::default(),
-            from_mesh: FromMesh::default(),
+            ..Region::new(
+                Law::Hyperelastic {
+                    id,
+                    parameters: Parameters::new(5000.0, 0.3),
+                },
+                1000.0,
+            )
         }],
         damping: Rayleigh {
             mass: 0.0,
@@ -123,11 +121,7 @@ fn under_pressure_that_follows_the_surface_a_damped_body_gains_no_energy() {
     let mesh = structured::block([3, 3, 1], [0.09, 0.09, 0.03], Split::Mirrored).unwrap();
     let mut problem = tissue("neo-hookean", Element::P1);
     problem.loads = ["bottom", "sides", "top"]
-        .map(|group| LoadSpec {
-            on: group.into(),
-            kind: LoadKind::FollowingPressure(pressure),
-            ramp: Ramp::Step,
-        })
+        .map(|group| LoadSpec::new(group, LoadKind::FollowingPressure(pressure), Ramp::Step))
         .into();
     let model = Model::build(&mesh, &problem).unwrap();
     let with_pressure = |state: &State| {
@@ -153,10 +147,7 @@ fn falling() -> Model {
     let (held, _): (Vec<u32>, Vec<u32>) =
         (0..mesh.points.len() as u32).partition(|node| mesh.points[*node as usize][0] < 1e-9);
     let mut problem = tissue("neo-hookean", Element::P1);
-    problem.fixed.push(Fixed {
-        on: sinew_fem::On::Nodes(held),
-        axes: [true; 3],
-    });
+    problem.fixed.push(Fixed::new(sinew_fem::On::Nodes(held)));
     problem.gravity = Some([0.0, 0.0, -9.81]);
     Model::build(&mesh, &problem).unwrap()
 }

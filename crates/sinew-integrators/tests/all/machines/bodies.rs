@@ -42,11 +42,11 @@ fn problem(regions: Vec<Region>) -> Problem {
     Problem {
         regions,
         fixed: vec![held("bottom", [true; 3])],
-        loads: vec![LoadSpec {
-            on: "top".into(),
-            kind: LoadKind::Pressure(100.0),
-            ramp: Ramp::Sin2 { rise: 0.05 },
-        }],
+        loads: vec![LoadSpec::new(
+            "top",
+            LoadKind::Pressure(100.0),
+            Ramp::Sin2 { rise: 0.05 },
+        )],
         ..Problem::default()
     }
 }

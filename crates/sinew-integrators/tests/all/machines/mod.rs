@@ -1,5 +1,6 @@
 //! Machines and programs.
 
+mod added;
 mod bodies;
 mod precision;
 mod programs;

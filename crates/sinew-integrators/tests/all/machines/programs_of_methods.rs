@@ -16,7 +16,7 @@ sinew_cnn::machine_conformance!(reference, METHODS, || Box::new(ReferenceMachine
 /// The kernels for any matrix, with these instructions where the machine has them.
 fn general(set: InstructionSet) -> Box<dyn Machine> {
     Box::new(Chosen::new(Settings {
-        kind: Kind::General,
+        kind: Kind::GENERAL,
         instructions: Some(set),
         ..Settings::default()
     }))

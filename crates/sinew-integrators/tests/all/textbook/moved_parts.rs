@@ -175,11 +175,7 @@ fn newmark_nears_the_propagator_along_a_table() {
         [1e-3, 1e-3, 2e-3],
         [0.0, 0.0, 5e-3],
     ];
-    let load = |group: &str, kind| LoadSpec {
-        on: group.into(),
-        kind,
-        ramp: Ramp::Step,
-    };
+    let load = |group: &str, kind| LoadSpec::new(group, kind, Ramp::Step);
     let model = bar(&Problem {
         fixed: vec![held("bottom", [true; 3])],
         moves: vec![Moving {

@@ -5,27 +5,8 @@
 pub(crate) mod pressed;
 
 use proptest::prelude::*;
+pub(crate) use sinew_tools::vector::{add, dot, length, scaled, sub};
 use sinew_tools::{Convex, Pose};
-
-pub(crate) fn add(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [0, 1, 2].map(|axis| a[axis] + b[axis])
-}
-
-pub(crate) fn sub(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [0, 1, 2].map(|axis| a[axis] - b[axis])
-}
-
-pub(crate) fn scaled(a: [f64; 3], factor: f64) -> [f64; 3] {
-    a.map(|value| value * factor)
-}
-
-pub(crate) fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    (0..3).map(|axis| a[axis] * b[axis]).sum()
-}
-
-pub(crate) fn length(a: [f64; 3]) -> f64 {
-    dot(a, a).sqrt()
-}
 
 /// A length to measure errors by: the radius of the ball about the shape, 1 m for a plane.
 pub(crate) fn size(convex: &Convex) -> f64 {

@@ -1,24 +1,35 @@
 //! Vectors of three coordinates.
 
-pub(crate) type Vector = [f64; 3];
+/// Three coordinates.
+pub type Vector = [f64; 3];
 
-pub(crate) fn add(a: Vector, b: Vector) -> Vector {
+/// The sum of two vectors.
+#[must_use]
+pub fn add(a: Vector, b: Vector) -> Vector {
     [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
 }
 
-pub(crate) fn sub(a: Vector, b: Vector) -> Vector {
+/// The difference `a - b`.
+#[must_use]
+pub fn sub(a: Vector, b: Vector) -> Vector {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
-pub(crate) fn scaled(a: Vector, factor: f64) -> Vector {
+/// A vector times a number.
+#[must_use]
+pub fn scaled(a: Vector, factor: f64) -> Vector {
     a.map(|value| value * factor)
 }
 
-pub(crate) fn dot(a: Vector, b: Vector) -> f64 {
+/// The scalar product.
+#[must_use]
+pub fn dot(a: Vector, b: Vector) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-pub(crate) fn cross(a: Vector, b: Vector) -> Vector {
+/// The vector product.
+#[must_use]
+pub fn cross(a: Vector, b: Vector) -> Vector {
     [
         a[1] * b[2] - a[2] * b[1],
         a[2] * b[0] - a[0] * b[2],
@@ -26,17 +37,21 @@ pub(crate) fn cross(a: Vector, b: Vector) -> Vector {
     ]
 }
 
-pub(crate) fn length(a: Vector) -> f64 {
+/// The length of a vector.
+#[must_use]
+pub fn length(a: Vector) -> f64 {
     dot(a, a).sqrt()
 }
 
 /// The mean of some points.
-pub(crate) fn mean<const N: usize>(points: [Vector; N]) -> Vector {
+#[must_use]
+pub fn mean<const N: usize>(points: [Vector; N]) -> Vector {
     scaled(points.into_iter().fold([0.0; 3], add), 1.0 / N as f64)
 }
 
 /// The least and the greatest coordinates of some points.
-pub(crate) fn bounds_of<const N: usize>(points: [Vector; N]) -> [Vector; 2] {
+#[must_use]
+pub fn bounds_of<const N: usize>(points: [Vector; N]) -> [Vector; 2] {
     let extreme = |from: f64, choose: fn(f64, f64) -> f64| {
         std::array::from_fn(|axis| {
             let along = points.iter().map(|point| point[axis]);

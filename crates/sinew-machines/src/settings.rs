@@ -1,0 +1,91 @@
+//! Settings of machines.
+
+use std::num::NonZero;
+
+use sinew_sparse::simd::InstructionSet;
+
+/// A kind of machine by its id, one of [`crate::known_machines`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Kind(pub(crate) &'static str);
+
+impl Kind {
+    /// The fastest that takes the system.
+    pub const AUTO: Self = Self("auto");
+    /// Plain loops, the meaning of a program.
+    pub const REFERENCE: Self = Self("reference");
+    /// Kernels for any matrix.
+    pub const GENERAL: Self = Self("general");
+    /// Kernels for rows that repeat on a lattice.
+    pub const REPEATED: Self = Self("repeated");
+
+    /// The name users type.
+    #[must_use]
+    pub const fn id(self) -> &'static str {
+        self.0
+    }
+}
+
+impl Default for Kind {
+    fn default() -> Self {
+        Self::AUTO
+    }
+}
+
+/// Precisions that a machine may compute in.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum PrecisionName {
+    /// 64 bits.
+    #[default]
+    F64,
+    /// 32 bits.
+    F32,
+}
+
+impl PrecisionName {
+    /// The name users type.
+    #[must_use]
+    pub fn id(self) -> &'static str {
+        match self {
+            Self::F64 => "f64",
+            Self::F32 => "f32",
+        }
+    }
+}
+
+/// Kind, precision, instructions and threads of a machine.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Settings {
+    /// Its kind.
+    pub kind: Kind,
+    /// The precision that it computes in.
+    pub precision: PrecisionName,
+    /// Its instructions; `None` for the best there are.
+    pub instructions: Option<InstructionSet>,
+    /// The largest number of threads.
+    pub threads: Threads,
+}
+
+/// Numbers of threads.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Threads {
+    /// The calling thread alone.
+    #[default]
+    One,
+    /// At most so many, and no more than the system gives processors to this process.
+    UpTo(NonZero<u32>),
+    /// All processors that the system gives to this process.
+    All,
+}
+
+impl Threads {
+    /// Their largest number on this machine.
+    #[must_use]
+    pub fn most(self) -> usize {
+        let all = || std::thread::available_parallelism().map_or(1, NonZero::get);
+        match self {
+            Self::One => 1,
+            Self::UpTo(most) => all().min(most.get() as usize),
+            Self::All => all(),
+        }
+    }
+}
