@@ -9,7 +9,7 @@ use sinew_measure::MeasureError;
 use sinew_mesh::structured::StructuredError;
 use sinew_scene::SceneError;
 
-use crate::tissue::TissueError;
+use sinew_verify::tissue::TissueError;
 
 /// Why a hard run or the figure of a mark could not be measured.
 #[derive(Debug, thiserror::Error)]

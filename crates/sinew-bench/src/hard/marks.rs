@@ -271,7 +271,7 @@ fn of_scenes(measured: &Measured<'_>, begins: &mut dyn FnMut(&str)) -> Vec<Mark>
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::results::MarkVerdict;
+    use sinew_verify::MarkVerdict;
 
     #[test]
     fn a_scene_that_was_not_read_fails_its_own_marks_by_name() {

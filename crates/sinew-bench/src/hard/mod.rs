@@ -19,12 +19,13 @@ use std::path::PathBuf;
 
 use sinew_measure::{Case, Effort, mark_pareto, on_one_thread};
 
+use crate::BenchError;
 use crate::bench::{case_ids, scene_files};
 use crate::report::file_names;
-use crate::results::{BenchResults, Machine, Missing, Skipped};
-use crate::{BenchError, Progress};
+use crate::results::{BenchResults, Missing, Skipped};
 use cases::HardCase;
 use hard_run::hard_row;
+use sinew_verify::{Machine, Progress};
 
 /// The bench of hard cases.
 #[derive(Clone, Debug, PartialEq)]

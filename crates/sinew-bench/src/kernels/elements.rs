@@ -13,7 +13,7 @@ use sinew_sparse::sweep::{Fields, Numbering, Precision};
 
 use super::bodies::KernelBenchError;
 use crate::median::median;
-use crate::tissue;
+use sinew_verify::tissue;
 
 /// Forces of one law and element on a cube.
 #[derive(Clone, Debug, Serialize)]

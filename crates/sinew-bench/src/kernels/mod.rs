@@ -22,8 +22,8 @@ pub use guards::{Guard, Limit};
 pub use roofs::{OperationRate, ReadRate, Roofs};
 pub use row::KernelRow;
 
-use crate::bench::Progress;
-use crate::results::Machine;
+use sinew_verify::Machine;
+use sinew_verify::Progress;
 
 /// A bench of kernels: machines, precisions and threads on bodies of several sizes.
 #[derive(Clone, Debug)]

@@ -14,12 +14,13 @@ use sinew_mesh::structured::{Split, block};
 
 use crate::median::median;
 use crate::report::{percent, three};
-use crate::results::{Mark, MarkVerdict};
-use crate::verify::VerifyError;
-use crate::verify::bodies::{DENSITY, YOUNGS_MODULUS, body, equilibrium, held, load, loads};
-use crate::verify::modes::lowest_omega_lumped;
-use crate::verify::places::triangles_where;
-use crate::verify::reference::tet10::{Tet10, Tissue};
+use crate::results::Mark;
+use sinew_verify::MarkVerdict;
+use sinew_verify::VerifyError;
+use sinew_verify::bodies::{DENSITY, YOUNGS_MODULUS, body, equilibrium, held, load, loads};
+use sinew_verify::modes::lowest_omega_lumped;
+use sinew_verify::places::triangles_where;
+use sinew_verify::{Tet10, Tissue};
 
 /// Largest CPU time over that of plain tetrahedra that passes.
 const LIMIT: f64 = 0.25;

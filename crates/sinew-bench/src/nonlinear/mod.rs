@@ -12,9 +12,10 @@ use std::path::PathBuf;
 
 pub use self::picture::{PictureError, picture};
 
+use crate::BenchError;
 use crate::planned::Plan;
-use crate::results::{BenchResults, Machine};
-use crate::{BenchError, Progress};
+use crate::results::BenchResults;
+use sinew_verify::{Machine, Progress};
 
 /// The bench of large deformations.
 #[derive(Clone, Debug, PartialEq)]

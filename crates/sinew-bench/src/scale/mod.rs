@@ -16,10 +16,10 @@ pub use error::ScaleError;
 pub use fit::{Exponents, ScaleFit};
 pub use row::{ScaleBody, ScaleRow, ScaleSkipped};
 
-use crate::bench::Progress;
-use crate::results::Machine;
 use cube::Cube;
 use methods::{Threads, variants};
+use sinew_verify::Machine;
+use sinew_verify::Progress;
 
 /// Version of the format of the results.
 const SCHEMA: u32 = 1;

@@ -3,9 +3,11 @@
 use std::path::PathBuf;
 use std::sync::OnceLock;
 
-use sinew_bench::results::{BenchResults, Machine};
-use sinew_bench::{Bench, Progress, default_steps};
+use sinew_bench::results::BenchResults;
+use sinew_bench::{Bench, default_steps};
 use sinew_measure::{Row, RowOutcome, RowVerdict};
+use sinew_verify::Machine;
+use sinew_verify::Progress;
 
 fn scene(name: &str) -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR"))

@@ -8,7 +8,7 @@ use sinew_measure::MethodChoice;
 
 use crate::hard::error::HardError;
 use crate::report::milliseconds;
-use crate::tissue::{Specimen, relative_error};
+use sinew_verify::tissue::{Specimen, relative_error};
 
 /// Sizes of the body that a displacement may have before the run counts as diverged.
 const SIZES: f64 = 20.0;

@@ -13,7 +13,7 @@ use crate::hard::mark::Asked;
 use crate::hard::meshes::inclusion_cube;
 use crate::hard::methods::{cut, energy_of};
 use crate::results::Mark;
-use crate::tissue::{self, EDGE, Specimen, YOUNGS_MODULUS};
+use sinew_verify::tissue::{self, EDGE, Specimen, YOUNGS_MODULUS};
 
 const CELLS: usize = 4;
 

@@ -12,7 +12,7 @@ use crate::hard::hard_run::relative_distance;
 use crate::hard::mark::Asked;
 use crate::hard::methods::{cut, energy_of};
 use crate::results::Mark;
-use crate::tissue::{self, Specimen, YOUNGS_MODULUS};
+use sinew_verify::tissue::{self, Specimen, YOUNGS_MODULUS};
 
 const CELLS: usize = 4;
 

@@ -11,7 +11,7 @@ use crate::hard::error::HardError;
 use crate::hard::mark::Asked;
 use crate::hard::methods::{cut, energy_of};
 use crate::results::Mark;
-use crate::tissue::{self, EDGE, Specimen, YOUNGS_MODULUS};
+use sinew_verify::tissue::{self, EDGE, Specimen, YOUNGS_MODULUS};
 
 /// Laws whose stress pushes elements back that are inside out.
 const LAWS: [&str; 2] = ["stable-neo-hookean", "stable-neo-hookean-log"];

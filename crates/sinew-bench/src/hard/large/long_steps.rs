@@ -11,7 +11,7 @@ use crate::hard::error::HardError;
 use crate::hard::mark::Asked;
 use crate::hard::methods::{cut, energy_of};
 use crate::results::Mark;
-use crate::tissue::{self, COLUMN, Specimen, YOUNGS_MODULUS};
+use sinew_verify::tissue::{self, COLUMN, Specimen, YOUNGS_MODULUS};
 
 const CELLS: usize = 4;
 

@@ -10,7 +10,7 @@ use crate::hard::error::HardError;
 use crate::hard::mark::Asked;
 use crate::hard::methods::{cut, energy_of};
 use crate::results::Mark;
-use crate::tissue::{self, COLUMN, Specimen, YOUNGS_MODULUS, rotation_of_top};
+use sinew_verify::tissue::{self, COLUMN, Specimen, YOUNGS_MODULUS, rotation_of_top};
 
 /// Angular speed of the top at the start (1/s), which takes it beyond a turn.
 const SPIN: f64 = 110.0;

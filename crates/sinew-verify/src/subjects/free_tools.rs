@@ -1,0 +1,296 @@
+//! Tools that are bodies of their own, and tips that are finer than the surface.
+
+use std::f64::consts::PI;
+
+use sinew_core::{Inputs, Options, System};
+use sinew_fem::{Element, Problem, Rayleigh};
+use sinew_mesh::structured::{Split, block};
+use sinew_tools::{Convex, Motion, Pose, Tool, ToolBody};
+
+use crate::bodies::{YOUNGS_MODULUS, body, held};
+use crate::check::{Asked, Check, Source};
+use crate::error::VerifyError;
+use crate::pressed::{Pressed, method, through, tool};
+use crate::staggered_energy::staggered_energy;
+
+/// Edge of the cube (m).
+const EDGE: f64 = 0.06;
+
+const BODY: ToolBody = ToolBody {
+    mass: 0.05,
+    inertia: [2e-6; 3],
+    coupling: 400.0,
+    rotational_coupling: 0.5,
+    damping: 0.8,
+};
+
+pub(super) fn checks() -> Vec<Check> {
+    let mut checks = vec![
+        Check::one(
+            "tool of 50 g on 400 N/m, whose path stops, steps of .2 and .1 ms",
+            "order of the difference from the damped oscillation",
+            Asked::value(2.0, 0.1),
+            Source::ClosedForm("v/w e^(-z q t) sin(w t), q^2 = k/m, w^2 = q^2 (1 - z^2)"),
+            |_| Ok((off_swing(2e-4)? / off_swing(1e-4)?).log2()),
+        ),
+        Check::one(
+            "ball of .1 mg on 400 N/m that rubs, central difference",
+            "largest rise of E of body, tool and coupling, less the work of the hand, over the largest E",
+            Asked::at_most(3e-4),
+            Source::ClosedForm("E+ - E- <= W of the hand, but for (dt v/R)^2"),
+            |_| light_rise(),
+        ),
+        Check::one(
+            "tool of 50 g flies into a free cube",
+            "change of the momentum of both, of that before",
+            Asked::at_most(1e-12),
+            Source::ClosedForm("m1 v1 + m2 v2 stays"),
+            |_| collision(),
+        ),
+        Check::one(
+            "tool of 50 g on 400 N/m presses a ball, at rest",
+            "k x over the force on the tool, less 1",
+            Asked::at_most(1e-8),
+            Source::ClosedForm("k x = F"),
+            |_| at_rest(),
+        ),
+    ];
+    // Places of some .1 m are rounded by 1e-17 m, which 1e6 N/m make a force of 1e-11 N, at work over .1 mm a step.
+    for (coupling, limit) in [(400.0, 1e-12), (1e6, 1e-11)] {
+        checks.push(Check::one(
+            format!("plate of 50 g on {coupling} N/m pressed 10 mm, central difference"),
+            "largest rise of E of body, tool and coupling, less the work of the hand, over the largest E",
+            Asked::at_most(limit),
+            Source::ClosedForm("E+ - E- <= W of the hand"),
+            move |_| rise(coupling),
+        ));
+    }
+    for speed in [1.0, 5.0, 20.0] {
+        checks.push(Check::several(
+            format!("tip of a tenth of an edge into a block at {speed} m/s, steps of 1 ms"),
+            [
+                (
+                    "solid angle of the surface as seen from the tip, over 4 pi",
+                    Asked::at_most(1e-9),
+                ),
+                ("the same with nodes alone, less 1", Asked::value(0.0, 1e-9)),
+            ],
+            Source::ClosedForm(
+                "the winding number of a closed surface about a point that does not pass it",
+            ),
+            move |_| Ok(vec![shot(speed, true)?, shot(speed, false)? - 1.0]),
+        ));
+    }
+    checks.push(Check::one(
+        "tip of 1.5 mm pressed 3 mm, edges of 6 mm against 3 mm",
+        "force on the coarse mesh over that on the fine one",
+        Asked::value(1.5, 0.5),
+        Source::ClosedForm("a tip below an edge feels the mesh: a figure, no law"),
+        |_| coarse_over_fine(),
+    ));
+    checks
+}
+
+fn cube(damping: f64) -> Problem {
+    Problem {
+        damping: Rayleigh {
+            mass: damping,
+            stiffness: 0.0,
+        },
+        fixed: vec![held("bottom", [true; 3])],
+        ..body(YOUNGS_MODULUS, 0.3, Element::P1)
+    }
+}
+
+fn under(cells: usize, problem: &Problem, tool: Tool) -> Result<Pressed, VerifyError> {
+    let mesh = block([cells; 3], [EDGE; 3], Split::Kuhn)?;
+    Pressed::new(&mesh, problem, tool, |_| true)
+}
+
+fn ball(motion: Motion, body: ToolBody) -> Result<Tool, VerifyError> {
+    Ok(Tool {
+        body: Some(body),
+        ..tool(Convex::sphere(0.012)?, motion, 0.0)
+    })
+}
+
+fn place(pressed: &Pressed) -> [f64; 3] {
+    let pose = pressed.tools.pose(&pressed.state, Inputs::none(), 0);
+    pose.position()
+}
+
+/// The largest difference (m) of a swing from its closed form, after the path stopped.
+fn off_swing(dt: f64) -> Result<f64, VerifyError> {
+    let (stop, speed, damping) = (0.05, 0.06, 0.1);
+    let rows = [(0.0, [0.0, 0.0, 1.0]), (stop, [speed * stop, 0.0, 1.0])];
+    let tool = ball(through(&rows, [0.0; 3])?, ToolBody { damping, ..BODY })?;
+    let mut pressed = under(1, &cube(0.0), tool)?;
+    let mut integrator = method("cnn-stabilised", &Options::new())?;
+    let before = (stop / dt).round() as usize;
+    pressed.run(&mut *integrator, dt, before)?;
+    let rate = (BODY.coupling / BODY.mass).sqrt();
+    let swings = rate * (1.0 - damping * damping).sqrt();
+    let mut worst: f64 = 0.0;
+    for n in 1..=before {
+        pressed.run(&mut *integrator, dt, 1)?;
+        let t = dt * n as f64;
+        let expected = speed / swings * (-damping * rate * t).exp() * (swings * t).sin();
+        worst = worst.max((place(&pressed)[0] - speed * stop - expected).abs());
+    }
+    Ok(worst)
+}
+
+fn light_rise() -> Result<f64, VerifyError> {
+    let rows = [
+        (0.0, [0.025, 0.03, EDGE + 0.0121]),
+        (0.05, [0.027, 0.03, EDGE + 0.007]),
+        (0.3, [0.035, 0.03, EDGE + 0.007]),
+    ];
+    let light = ToolBody {
+        mass: 1e-7,
+        inertia: [6e-12; 3],
+        rotational_coupling: 0.05,
+        ..BODY
+    };
+    let mut tool = ball(through(&rows, [0.0; 3])?, light)?;
+    tool.friction = 0.4;
+    largest_rise(under(5, &cube(0.0), tool)?, 0.4)
+}
+
+fn collision() -> Result<f64, VerifyError> {
+    let free = body(YOUNGS_MODULUS, 0.3, Element::P1);
+    let velocity = [0.02, 0.0, -0.6];
+    let start = Pose::new([0.033, 0.028, EDGE + 0.015], [0.0; 3]);
+    let loose = ToolBody {
+        coupling: 0.0,
+        rotational_coupling: 0.0,
+        ..BODY
+    };
+    let tool = ball(Motion::Steady { start, velocity }, loose)?;
+    let mut pressed = under(5, &free, tool)?;
+    let dt = 0.5 * pressed.stable_step()?;
+    let mut integrator = method("central-difference", &Options::new())?;
+    let before = BODY.mass * velocity[2];
+    let mut worst: f64 = 0.0;
+    for _ in 0..(0.1 / dt) as usize {
+        pressed.run(&mut *integrator, dt, 1)?;
+        let all = pressed.state.v.iter().zip(pressed.model.mass());
+        let tissue: f64 = all.skip(2).step_by(3).map(|(v, m)| m * v).sum();
+        let tool = pressed.tools.report(&pressed.state, 0).body;
+        let tool = tool.map_or(before, |body| BODY.mass * body.velocity[2]);
+        worst = worst.max(((tissue + tool) / before - 1.0).abs());
+    }
+    Ok(worst)
+}
+
+fn at_rest() -> Result<f64, VerifyError> {
+    let end = [0.031, 0.029, EDGE + 0.007];
+    let rows = [(0.0, [0.03, 0.03, EDGE + 0.0125]), (0.2, end)];
+    let tool = ball(through(&rows, [0.0; 3])?, BODY)?;
+    let mut pressed = under(5, &cube(40.0), tool)?;
+    let mut integrator = method("central-difference", &Options::new())?;
+    pressed.run(&mut *integrator, 1e-3, 2500)?;
+    let pulled = BODY.coupling * (place(&pressed)[2] - end[2]);
+    Ok((pulled / pressed.force()[2] - 1.0).abs())
+}
+
+fn rise(coupling: f64) -> Result<f64, VerifyError> {
+    let at = |z: f64| [0.03, 0.03, EDGE + z];
+    let rows = [
+        (0.0, at(1e-4)),
+        (0.05, at(-0.01)),
+        (0.1, at(-0.01)),
+        (0.15, at(1e-4)),
+    ];
+    // It may not turn, so that its normal does not.
+    let stiff = ToolBody {
+        inertia: [1e3; 3],
+        damping: 0.0,
+        coupling,
+        ..BODY
+    };
+    let plate = Tool {
+        body: Some(stiff),
+        ..tool(Convex::Plane, through(&rows, [PI, 0.0, 0.0])?, 0.0)
+    };
+    largest_rise(under(5, &cube(0.0), plate)?, 0.3)
+}
+
+/// The largest rise in a step of the energy of body, tool and coupling, less the work of the hand, over the largest energy, in a time (s).
+fn largest_rise(mut pressed: Pressed, duration: f64) -> Result<f64, VerifyError> {
+    let dt = 0.9 * pressed.stable_step()?;
+    let mut integrator = method("central-difference", &Options::new())?;
+    let (mut last, mut largest, mut rise): (Option<f64>, f64, f64) = (None, 0.0, 0.0);
+    for _ in 0..(duration / dt) as usize {
+        pressed.run(&mut *integrator, dt, 1)?;
+        let tool = pressed.tools.report(&pressed.state, 0).body;
+        let tool = tool.ok_or(VerifyError::NoBody)?;
+        let energy = staggered_energy(&pressed.model, &pressed.state, None, dt) + tool.energy;
+        let left = energy - tool.hand_work;
+        rise = rise.max(last.map_or(0.0, |last| left - last));
+        last = Some(left);
+        largest = largest.max(energy);
+    }
+    Ok(rise / largest)
+}
+
+/// The solid angle of the surface of a block, over 4 pi, as seen from a tip of a tenth of an edge that is shot at it: 0 outside, 1 inside.
+fn shot(speed: f64, meets_triangles: bool) -> Result<f64, VerifyError> {
+    let edge = EDGE / 6.0;
+    let free = body(YOUNGS_MODULUS, 0.3, Element::P1);
+    let start = Pose::new([0.0327, 0.0269, EDGE + edge], [0.0; 3]);
+    let velocity = [0.0, 0.0, -speed];
+    let tip = tool(
+        Convex::sphere(0.1 * edge)?,
+        Motion::Steady { start, velocity },
+        0.0,
+    );
+    let mesh = block([6; 3], [EDGE; 3], Split::Kuhn)?;
+    let mut pressed = match meets_triangles {
+        true => Pressed::with_triangles(&mesh, &free, tip)?,
+        false => Pressed::new(&mesh, &free, tip, |_| true)?,
+    };
+    let mut integrator = method("cnn-stabilised", &Options::new())?;
+    let steps = (3.0 * edge / (speed * 1e-3)).ceil() as usize;
+    pressed.run(&mut *integrator, 1e-3, steps)?;
+    let at = place(&pressed);
+    let corner = |node: u32| -> [f64; 3] {
+        let first = pressed
+            .model
+            .cell_of_node(node)
+            .map_or(0, |cell| 3 * cell as usize);
+        let rest = mesh.points[node as usize];
+        std::array::from_fn(|axis| rest[axis] + pressed.state.u[first + axis] - at[axis])
+    };
+    let surface = mesh.boundary(None).into_iter();
+    let sum: f64 = surface.map(|nodes| solid_angle(nodes.map(corner))).sum();
+    Ok((sum / (4.0 * PI)).abs())
+}
+
+/// The solid angle of a triangle as seen from the origin (Van Oosterom and Strackee 1983).
+fn solid_angle([a, b, c]: [[f64; 3]; 3]) -> f64 {
+    let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    let cross = [
+        b[1] * c[2] - b[2] * c[1],
+        b[2] * c[0] - b[0] * c[2],
+        b[0] * c[1] - b[1] * c[0],
+    ];
+    let [la, lb, lc] = [a, b, c].map(|v| dot(v, v).sqrt());
+    let below = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb;
+    2.0 * dot(a, cross).atan2(below)
+}
+
+/// The force of a tip at rest on a coarse mesh over that on a fine one.
+fn coarse_over_fine() -> Result<f64, VerifyError> {
+    let force = |cells: usize| -> Result<f64, VerifyError> {
+        let at = |z: f64| [0.0317, 0.0289, EDGE + z];
+        let rows = [(0.0, at(0.0016)), (0.1, at(-0.0015))];
+        let tip = tool(Convex::sphere(0.0015)?, through(&rows, [0.0; 3])?, 0.0);
+        let mesh = block([cells; 3], [EDGE; 3], Split::Kuhn)?;
+        let mut pressed = Pressed::with_triangles(&mesh, &cube(40.0), tip)?;
+        let mut integrator = method("cnn-stabilised", &Options::new())?;
+        pressed.run(&mut *integrator, 1e-3, 1500)?;
+        Ok(pressed.force()[2])
+    };
+    Ok(force(10)? / force(20)?)
+}
