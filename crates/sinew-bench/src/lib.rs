@@ -17,5 +17,8 @@ pub mod report;
 pub mod reproduce;
 pub mod results;
 pub mod scale;
+mod timed;
+
+pub use timed::TimedRunError;
 
 pub use bench::{Bench, BenchError, default_steps, scene_files};

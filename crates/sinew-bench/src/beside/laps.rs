@@ -2,14 +2,13 @@
 
 use std::error::Error;
 
-use sinew_core::{Integrator, Run, SimulateError, State, simulate};
+use sinew_core::{Integrator, Run, State};
 
 use super::pilots::{Target, pilots};
 use crate::median::median_of_sorted;
+use crate::timed::{TimedRunError, time_run};
 use sinew_measure::reference::ErrorNorm;
-use sinew_measure::{
-    Case, MeasureError, MethodChoice, ThreadError, on_one_thread, thread_cpu_time,
-};
+use sinew_measure::{Case, MeasureError, MethodChoice, ThreadError, on_one_thread};
 
 /// An error of another program, whose kinds are not known here.
 pub type RivalError = Box<dyn Error + Send + Sync>;
@@ -49,6 +48,9 @@ pub enum LapError {
     /// One of our methods cannot run.
     #[error(transparent)]
     Ours(#[from] MeasureError),
+    /// One of our timed runs does not come to its end.
+    #[error(transparent)]
+    Timed(#[from] TimedRunError),
     /// There is no thread to measure on.
     #[error(transparent)]
     Thread(#[from] ThreadError),
@@ -130,7 +132,7 @@ fn run_here(
     let theirs = rival.displacements().map_err(LapError::Rival)?;
     let error = apart(&theirs, &case.samples().displacements);
     let mut twin = Contender::new(case, &MethodChoice::on(case, same.0), same.1)?;
-    let ours = twin.displacements(case).map_err(MeasureError::from)?;
+    let ours = twin.displacements(case)?;
     let difference = apart(&theirs, &ours);
     if difference.is_nan() || difference > ROUNDING {
         return Err(LapError::Apart {
@@ -151,7 +153,7 @@ fn run_here(
     for round in 0..=rounds {
         for (contender, ratios) in contenders.iter_mut().zip(&mut ratios) {
             let theirs = rival.lap().map_err(LapError::Rival)?;
-            let ours = contender.lap(case).map_err(MeasureError::from)?;
+            let ours = contender.lap(case)?;
             if round > 0 {
                 laps.push(theirs);
                 ratios.push(ours / theirs);
@@ -196,22 +198,15 @@ impl Contender {
     }
 
     /// CPU time (s) of the steps.
-    fn lap(&mut self, case: &Case) -> Result<f64, SimulateError> {
+    fn lap(&mut self, case: &Case) -> Result<f64, TimedRunError> {
         let system = case.simulation().system();
         self.state.clone_from(case.simulation().initial_state());
-        let before = thread_cpu_time();
-        simulate(
-            system,
-            &mut *self.integrator,
-            &mut self.state,
-            &self.run,
-            &mut (),
-        )?;
-        Ok((thread_cpu_time() - before).as_secs_f64())
+        let spent = time_run(system, &mut *self.integrator, &mut self.state, &self.run)?;
+        Ok(spent.cpu)
     }
 
     /// Displacement (m) at the samples, for a step that meets them.
-    fn displacements(&mut self, case: &Case) -> Result<Vec<Vec<f64>>, SimulateError> {
+    fn displacements(&mut self, case: &Case) -> Result<Vec<Vec<f64>>, TimedRunError> {
         let system = case.simulation().system();
         let samples = case.simulation().settings().samples;
         let run = Run {
@@ -221,7 +216,7 @@ impl Contender {
         let mut state = case.simulation().initial_state().clone();
         let mut displacements = vec![state.u.clone()];
         for _ in 0..samples {
-            simulate(system, &mut *self.integrator, &mut state, &run, &mut ())?;
+            time_run(system, &mut *self.integrator, &mut state, &run)?;
             displacements.push(state.u.clone());
         }
         Ok(displacements)

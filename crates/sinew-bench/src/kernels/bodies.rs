@@ -2,12 +2,13 @@
 
 use std::path::Path;
 
-use sinew_core::{EvaluationError, OptionError, SetupError, StepError};
+use sinew_core::{EvaluationError, OptionError, SetupError};
 use sinew_fem::{FemError, Model, Problem, Rayleigh};
 use sinew_mesh::structured::{Split, StructuredError, cube};
 use sinew_mesh::{GroupMembers, MeshFileError, TetMesh, TetMeshError, read_msh_file};
 
 use crate::pressed;
+use crate::timed::TimedRunError;
 
 /// A body with its model.
 pub(super) struct Body {
@@ -39,9 +40,9 @@ pub enum KernelBenchError {
     /// A method that cannot be set up.
     #[error(transparent)]
     Method(#[from] SetupError),
-    /// A step that fails.
+    /// A timed run that fails or does not come to its end.
     #[error(transparent)]
-    Step(#[from] StepError),
+    Timed(#[from] TimedRunError),
     /// Forces that cannot be computed.
     #[error(transparent)]
     Forces(#[from] EvaluationError),

@@ -3,18 +3,18 @@
 use std::sync::Arc;
 
 use sinew_core::vectors::dot;
-use sinew_core::{Integrator, Run, SimulateError, StableStep, State, simulate};
+use sinew_core::{Integrator, Run, StableStep, State};
 use sinew_fem::hyperelastic::{Hyperelastic, Parameters};
 use sinew_fem::{Element, FemError, Law, LoadKind, Model, Problem};
 use sinew_integrators::Method;
 use sinew_integrators::explicit::CentralDifference;
-use sinew_measure::thread_cpu_time;
 use sinew_mesh::TetMesh;
 use sinew_mesh::structured::{Split, block};
 
 use crate::median::median;
 use crate::report::{percent, three};
 use crate::results::Mark;
+use crate::timed::{TimedRunError, time_run};
 use sinew_verify::MarkVerdict;
 use sinew_verify::VerifyError;
 use sinew_verify::bodies::{DENSITY, YOUNGS_MODULUS, body, equilibrium, held, load, loads};
@@ -86,7 +86,7 @@ enum EqualError {
     #[error(transparent)]
     Setup(#[from] sinew_core::SetupError),
     #[error(transparent)]
-    Run(#[from] SimulateError),
+    Run(#[from] TimedRunError),
     #[error("no mesh of plain tetrahedra is given")]
     NoMesh,
     #[error("no stable step is known")]
@@ -300,14 +300,7 @@ impl Second {
     /// CPU time (s) of the second.
     fn simulate(&mut self) -> Result<f64, EqualError> {
         let mut state = State::at_rest(sinew_core::System::dofs(&self.model));
-        let before = thread_cpu_time();
-        simulate(
-            &self.model,
-            &mut *self.integrator,
-            &mut state,
-            &self.run,
-            &mut (),
-        )?;
-        Ok((thread_cpu_time() - before).as_secs_f64())
+        let spent = time_run(&self.model, &mut *self.integrator, &mut state, &self.run)?;
+        Ok(spent.cpu)
     }
 }

@@ -16,6 +16,9 @@ pub enum ScaleError {
     /// A method cannot run.
     #[error(transparent)]
     Measure(#[from] MeasureError),
+    /// A timed run that does not come to its end.
+    #[error(transparent)]
+    Timed(#[from] crate::TimedRunError),
     /// A body's matrices cannot be put together again.
     #[error(transparent)]
     Operators(#[from] sinew_core::OperatorError),

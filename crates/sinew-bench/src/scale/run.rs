@@ -3,9 +3,7 @@
 use std::time::Instant;
 
 use sinew_core::CountingAllocator;
-use sinew_core::{
-    Equations, FreePart, Layers, LinearOperators, LinearSystem, Revision, System, simulate,
-};
+use sinew_core::{Equations, FreePart, Layers, LinearOperators, LinearSystem, Revision, System};
 use sinew_measure::{Effort, MeasureError, measure, on_one_thread, process_cpu_time};
 
 use super::cube::Cube;
@@ -13,6 +11,7 @@ use super::error::ScaleError;
 use super::methods::Variant;
 use super::row::ScaleRow;
 use crate::median::median;
+use crate::timed::time_run;
 
 /// Most laps, and the time (s) after which no further one is begun.
 const LAPS: usize = 5;
@@ -46,8 +45,7 @@ fn row_here(cube: &mut Cube, variant: &Variant) -> Result<ScaleRow, ScaleError> 
     while wall_times.is_empty() || wall_times.len() < LAPS && spent < BUDGET {
         state.clone_from(start);
         let (cpu, wall) = (process_cpu_time(), Instant::now());
-        simulate(system, &mut *integrator, &mut state, &run, &mut ())
-            .map_err(MeasureError::from)?;
+        time_run(system, &mut *integrator, &mut state, &run)?;
         cpu_times.push((process_cpu_time() - cpu).as_secs_f64());
         let wall = wall.elapsed().as_secs_f64();
         wall_times.push(wall);

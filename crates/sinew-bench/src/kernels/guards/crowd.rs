@@ -93,7 +93,7 @@ fn guard(
         let machine = FastMachine::new(layout.clone()).with_threads(threads);
         Runner::new(Box::new(machine), (model, &program, dt), &start)
     });
-    let of_step = runners[0].take(20)?.1 / 20.0;
+    let of_step = runners[0].take(20)?.cpu / 20.0;
     let (steps, laps) = match quick {
         true => (10, 3),
         false => ((LAP / of_step.max(1e-9)) as usize, 11),
@@ -101,7 +101,7 @@ fn guard(
     let mut ratios: Vec<f64> = Vec::with_capacity(laps);
     for _ in 0..laps {
         let [one, several] = &mut runners;
-        let (one, several) = (one.take(steps)?.0, several.take(steps)?.0);
+        let (one, several) = (one.take(steps)?.wall, several.take(steps)?.wall);
         ratios.push(several / one);
     }
     let kind = if templates { "templates" } else { "general" };

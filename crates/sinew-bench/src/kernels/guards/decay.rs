@@ -66,8 +66,7 @@ fn slowest(
     // Some stretches beyond the end, and never for ever.
     for _ in 0..2000 {
         early.state.clone_from(&start);
-        let (_, before) = early.take(steps)?;
-        let (_, after) = late.take(steps)?;
+        let (before, after) = (early.take(steps)?.cpu, late.take(steps)?.cpu);
         stretch.push(after / before);
         if stretch.len() == STRETCH {
             slowest = slowest.max(median(&mut stretch));

@@ -54,7 +54,7 @@ fn of<T: ElementPrecision>(
         let mut ratios: Vec<f64> = Vec::with_capacity(laps);
         for _ in 0..laps {
             let [portable, best] = &mut runners;
-            let (portable, best) = (portable.take(steps)?.1, best.take(steps)?.1);
+            let (portable, best) = (portable.take(steps)?.cpu, best.take(steps)?.cpu);
             ratios.push(portable / best);
         }
         guards.push(Guard {
