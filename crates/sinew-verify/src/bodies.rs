@@ -2,7 +2,8 @@
 
 use sinew_core::{LinearSystem, LoadTime, Ramp, System};
 use sinew_fem::{
-    Element, Fixed, FromMesh, Law, LoadKind, LoadSpec, Model, On, Problem, Region, Tissue,
+    Element, Fixed, FromMesh, Law, LoadKind, LoadSpec, Model, On, Problem, Region, SpringRule,
+    Tissue,
 };
 use sinew_integrators::static_solution;
 
@@ -21,6 +22,26 @@ pub fn body(youngs_modulus: f64, poissons_ratio: f64, element: Element) -> Probl
         poissons_ratio,
     };
     of_law(law, element)
+}
+
+/// Undamped springs along the edges, by a rule for the modulus of soft tissue.
+#[must_use]
+pub fn springs(rule: SpringRule) -> Law {
+    Law::Springs {
+        youngs_modulus: YOUNGS_MODULUS,
+        rule,
+        calibrate: false,
+        damping_ratio: 0.0,
+    }
+}
+
+/// Linear elasticity with the modulus of soft tissue.
+#[must_use]
+pub fn linear(poissons_ratio: f64) -> Law {
+    Law::Linear {
+        youngs_modulus: YOUNGS_MODULUS,
+        poissons_ratio,
+    }
 }
 
 /// A free body of one material.

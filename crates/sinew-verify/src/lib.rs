@@ -30,6 +30,7 @@ mod subject;
 mod subjects;
 mod text;
 pub mod tissue;
+mod uniform;
 mod vector;
 mod verdict;
 mod write;

@@ -1,15 +1,18 @@
 //! Fibres in a neo-Hookean material under uniform deformations.
 
+use sinew_fem::FibreFamily;
 use sinew_fem::hyperelastic::fibres::{Fibres, Stiffening};
 use sinew_fem::hyperelastic::{
     Deformation, HyperelasticLaw, LawError, NeoHookean, Parameters, Tensor,
 };
 
-use crate::bodies::YOUNGS_MODULUS;
-use crate::check::{Asked, Check};
+use crate::bodies::{YOUNGS_MODULUS, of_law};
+use crate::check::{Asked, Check, Source};
 use crate::error::VerifyError;
 use crate::sources::PROTOTYPE_OF_MOTIONS;
 use crate::subject::Subject;
+use crate::tissue::law;
+use crate::uniform::{EDGE, ELEMENTS, Uniform};
 
 pub(super) const SUBJECT: Subject = Subject {
     id: "fibres",
@@ -176,7 +179,71 @@ fn checks() -> Vec<Check> {
             });
             check.noted("fibres along (1, 1, 0)")
         });
-    pulled.chain(sheared).collect()
+    let mut checks: Vec<Check> = pulled.chain(sheared).collect();
+    let half = ROOT_OF_HALF;
+    let shear = Tensor([[0.0, 0.5, 0.0], [0.0; 3], [0.0; 3]]);
+    let uniaxial = UNIAXIAL.iter().map(|case| {
+        let [x, y, z] = case.stretches.map(|stretch| stretch - 1.0);
+        let h = Tensor([[x, 0.0, 0.0], [0.0, y, 0.0], [0.0, 0.0, z]]);
+        (case.name, case.stiffening, case.direction, h)
+    });
+    let oblique = [
+        ("quadratic, shear .5", QUADRATIC),
+        ("exponential, shear .5", exponential(0.0)),
+        ("exponential, dispersion .1, shear .5", exponential(0.1)),
+    ];
+    let oblique = oblique.map(|(name, stiffening)| (name, stiffening, [half, half, 0.0], shear));
+    checks.extend(uniaxial.chain(oblique).map(in_bodies));
+    checks
+}
+
+/// A uniform deformation in bodies of every element, whose fibres are given by a vector of any length.
+fn in_bodies((name, stiffening, direction, h): (&str, Stiffening, [f64; 3], Tensor<f64>)) -> Check {
+    let figures = [
+        "stress of any tetrahedron beside that of the material, over it",
+        "forces at an end beside P A, over it",
+        "largest force within over P A",
+    ];
+    let figures = figures.map(|name| (name, Asked::at_most(1e-11)));
+    let source = Source::ClosedForm(
+        "a uniform deformation is in equilibrium, with the stress of the material",
+    );
+    Check::several(
+        format!("{name}, bodies of every element"),
+        figures,
+        source,
+        move |_| {
+            let p = stress(stiffening, direction, h)?;
+            let mut worst = vec![0.0_f64; 3];
+            for element in ELEMENTS {
+                let mut problem = of_law(law("neo-hookean", YOUNGS_MODULUS, 0.45), element);
+                problem.regions[0].tissue.fibres = Some(FibreFamily {
+                    fibres: Fibres::new(stiffening).map_err(LawError::from)?,
+                    direction: direction.map(|x| 7.0 * x),
+                });
+                let body = Uniform::new(&problem, h)?;
+                let (_, force) = body.forces()?;
+                let (area, size) = (EDGE * EDGE, p.largest());
+                let mut off_end = 0.0_f64;
+                for end in 0..3 {
+                    for axis in 0..3 {
+                        let found = body.at_end(&force, end, axis) / area;
+                        off_end = off_end.max((found - p.0[axis][end]).abs() / size);
+                    }
+                }
+                let found = [
+                    body.off(h, p)?,
+                    off_end,
+                    body.within(&force) / (area * size),
+                ];
+                worst
+                    .iter_mut()
+                    .zip(found)
+                    .for_each(|(worst, found)| *worst = worst.max(found));
+            }
+            Ok(worst)
+        },
+    )
 }
 
 /// The first Piola-Kirchhoff stress (Pa) at a gradient of the displacement.

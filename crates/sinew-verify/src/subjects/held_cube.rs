@@ -3,13 +3,15 @@
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-use sinew_core::spectrum::critical_step;
+use sinew_core::spectrum::{Spectrum, critical_step};
 use sinew_core::vectors::dot;
 use sinew_core::{BlockMatrix, Layers, LinearSystem};
-use sinew_fem::{LoadKind, Model};
+use sinew_fem::{Element, Law, LoadKind, Model, SpringRule};
 use sinew_mesh::structured::{Split, cube};
 
-use crate::bodies::{DENSITY, YOUNGS_MODULUS, body, equilibrium, held, load, loads};
+use crate::bodies::{
+    DENSITY, YOUNGS_MODULUS, body, equilibrium, held, linear, load, loads, of_law, springs,
+};
 use crate::check::{Asked, Check, Source};
 use crate::error::VerifyError;
 use crate::kinds::Kind;
@@ -156,6 +158,73 @@ fn checks() -> Vec<Check> {
             ));
         }
     }
+    for (name, law, [sag, lowest, highest]) in [
+        (
+            "Lloyd's springs",
+            springs(SpringRule::Lloyd),
+            [1.695, 39.0, 505.0],
+        ),
+        (
+            "Van Gelder's springs",
+            springs(SpringRule::VanGelder),
+            [1.938, 33.4, 454.0],
+        ),
+        ("nu = .25", linear(0.25), [1.357, 47.7, 558.0]),
+        ("nu = .45", linear(0.45), [0.936, 45.7, 990.0]),
+        ("nu = .49", linear(0.49), [0.707, 45.9, 2100.0]),
+    ] {
+        let figures = [
+            (
+                "sag of the top's centre under 100 Pa (mm)",
+                Asked::value(sag, 5e-4),
+            ),
+            (
+                "lowest frequency, lumped mass (rad/s)",
+                Asked::value(lowest, 0.05),
+            ),
+            ("highest frequency (rad/s)", Asked::value(highest, 1.0)),
+        ];
+        let case = format!("{name}, 10 cells a side");
+        checks.push(Check::several(case, figures, PROTOTYPE, move |_| {
+            let model = pressed_cube(&law, EDGE, TRACTION)?;
+            let u = equilibrium(&model)?;
+            let (centre, _) = model.mesh().nearest_node([0.5 * EDGE, 0.5 * EDGE, EDGE]);
+            let sag = model.node_displacement(0.0, &u, centre)?[2];
+            let highest = Spectrum::of(model.operators()).omega_max;
+            Ok(vec![-1e3 * sag, lowest_omega_lumped(&model)?, highest])
+        }));
+    }
+    checks.push(Check::several(
+        "the paper's cube: Lloyd's springs, 0.2 m, 500 Pa",
+        [
+            ("nodes", Asked::value(1331.0, 0.0)),
+            ("springs", Asked::value(7930.0, 0.0)),
+            ("free degrees of freedom", Asked::value(2673.0, 0.0)),
+            ("load asked for (N)", Asked::value(-20.0, 1e-12)),
+            ("load on nodes that move (N)", Asked::value(-16.2, 1e-12)),
+        ],
+        Source::ClosedForm("11^3 nodes, of which 81 of the 121 on the top move"),
+        |_| {
+            let model = pressed_cube(&springs(SpringRule::Lloyd), 0.2, 500.0)?;
+            let report = model.report();
+            let counts = [report.nodes, report.edges, report.free_dofs].map(|count| count as f64);
+            let asked = report.loads[0].asked[2];
+            let acting: f64 = loads(&model).iter().sum();
+            Ok([counts.as_slice(), &[asked, acting]].concat())
+        },
+    ));
+    let figure = "stable step (ms)";
+    let asked = Asked::value(3.957, 5e-4);
+    checks.push(Check::one(
+        "Lloyd's springs, 10 cells a side",
+        figure,
+        asked,
+        PROTOTYPE,
+        |_| {
+            let model = pressed_cube(&springs(SpringRule::Lloyd), EDGE, TRACTION)?;
+            Ok(1e3 * critical_step(model.operators()))
+        },
+    ));
     checks.push(Check::one(
         "p1, 10 cells a side, nu = .45",
         "stable step (ms)",
@@ -166,6 +235,14 @@ fn checks() -> Vec<Check> {
         |_| Ok(1e3 * critical_step(held_cube(Kind::P1, 10, 0.45)?.operators())),
     ));
     checks
+}
+
+/// Plain tetrahedra under a pressure (Pa) on the top.
+fn pressed_cube(law: &Law, edge: f64, pressure: f64) -> Result<Model, VerifyError> {
+    let mut problem = of_law(law.clone(), Element::P1);
+    problem.fixed = vec![held("sides", [true; 3])];
+    problem.loads = vec![load("top", LoadKind::Pressure(pressure))];
+    Ok(Model::build(&cube(10, edge, Split::Kuhn)?, &problem)?)
 }
 
 fn held_cube(kind: Kind, cells: usize, nu: f64) -> Result<Model, VerifyError> {

@@ -1,15 +1,17 @@
 //! Laws of large deformation, element by element.
 
+use sinew_core::vectors::largest;
 use sinew_fem::hyperelastic::{Hyperelastic, NodeBlock, SingularValues, Tensor};
 use sinew_fem::{Element, Law, Model};
 use sinew_mesh::structured::{Split, cube};
 
-use crate::bodies::{YOUNGS_MODULUS, body};
+use crate::bodies::{YOUNGS_MODULUS, body, of_law};
 use crate::check::{Asked, Check, Source};
 use crate::closed_forms;
 use crate::error::VerifyError;
 use crate::subject::Subject;
 use crate::tissue;
+use crate::uniform::{EDGE, ELEMENTS, Uniform};
 
 pub(super) const SUBJECT: Subject = Subject {
     id: "hyperelastic",
@@ -36,7 +38,67 @@ fn checks() -> Vec<Check> {
         .noted("what a rotation costs where the theory is linear; 0 in all other laws"),
     );
     checks.extend(Hyperelastic::IDS.iter().map(|&id| closed_forms_of(id)));
+    checks.push(confined());
+    checks.extend(Hyperelastic::IDS.iter().map(|&id| rotations_of(id)));
     checks
+}
+
+/// A nearly incompressible block in confined compression by a tenth, on every element.
+fn confined() -> Check {
+    let figures = ELEMENTS.into_iter().flat_map(|element| {
+        [
+            (
+                format!("{element}: P33 for E = 1 Pa"),
+                Asked::value(-16.714_846_935, 1e-9),
+            ),
+            (
+                format!("{element}: largest force within over that on the top"),
+                Asked::at_most(1e-12),
+            ),
+        ]
+    });
+    let source = Source::ClosedForm("mu (l - 1/l) + lambda (l - 1), l = .9");
+    Check::several(
+        "neo-hookean, nu = .499, confined compression",
+        figures,
+        source,
+        |_| {
+            let h = Tensor([[0.0; 3], [0.0; 3], [0.0, 0.0, -0.1]]);
+            let mut found = Vec::new();
+            for element in ELEMENTS {
+                let body =
+                    Uniform::new(&of_law(tissue::law("neo-hookean", 1.0, 0.499), element), h)?;
+                let (_, force) = body.forces()?;
+                let top = body.at_end(&force, 2, 2);
+                found.extend([top / (EDGE * EDGE), body.within(&force) / top.abs()]);
+            }
+            Ok(found)
+        },
+    )
+}
+
+/// Turns of a body as one, by any angle, on every element.
+fn rotations_of(id: &'static str) -> Check {
+    let figures = [
+        ("largest force (N)", Asked::at_most(1e-11)),
+        ("energy (J)", Asked::at_most(1e-12)),
+    ];
+    let source = Source::ClosedForm("objectivity");
+    let case = format!("{id}, turned by .5, 2 and 3.1, every element");
+    Check::several(case, figures, source, move |_| {
+        let mut worst = [0.0_f64; 2];
+        for (element, angle) in ELEMENTS
+            .into_iter()
+            .flat_map(|of| [0.5, 2.0, 3.1].map(|by| (of, by)))
+        {
+            let (sin, cos) = f64::sin_cos(angle);
+            let h = Tensor([[cos - 1.0, -sin, 0.0], [sin, cos - 1.0, 0.0], [0.0; 3]]);
+            let body = Uniform::new(&of_law(tissue::law(id, YOUNGS_MODULUS, NU), element), h)?;
+            let (energy, force) = body.forces()?;
+            worst = [worst[0].max(largest(&force)), worst[1].max(energy.abs())];
+        }
+        Ok(worst.into())
+    })
 }
 
 /// Check of the identities that every law must fulfil.

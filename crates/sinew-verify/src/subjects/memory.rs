@@ -2,12 +2,20 @@
 
 use std::f64::consts::TAU;
 
+use sinew_core::vectors::largest;
+use sinew_core::{Inputs, State, System};
+use sinew_fem::hyperelastic::fibres::{Fibres, Stiffening};
 use sinew_fem::hyperelastic::prony::{Symmetric, Term, stress, tangent_factor};
+use sinew_fem::hyperelastic::{LawError, Tensor};
+use sinew_fem::{Element, FibreFamily, Memory, Model, Moduli, ViscousPart};
 
-use crate::bodies::YOUNGS_MODULUS;
+use crate::bodies::{YOUNGS_MODULUS, of_law};
 use crate::check::{Asked, Check, Source};
+use crate::error::VerifyError;
 use crate::sources::PROTOTYPE_OF_MOTIONS;
 use crate::subject::Subject;
+use crate::tissue::law;
+use crate::uniform::{ELEMENTS, Uniform};
 
 pub(super) const SUBJECT: Subject = Subject {
     id: "memory",
@@ -174,5 +182,146 @@ fn checks() -> Vec<Check> {
         Source::ClosedForm("1 - sum g + sum g (1 - e^-x)/x, x = dt/tau"),
         |_| Ok(tangent_factor(&TERMS, 0.01)),
     ));
+    let off = |is_within: f64| {
+        (
+            "largest stress off, of the largest",
+            Asked::at_most(is_within),
+        )
+    };
+    for element in ELEMENTS {
+        for steps in [1, 10, 400] {
+            checks.push(Check::several(
+                format!("{element}, fibres, strained at once and held for 1 s in {steps} steps"),
+                [off(1e-12)],
+                INTEGRAL,
+                move |_| Ok(vec![held_body(element, steps)?]),
+            ));
+        }
+        for id in ["neo-hookean-iso", "mooney-rivlin"] {
+            checks.push(Check::several(
+                format!("{id}, {element}, deviatoric stress alone relaxes for .4 s"),
+                [off(1e-12)],
+                INTEGRAL,
+                move |_| Ok(vec![pressure_stays(id, element)?]),
+            ));
+        }
+        for steps in [10, 100] {
+            checks.push(Check::several(
+                format!("stvk, {element}, Green's strain of .1/s, in {steps} steps"),
+                [off(1e-11)],
+                INTEGRAL,
+                move |_| Ok(vec![grown_body(element, steps)?]),
+            ));
+        }
+    }
     checks
+}
+
+/// A gradient of the displacement that stretches, shears and turns.
+const STRAINED: Tensor<f64> = Tensor([[0.2, 0.3, 0.0], [0.0, -0.1, 0.0], [0.1, 0.0, 0.05]]);
+
+/// A body of a law whose stress relaxes, at rest.
+fn relaxing(
+    id: &'static str,
+    element: Element,
+    part: ViscousPart,
+    with_fibres: bool,
+) -> Result<(Uniform, State), VerifyError> {
+    let mut problem = of_law(law(id, YOUNGS_MODULUS, 0.45), element);
+    problem.regions[0].tissue.memory = Some(Memory {
+        terms: TERMS.into(),
+        part,
+        moduli: Moduli::Instantaneous,
+    });
+    if with_fibres {
+        let fibres = Fibres::new(Stiffening::Quadratic { eta: 2000.0 });
+        problem.regions[0].tissue.fibres = Some(FibreFamily {
+            fibres: fibres.map_err(LawError::from)?,
+            direction: [1.0, 0.0, 2.0],
+        });
+    }
+    let body = Uniform::new(&problem, STRAINED)?;
+    let mut state = State::at_rest(body.u.len());
+    state.internal = vec![0.0; body.model.internal_variables()];
+    Ok((body, state))
+}
+
+fn stresses(model: &Model, state: &State) -> Result<Vec<[f64; 6]>, VerifyError> {
+    let mut stress = vec![[0.0; 6]; model.mesh().tets.len()];
+    let asked = model.with_memory(&state.internal);
+    asked.stress(0.0, &state.u, &mut stress)?;
+    Ok(stress)
+}
+
+/// The largest difference of two stresses over the largest of the second.
+fn apart(found: &[[f64; 6]], expected: &[[f64; 6]]) -> f64 {
+    let pairs = found.as_flattened().iter().zip(expected.as_flattened());
+    let differences: Vec<f64> = pairs.map(|(a, b)| a - b).collect();
+    largest(&differences) / largest(expected.as_flattened())
+}
+
+/// The share of a stress that is left at a time (s) after a strain at once.
+fn left(t: f64) -> f64 {
+    let lost = TERMS
+        .iter()
+        .map(|term| term.share * (1.0 - f64::exp(-t / term.time)));
+    1.0 - lost.sum::<f64>()
+}
+
+fn held_body(element: Element, steps: u32) -> Result<f64, VerifyError> {
+    let (body, mut state) = relaxing("neo-hookean", element, ViscousPart::All, true)?;
+    state.u.clone_from(&body.u);
+    // Not uniform, so that averages over edges and patches matter.
+    let waves = state.u.iter_mut().enumerate();
+    waves.for_each(|(dof, u)| *u += 1e-3 * (1.7 * dof as f64).sin());
+    body.model.accept(&mut state, Inputs::none(), 0.0)?;
+    let first = stresses(&body.model, &state)?;
+    for _ in 0..steps {
+        body.model
+            .accept(&mut state, Inputs::none(), 1.0 / f64::from(steps))?;
+    }
+    let expected: Vec<_> = first.iter().map(|s| s.map(|s| left(1.0) * s)).collect();
+    Ok(apart(&stresses(&body.model, &state)?, &expected))
+}
+
+fn pressure_stays(id: &'static str, element: Element) -> Result<f64, VerifyError> {
+    let (body, mut state) = relaxing(id, element, ViscousPart::Deviatoric, false)?;
+    state.u.clone_from(&body.u);
+    body.model.accept(&mut state, Inputs::none(), 0.0)?;
+    let first = stresses(&body.model, &state)?;
+    body.model.accept(&mut state, Inputs::none(), 0.4)?;
+    let expected = first.iter().map(|stress| {
+        let mean = (stress[0] + stress[1] + stress[2]) / 3.0;
+        std::array::from_fn(|k| {
+            let pressure = if k < 3 { mean } else { 0.0 };
+            pressure + left(0.4) * (stress[k] - pressure)
+        })
+    });
+    let expected: Vec<[f64; 6]> = expected.collect();
+    Ok(apart(&stresses(&body.model, &state)?, &expected))
+}
+
+/// A second Piola-Kirchhoff stress that grows evenly.
+fn grown_body(element: Element, steps: u32) -> Result<f64, VerifyError> {
+    let (body, mut state) = relaxing("stvk", element, ViscousPart::All, false)?;
+    let points = &body.model.mesh().points;
+    for step in 1..=steps {
+        let stretch = f64::sqrt(1.0 + 0.2 * f64::from(step) / f64::from(steps)) - 1.0;
+        let field: Vec<_> = points
+            .iter()
+            .map(|[x, ..]| [stretch * x, 0.0, 0.0])
+            .collect();
+        body.model.to_dofs(&field, &mut state.u)?;
+        body.model
+            .accept(&mut state, Inputs::none(), 1.0 / f64::from(steps))?;
+    }
+    let elastic = of_law(law("stvk", YOUNGS_MODULUS, 0.45), element);
+    let elastic = Uniform::new(&elastic, STRAINED)?.model;
+    let mut full = vec![[0.0; 6]; elastic.mesh().tets.len()];
+    elastic.stress(0.0, &state.u, &mut full)?;
+    let grown: f64 = TERMS.iter().fold(1.0, |left, term| {
+        left - term.share * (1.0 - term.time * (1.0 - f64::exp(-1.0 / term.time)))
+    });
+    let expected: Vec<_> = full.iter().map(|s| s.map(|s| grown * s)).collect();
+    Ok(apart(&stresses(&body.model, &state)?, &expected))
 }

@@ -1,10 +1,10 @@
 //! Networks of springs.
 
 use sinew_fem::springs::springs;
-use sinew_fem::{Element, Law, Model, NetworkModulus, SpringRule};
+use sinew_fem::{Element, Model, NetworkModulus, SpringRule};
 use sinew_mesh::structured::{Split, cube};
 
-use crate::bodies::{YOUNGS_MODULUS, body};
+use crate::bodies::{self, YOUNGS_MODULUS, of_law};
 use crate::check::{Asked, Check, Source};
 use crate::error::VerifyError;
 use crate::places::on_surface;
@@ -95,13 +95,7 @@ fn stiffness_and_moduli(rule: SpringRule) -> Result<Vec<f64>, VerifyError> {
         let is_whole = along == count && stiffest - softest <= 1e-9 * stiffest;
         found.push(if is_whole { stiffest } else { f64::NAN });
     }
-    let mut problem = body(YOUNGS_MODULUS, 0.0, Element::P1);
-    problem.regions[0].law = Law::Springs {
-        youngs_modulus: YOUNGS_MODULUS,
-        rule,
-        calibrate: false,
-        damping_ratio: 0.0,
-    };
+    let problem = of_law(bodies::springs(rule), Element::P1);
     let model = Model::build(&mesh, &problem)?;
     let nothing = NetworkModulus {
         voigt: f64::NAN,
