@@ -119,12 +119,35 @@ impl Pressed {
         self.tools.report(&self.state, 0).force
     }
 
+    /// The mean velocity (m/s) of the body along an axis, and its mass (kg).
+    pub(crate) fn mean_velocity(&self, axis: usize) -> (f64, f64) {
+        let all = self.state.v.iter().zip(self.model.mass());
+        let along = all.skip(axis).step_by(3);
+        let (momentum, mass) = along.fold((0.0, 0.0), |(p, m), (v, of)| (p + v * of, m + of));
+        (momentum / mass, mass)
+    }
+
+    /// Kinetic and elastic energy (J) of a linear body whose velocity holds at its time.
+    pub(crate) fn energy(&self) -> Result<f64, VerifyError> {
+        let energy = self.model.energy(&self.state.u, &self.state.v);
+        Ok(energy.ok_or(VerifyError::NoBody)?.total())
+    }
+
     /// Distance of the deepest node from the tool (m), negative inside.
     pub(crate) fn gap(&self) -> f64 {
         let pose = self.tools.pose(&self.state, Inputs::none(), 0);
         let deepest = self.tools.deepest(&self.state.u, &pose, 0);
         deepest.map_or(f64::INFINITY, |depth| depth.gap)
     }
+}
+
+/// `cnn-energy` by the potential of implicit Euler's step, with this many sweeps.
+pub(crate) fn energy_sweeps(sweeps: u32) -> (&'static str, Options) {
+    let options = Options::new().with_text("kind", "ie");
+    (
+        "cnn-energy",
+        options.with_number("sweeps", f64::from(sweeps)),
+    )
 }
 
 /// An integrator by its id.

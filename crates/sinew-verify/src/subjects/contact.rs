@@ -12,7 +12,7 @@ use sinew_tools::{Convex, Motion, Pose, Tool};
 use crate::bodies::{YOUNGS_MODULUS, body, held};
 use crate::check::{Asked, Check, Source};
 use crate::error::VerifyError;
-use crate::pressed::{Pressed, method, through, tool};
+use crate::pressed::{Pressed, energy_sweeps, method, through, tool};
 use crate::staggered_energy::staggered_energy;
 use crate::subject::Subject;
 
@@ -54,6 +54,27 @@ fn checks() -> Vec<Check> {
             ],
             Source::ClosedForm("E A d/L"),
             |_| plate_on_a_bar(),
+        ),
+        Check::several(
+            "plate on a bar, nu 0, cnn-energy with 60 sweeps",
+            [
+                ("force over E A d/L, less 1", Asked::at_most(1e-7)),
+                ("force across over E A d/L", Asked::at_most(1e-7)),
+            ],
+            Source::ClosedForm("E A d/L"),
+            |_| Ok(plate_by(energy_sweeps(60), Some(5e-3))?[..2].to_vec()),
+        ),
+        Check::several(
+            "ball at rest that has rubbed, cnn-energy beside central difference",
+            [
+                (
+                    "force along the ball's way down, over that, less 1",
+                    Asked::at_most(1e-3),
+                ),
+                ("force of friction, over that, less 1", Asked::at_most(0.05)),
+            ],
+            Source::ClosedForm("equilibrium does not depend on the step"),
+            |_| rubbed_by_sweeps(),
         ),
         Check::several(
             "ball at rest, by other methods and steps",
@@ -135,6 +156,39 @@ fn checks() -> Vec<Check> {
         };
         checks.push(check);
     }
+    for sweeps in [2, 4, 8, 16] {
+        checks.push(Check::one(
+            format!("block that slides at .5 m/s for .1 s, mu .3, cnn-energy with {sweeps} sweeps"),
+            "speed over v - mu g t",
+            Asked::value(1.0, 0.03),
+            Source::ClosedForm("Coulomb"),
+            move |_| slowed(sweeps),
+        ));
+    }
+    for share in [1.1, 2.3, 4.5, 9.0] {
+        for (id, options) in [
+            (NETWORK, Options::new()),
+            energy_sweeps(4),
+            energy_sweeps(16),
+        ] {
+            let sweeps = match options.get("sweeps") {
+                Some(OptionValue::Number(sweeps)) => format!(" with {sweeps} sweeps"),
+                _ => String::new(),
+            };
+            checks.push(Check::several(
+                format!("slab drawn over a floor, mu .1, {id}{sweeps} at {share} stable steps"),
+                [
+                    ("acceleration over that of a point", Asked::value(1.0, 0.05)),
+                    (
+                        "mean force on the floor over its weight",
+                        Asked::value(1.0, 0.1),
+                    ),
+                ],
+                Source::ClosedForm("Newton's second law of the slab as a whole"),
+                move |_| drawn(id, &options, share),
+            ));
+        }
+    }
     for speed in [1.0, 5.0, 20.0, 50.0] {
         checks.push(Check::one(
             format!("ball of 5 mm through a slab of one cell at {speed} m/s, steps of 5 ms"),
@@ -184,14 +238,22 @@ fn under(
 }
 
 fn plate_on_a_bar() -> Result<Vec<f64>, VerifyError> {
+    plate_by(("symplectic-euler", Options::new()), None)
+}
+
+/// Figures of a plate on a bar by a method, in steps of `dt` (s) or half the stable one.
+fn plate_by((id, options): (&str, Options), dt: Option<f64>) -> Result<Vec<f64>, VerifyError> {
     let (length, width, depth) = (0.1, 0.02, 0.002);
     let down = [(0.0, [0.0, 0.0, length]), (0.1, [0.0, 0.0, length - depth])];
     let plate = tool(Convex::Plane, through(&down, DOWN)?, 0.0);
     let bar = ([2, 2, 8], [width, width, length]);
     let mut pressed = under(bar, &cube(0.0, 60.0), plate)?;
-    let dt = 0.5 * pressed.stable_step()?;
-    let mut integrator = method("symplectic-euler", &Options::new())?;
-    pressed.run(&mut *integrator, dt, (1.3 / dt) as usize)?;
+    let (dt, duration) = match dt {
+        Some(dt) => (dt, 1.5),
+        None => (0.5 * pressed.stable_step()?, 1.3),
+    };
+    let mut integrator = method(id, &options)?;
+    pressed.run(&mut *integrator, dt, (duration / dt) as usize)?;
     let expected = YOUNGS_MODULUS * width * width * depth / length;
     let report = pressed.tools.report(&pressed.state, 0);
     let [x, y, z] = report.force;
@@ -232,6 +294,68 @@ fn settled_forces() -> Result<Vec<f64>, VerifyError> {
         worst = worst.max((force / expected - 1.0).abs());
     }
     Ok(vec![worst, expected])
+}
+
+/// Differences of the forces after a ball was pressed into a cube and drawn aside, by sweeps, from those of central difference, over these.
+fn rubbed_by_sweeps() -> Result<Vec<f64>, VerifyError> {
+    let down = [
+        (0.0, [0.03, 0.03, 0.0725]),
+        (0.2, [0.03, 0.03, 0.067]),
+        (0.4, [0.032, 0.03, 0.067]),
+    ];
+    let settled = |(id, options): (&str, Options), dt: f64| {
+        let ball = tool(Convex::sphere(0.012)?, through(&down, [0.0; 3])?, 0.3);
+        let mut pressed = under(([5; 3], [0.06; 3]), &cube(0.45, 40.0), ball)?;
+        pressed.run(&mut *method(id, &options)?, dt, (1.6 / dt) as usize)?;
+        Ok::<[f64; 3], VerifyError>(pressed.force())
+    };
+    let expected = settled(("central-difference", Options::new()), 0.5e-3)?;
+    let found = settled(energy_sweeps(30), 2e-3)?;
+    Ok([2, 0]
+        .map(|axis| (found[axis] / expected[axis] - 1.0).abs())
+        .into())
+}
+
+/// A free slab on a floor that rubs, under an acceleration (m/s^2).
+fn slab(nu: f64, gravity: [f64; 3], friction: f64) -> Result<Pressed, VerifyError> {
+    let floor = tool(Convex::Plane, Motion::Held(Pose::identity()), friction);
+    let problem = Problem {
+        gravity: Some(gravity),
+        ..body(YOUNGS_MODULUS, nu, Element::P1)
+    };
+    under(([3, 3, 1], [0.06, 0.06, 0.02]), &problem, floor)
+}
+
+fn slowed(sweeps: u32) -> Result<f64, VerifyError> {
+    let (friction, start, dt, steps) = (0.3, 0.5, 0.5e-3, 200);
+    let mut pressed = slab(0.0, [0.0, 0.0, -GRAVITY], friction)?;
+    pressed
+        .state
+        .v
+        .iter_mut()
+        .step_by(3)
+        .for_each(|v| *v = start);
+    let (id, options) = energy_sweeps(sweeps);
+    pressed.run(&mut *method(id, &options)?, dt, steps)?;
+    Ok(pressed.mean_velocity(0).0 / (start - friction * GRAVITY * dt * steps as f64))
+}
+
+/// Mean acceleration of a slab that is pulled sideways, over that of a point, and its mean force on the floor over its weight.
+fn drawn(id: &str, options: &Options, share: f64) -> Result<Vec<f64>, VerifyError> {
+    let (friction, pull, weight) = (0.1, 1.5, 6.0);
+    let mut pressed = slab(0.3, [pull, 0.0, -weight], friction)?;
+    let dt = share * pressed.stable_step()?;
+    let steps = (0.4 / dt).round() as usize;
+    pressed.run(&mut *method(id, options)?, dt, steps)?;
+    // The network's first step has half of the force.
+    let halves = if id == NETWORK { 0.5 } else { 0.0 };
+    let time = dt * (steps as f64 - halves);
+    let (speed, mass) = pressed.mean_velocity(0);
+    let [_, _, impulse] = pressed.tools.report(&pressed.state, 0).impulse;
+    Ok(vec![
+        speed / time / (pull - friction * weight),
+        -impulse / time / (mass * weight),
+    ])
 }
 
 /// Three ratios for a cube that falls on a plate: error of the change of momentum relative to the impulse, impulse over
@@ -331,11 +455,7 @@ fn on_an_incline(angle: f64) -> Result<f64, VerifyError> {
     let plane = tool(Convex::Plane, Motion::Held(Pose::identity()), 0.3);
     let mut pressed = under(([2; 3], [0.02; 3]), &problem, plane)?;
     let mut integrator = method("symplectic-euler", &Options::new())?;
-    let speed = |pressed: &Pressed| {
-        let all = pressed.state.v.iter().zip(pressed.model.mass()).step_by(3);
-        let (momentum, mass) = all.fold((0.0, 0.0), |(p, m), (v, of)| (p + v * of, m + of));
-        momentum / mass
-    };
+    let speed = |pressed: &Pressed| pressed.mean_velocity(0).0;
     let dt = 2e-4;
     // It settles on its support first.
     pressed.run(&mut *integrator, dt, 3000)?;

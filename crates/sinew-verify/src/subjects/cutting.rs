@@ -2,16 +2,17 @@
 
 use std::sync::Arc;
 
-use sinew_core::spectrum::largest_eigenvalue;
-use sinew_core::{Inputs, LinearSystem, Options, State, System};
+use nalgebra::{Matrix3, Vector3};
+use sinew_core::spectrum::{largest_eigenvalue, largest_eigenvalue_of_pencil};
+use sinew_core::{ElementBounds, Inputs, LinearSystem, Options, State, System};
 use sinew_cutting::Sheet;
-use sinew_fem::{CutModel, Element, Model, Problem};
+use sinew_fem::{CutModel, Element, Model, Problem, SpringRule};
 use sinew_integrators::Frame;
 use sinew_integrators::cnn::CnnStabilised;
 use sinew_mesh::structured::{Split, block, cube};
 
 use super::full_strokes;
-use crate::bodies::{DENSITY, YOUNGS_MODULUS, body, held};
+use crate::bodies::{DENSITY, YOUNGS_MODULUS, body, held, of_law, springs};
 use crate::check::{Asked, Check, Source};
 use crate::error::VerifyError;
 use crate::pressed::method;
@@ -63,6 +64,50 @@ fn checks() -> Vec<Check> {
             move |_| frequencies(nu),
         ));
     }
+    for (nu, factor) in [(0.25, 2.120), (0.45, 2.703), (0.49, 3.212)] {
+        checks.push(Check::several(
+            format!("K beside its blocks, nu {nu}"),
+            [
+                (
+                    "largest eigenvalue of the whole body",
+                    Asked::value(factor, 6e-3),
+                ),
+                ("faces of a slit", Asked::value(140.0, 0.0)),
+                (
+                    "largest frequency over its bound, a quarter of all faces cut",
+                    Asked::at_most(1.0),
+                ),
+                (
+                    "largest eigenvalue over its bound, a quarter of all faces cut",
+                    Asked::at_most(1.0),
+                ),
+                (
+                    "bounds after the cuts over those before, less 1",
+                    Asked::value(0.0, 0.0),
+                ),
+            ],
+            BOUNDS,
+            move |_| blocks(nu),
+        ));
+    }
+    checks.push(Check::several(
+        "Lloyd's springs",
+        [
+            ("bound of K by its blocks", Asked::value(2.0, 1e-9)),
+            (
+                "largest frequency over its bound, all faces cut",
+                Asked::at_most(1.0),
+            ),
+        ],
+        SUM,
+        |_| {
+            let mut cut = of_springs(3, SpringRule::Lloyd)?;
+            let factor = bounds(&cut)?.block_factor;
+            let mut state = State::at_rest(cut.model().dofs());
+            cut.cut_faces(inner_faces(&cut), &mut state, Inputs::none())?;
+            Ok(vec![factor, omega_max(cut.model()) / omega_bound(&cut)?])
+        },
+    ));
     checks.push(Check::several(
         "all faces within the body cut: 6000 loose tetrahedra",
         [
@@ -76,6 +121,20 @@ fn checks() -> Vec<Check> {
         SUM,
         |_| loose_tetrahedra(),
     ));
+    checks.push(Check::one(
+        "all faces within the body of 3 cells a side cut, nothing held",
+        "largest eigenvalue of K beside its blocks over its bound, less 1",
+        Asked::value(0.0, 1e-8),
+        SUM,
+        |_| {
+            let mesh = cube(3, EDGE, Split::Kuhn)?;
+            let free = body(YOUNGS_MODULUS, 0.45, Element::P1);
+            let mut cut = CutModel::new(Arc::new(mesh), free, 0.0)?;
+            let mut state = State::at_rest(cut.model().dofs());
+            cut.cut_faces(inner_faces(&cut), &mut state, Inputs::none())?;
+            Ok(block_factor(cut.model())? / bounds(&cut)?.block_factor - 1.0)
+        },
+    ));
     checks.push(Check::several(
         "slit through a body that moves",
         ["mass", "momentum", "kinetic energy", "elastic energy"].map(|of| {
@@ -85,7 +144,18 @@ fn checks() -> Vec<Check> {
             )
         }),
         SUM,
-        |_| kept_by_a_slit(),
+        |_| kept_by_a_slit(cuttable(10, 0.45, 0.0)?),
+    ));
+    checks.push(Check::several(
+        "slit through Van Gelder's springs that move",
+        ["mass", "momentum", "kinetic energy", "elastic energy"].map(|of| {
+            (
+                format!("{of} after over that before, less 1"),
+                Asked::value(0.0, 1e-13),
+            )
+        }),
+        SUM,
+        |_| kept_by_a_slit(of_springs(6, SpringRule::VanGelder)?),
     ));
     checks.push(Check::several(
         "bar of nu 0 that is stretched and cut in the middle",
@@ -208,18 +278,83 @@ fn omega_max(model: &Model) -> f64 {
     largest_eigenvalue(model.mass(), |x, out| k.multiply(x, out)).sqrt()
 }
 
-fn omega_bound(cut: &CutModel) -> Result<f64, VerifyError> {
+fn bounds(cut: &CutModel) -> Result<ElementBounds, VerifyError> {
     let bounds = cut.model().operators().element_bounds();
-    Ok(bounds.ok_or(VerifyError::NoBody)?.omega_max)
+    bounds.ok_or(VerifyError::NoBody)
+}
+
+fn omega_bound(cut: &CutModel) -> Result<f64, VerifyError> {
+    Ok(bounds(cut)?.omega_max)
+}
+
+/// A cube of springs that stands on its bottom.
+fn of_springs(cells: usize, rule: SpringRule) -> Result<CutModel, VerifyError> {
+    let mut problem = of_law(springs(rule), Element::P1);
+    problem.fixed = vec![held("bottom", [true; 3])];
+    let mesh = cube(cells, EDGE, Split::Kuhn)?;
+    Ok(CutModel::new(Arc::new(mesh), problem, 0.0)?)
+}
+
+/// Faces between tetrahedra, each once.
+fn inner_faces(cut: &CutModel) -> Vec<(u32, usize)> {
+    let body = cut.body();
+    let tets = 0..body.tets().len() as u32;
+    let faces = tets.flat_map(|tet| (0..4).map(move |vertex| (tet, vertex)));
+    let is_first = |(tet, vertex): &(u32, usize)| {
+        let other = body.neighbour(*tet, *vertex);
+        other.is_some_and(|other| other > *tet)
+    };
+    faces.filter(is_first).collect()
+}
+
+/// The largest eigenvalue of K beside its own blocks, by iteration.
+fn block_factor(model: &Model) -> Result<f64, VerifyError> {
+    let k = model.operators().stiffness();
+    let mut inverse = Vec::new();
+    for cell in 0..k.pattern().cells() {
+        let block = k.block(cell, cell).ok_or(VerifyError::NoBody)?;
+        let block = Matrix3::from_row_slice(block).try_inverse();
+        inverse.push(block.ok_or(VerifyError::NoBody)?);
+    }
+    let solve = |x: &[f64], out: &mut [f64]| {
+        let cells = x.chunks_exact(3).zip(out.chunks_exact_mut(3));
+        for ((x, out), block) in cells.zip(&inverse) {
+            out.copy_from_slice((block * Vector3::from_column_slice(x)).as_slice());
+        }
+    };
+    let multiply = |x: &[f64], out: &mut [f64]| k.multiply(x, out);
+    Ok(largest_eigenvalue_of_pencil(model.dofs(), multiply, solve))
+}
+
+fn blocks(nu: f64) -> Result<Vec<f64>, VerifyError> {
+    let mut cut = cuttable(10, nu, 0.0)?;
+    let (before, whole) = (bounds(&cut)?, block_factor(cut.model())?);
+    let mut state = State::at_rest(cut.model().dofs());
+    let blade = |z: f64| [[0.05, -0.01, z], [0.05, 0.11, z]];
+    let sheet = Sheet::swept(blade(0.11), blade(0.0301)).ok_or(VerifyError::NoBody)?;
+    let faces = cut.stroke(&sheet, &mut state, Inputs::none())?.faces;
+    let quarter: Vec<_> = inner_faces(&cut).into_iter().step_by(4).collect();
+    cut.cut_faces(quarter, &mut state, Inputs::none())?;
+    let after = bounds(&cut)?;
+    let changes = [
+        after.omega_max / before.omega_max,
+        after.block_factor / before.block_factor,
+    ];
+    Ok(vec![
+        whole,
+        faces as f64,
+        omega_max(cut.model()) / before.omega_max,
+        block_factor(cut.model())? / before.block_factor,
+        changes
+            .map(|change| (change - 1.0).abs())
+            .into_iter()
+            .fold(0.0, f64::max),
+    ])
 }
 
 fn frequencies(nu: f64) -> Result<Vec<f64>, VerifyError> {
     let mut cut = cuttable(10, nu, 0.0)?;
-    let bounds = cut
-        .model()
-        .operators()
-        .element_bounds()
-        .ok_or(VerifyError::NoBody)?;
+    let bounds = bounds(&cut)?;
     let whole = omega_max(cut.model());
     let mut state = State::at_rest(cut.model().dofs());
     let nodes = slit(&mut cut, &mut state, 0.0301)?;
@@ -258,8 +393,7 @@ fn some_state(model: &Model) -> State {
     )
 }
 
-fn kept_by_a_slit() -> Result<Vec<f64>, VerifyError> {
-    let mut cut = cuttable(10, 0.45, 0.0)?;
+fn kept_by_a_slit(mut cut: CutModel) -> Result<Vec<f64>, VerifyError> {
     let mut state = some_state(cut.model());
     let figures = |model: &Model, state: &State| -> Result<[f64; 4], VerifyError> {
         let energy = model

@@ -5,6 +5,7 @@ mod bent_beam;
 mod bonded_block;
 mod cantilever;
 mod contact;
+mod convergence;
 mod cook;
 mod cutting;
 mod energy;
@@ -38,6 +39,7 @@ pub(super) const SUBJECTS: &[Subject] = &[
     held_cube::SUBJECT,
     free_cube::SUBJECT,
     pressure::SUBJECT,
+    convergence::SUBJECT,
     oscillator::SUBJECT,
     wave::SUBJECT,
     propagation::SUBJECT,

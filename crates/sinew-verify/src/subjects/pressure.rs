@@ -223,7 +223,7 @@ fn place(mesh: &TetMesh, tet: usize, shares: [f64; 4]) -> [f64; 3] {
 
 /// The integral of the body force times each shape function (N).
 fn consistent_load(mesh: &TetMesh, mu: f64) -> Vec<[f64; 3]> {
-    let rule = rule();
+    let rule = rule(2);
     let mut load = vec![[0.0; 3]; mesh.points.len()];
     for (tet, nodes) in mesh.tets.iter().enumerate() {
         let volume = mesh.volume(tet);

@@ -1,7 +1,6 @@
 //! Elements against closed forms.
 
 mod affine_tensor;
-mod manufactured_solution;
 mod scales;
 mod smoothed_elements;
 mod strain_and_stress;
