@@ -7,7 +7,7 @@ use sinew_fem::{
 };
 use sinew_integrators::static_solution;
 
-use crate::error::VerifyError;
+use crate::error::LabError;
 
 /// Density of soft tissue (kg/m^3).
 pub const DENSITY: f64 = 1060.0;
@@ -87,7 +87,7 @@ pub fn loads(model: &Model) -> Vec<f64> {
 }
 
 /// The equilibrium (m) of a model under its loads.
-pub fn equilibrium(model: &Model) -> Result<Vec<f64>, VerifyError> {
+pub fn equilibrium(model: &Model) -> Result<Vec<f64>, LabError> {
     Ok(static_solution(model, &loads(model))?)
 }
 

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::error::VerifyError;
+use crate::error::LabError;
 use crate::inputs::Inputs;
 
 /// Requirement for a figure.
@@ -89,7 +89,7 @@ impl Source {
 }
 
 /// The function that computes the figures of a check.
-type Compute = Box<dyn Fn(&Inputs) -> Result<Vec<f64>, VerifyError> + Send + Sync>;
+type Compute = Box<dyn Fn(&Inputs) -> Result<Vec<f64>, LabError> + Send + Sync>;
 
 /// One computation and the figures that it gives, each a row of the verification.
 pub(crate) struct Check {
@@ -111,7 +111,7 @@ impl Check {
         figure: impl Into<String>,
         asked: Asked,
         source: Source,
-        compute: impl Fn(&Inputs) -> Result<f64, VerifyError> + Send + Sync + 'static,
+        compute: impl Fn(&Inputs) -> Result<f64, LabError> + Send + Sync + 'static,
     ) -> Self {
         let figures = [(figure.into(), asked)];
         Self::several(case, figures, source, move |inputs| {
@@ -124,7 +124,7 @@ impl Check {
         case: impl Into<String>,
         figures: impl IntoIterator<Item = (N, Asked)>,
         source: Source,
-        compute: impl Fn(&Inputs) -> Result<Vec<f64>, VerifyError> + Send + Sync + 'static,
+        compute: impl Fn(&Inputs) -> Result<Vec<f64>, LabError> + Send + Sync + 'static,
     ) -> Self {
         let figures = figures.into_iter();
         Self {

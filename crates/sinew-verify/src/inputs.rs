@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use sinew_mesh::{TetMesh, read_msh_file};
 
-use crate::error::VerifyError;
+use crate::error::LabError;
 
 /// Places of the files that checks read.
 #[derive(Clone, Debug)]
@@ -15,7 +15,7 @@ pub(crate) struct Inputs {
 
 impl Inputs {
     /// A mesh of the repository, by its name.
-    pub(crate) fn mesh(&self, name: &str) -> Result<TetMesh, VerifyError> {
+    pub(crate) fn mesh(&self, name: &str) -> Result<TetMesh, LabError> {
         let path = self.root.join("meshes").join(name);
         Ok(read_msh_file(path.with_extension("msh"))?.to_tet_mesh()?)
     }

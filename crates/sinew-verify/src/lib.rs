@@ -36,7 +36,7 @@ mod verdict;
 mod write;
 
 pub use check::{Asked, Source};
-pub use error::VerifyError;
+pub use error::LabError;
 pub use machine::{Machine, machine, revision};
 pub use progress::Progress;
 pub use reference::tet10::{HeldTet10, Tet10, Tissue};

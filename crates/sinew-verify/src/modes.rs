@@ -4,18 +4,18 @@ use sinew_core::LinearSystem;
 use sinew_core::spectrum::largest_eigenvalue_of_pencil;
 use sinew_integrators::{Combination, Factor};
 
-use crate::error::VerifyError;
+use crate::error::LabError;
 
 /// The lowest angular frequency (rad/s) of a system that is held, with a mass of its own: `multiply(x, out)` writes `out = M x`.
 pub fn lowest_omega(
     system: &dyn LinearSystem,
     multiply: impl FnMut(&[f64], &mut [f64]),
-) -> Result<f64, VerifyError> {
+) -> Result<f64, LabError> {
     Ok(largest_beside_stiffness(system, multiply)?.sqrt().recip())
 }
 
 /// The lowest angular frequency (rad/s) of a system with its lumped mass.
-pub fn lowest_omega_lumped(system: &dyn LinearSystem) -> Result<f64, VerifyError> {
+pub fn lowest_omega_lumped(system: &dyn LinearSystem) -> Result<f64, LabError> {
     lowest_omega(system, |x, out| {
         for ((out, x), mass) in out.iter_mut().zip(x).zip(system.mass()) {
             *out = mass * x;
@@ -27,7 +27,7 @@ pub fn lowest_omega_lumped(system: &dyn LinearSystem) -> Result<f64, VerifyError
 pub fn largest_beside_stiffness(
     system: &dyn LinearSystem,
     multiply: impl FnMut(&[f64], &mut [f64]),
-) -> Result<f64, VerifyError> {
+) -> Result<f64, LabError> {
     let operators = system.operators();
     let mut factor = Factor::analyse(operators)?;
     factor.factorise(operators, Combination::STATIC)?;

@@ -2,7 +2,7 @@
 
 use sinew_mesh::{GroupMembers, TetMesh};
 
-use crate::error::VerifyError;
+use crate::error::LabError;
 use crate::vector::{difference, norm};
 
 /// The nodes at places for which `belongs` holds.
@@ -13,11 +13,11 @@ pub fn nodes_where(mesh: &TetMesh, belongs: impl Fn([f64; 3]) -> bool) -> Vec<u3
 }
 
 /// The node at a place (m).
-pub fn node_at(points: &[[f64; 3]], place: [f64; 3]) -> Result<u32, VerifyError> {
+pub fn node_at(points: &[[f64; 3]], place: [f64; 3]) -> Result<u32, LabError> {
     let is_there = |point: &[f64; 3]| norm(difference(*point, place)) <= 1e-9;
     let node = points.iter().position(is_there);
     node.map(|node| node as u32)
-        .ok_or(VerifyError::NoNode { place })
+        .ok_or_else(|| LabError::new(format!("the mesh has no node at {place:?}")))
 }
 
 /// The triangles of a group all of whose corners are at places for which `belongs` holds.
@@ -25,7 +25,7 @@ pub fn triangles_where(
     mesh: &TetMesh,
     group: &str,
     belongs: impl Fn([f64; 3]) -> bool,
-) -> Result<Vec<[u32; 3]>, VerifyError> {
+) -> Result<Vec<[u32; 3]>, LabError> {
     let GroupMembers::Triangles(triangles) = &mesh.group(group)?.members else {
         return Ok(Vec::new());
     };

@@ -12,7 +12,7 @@ use sinew_tools::{
     Convex, Corner, Motion, Row, Shape, Table, Tool, Tools, TouchedCell, TouchedTriangle,
 };
 
-use crate::error::VerifyError;
+use crate::error::LabError;
 
 /// A body under one tool, and its motion.
 pub(crate) struct Pressed {
@@ -28,7 +28,7 @@ impl Pressed {
         problem: &Problem,
         tool: Tool,
         may_touch: impl Fn([f64; 3]) -> bool,
-    ) -> Result<Self, VerifyError> {
+    ) -> Result<Self, LabError> {
         let model = Model::build(mesh, problem)?;
         let held = model.pinned().as_chunks::<3>().0;
         let cells = (0..).zip(model.nodes()).zip(held);
@@ -56,7 +56,7 @@ impl Pressed {
         mesh: &TetMesh,
         problem: &Problem,
         tool: Tool,
-    ) -> Result<Self, VerifyError> {
+    ) -> Result<Self, LabError> {
         let pressed = Self::new(mesh, problem, tool, |_| true)?;
         let corner = |node: u32| match pressed.model.cell_of_node(node) {
             Some(cell) => Corner::Cell(cell),
@@ -83,14 +83,14 @@ impl Pressed {
     }
 
     /// The largest stable step (s) of central difference.
-    pub(crate) fn stable_step(&self) -> Result<f64, VerifyError> {
+    pub(crate) fn stable_step(&self) -> Result<f64, LabError> {
         let integrator = method("central-difference", &Options::new())?;
         match integrator
             .stable_step(&self.model)
             .map_err(StepError::from)?
         {
             StableStep::UpTo(step) => Ok(step),
-            StableStep::Any | StableStep::Unknown => Err(VerifyError::NoBody),
+            StableStep::Any | StableStep::Unknown => Err(LabError::no_body()),
         }
     }
 
@@ -100,7 +100,7 @@ impl Pressed {
         integrator: &mut dyn Integrator,
         dt: f64,
         steps: usize,
-    ) -> Result<(), VerifyError> {
+    ) -> Result<(), LabError> {
         let run = Run {
             dt,
             steps,
@@ -110,7 +110,7 @@ impl Pressed {
         match simulate_under(model, inputs, integrator, &mut self.state, &run, &mut ()) {
             Ok(_) => Ok(()),
             Err(SimulateError::Step(error)) => Err(error.into()),
-            Err(_) => Err(VerifyError::NoBody),
+            Err(_) => Err(LabError::no_body()),
         }
     }
 
@@ -128,9 +128,9 @@ impl Pressed {
     }
 
     /// Kinetic and elastic energy (J) of a linear body whose velocity holds at its time.
-    pub(crate) fn energy(&self) -> Result<f64, VerifyError> {
+    pub(crate) fn energy(&self) -> Result<f64, LabError> {
         let energy = self.model.energy(&self.state.u, &self.state.v);
-        Ok(energy.ok_or(VerifyError::NoBody)?.total())
+        Ok(energy.ok_or_else(LabError::no_body)?.total())
     }
 
     /// Distance of the deepest node from the tool (m), negative inside.
@@ -151,7 +151,7 @@ pub(crate) fn energy_sweeps(sweeps: u32) -> (&'static str, Options) {
 }
 
 /// An integrator by its id.
-pub(crate) fn method(id: &str, options: &Options) -> Result<Box<dyn Integrator>, VerifyError> {
+pub(crate) fn method(id: &str, options: &Options) -> Result<Box<dyn Integrator>, LabError> {
     Ok(sinew_integrators::build(id, options)?)
 }
 
@@ -173,7 +173,7 @@ pub(crate) fn tool(convex: Convex, motion: Motion, friction: f64) -> Tool {
 pub(crate) fn through(
     rows: &[(f64, [f64; 3])],
     rotation_vector: [f64; 3],
-) -> Result<Motion, VerifyError> {
+) -> Result<Motion, LabError> {
     let rows = rows.iter().map(|(t, position)| Row {
         t: *t,
         position: *position,

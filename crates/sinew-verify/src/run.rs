@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
 use crate::check::Check;
-use crate::error::VerifyError;
+use crate::error::LabError;
 use crate::inputs::Inputs;
 use crate::machine::Machine;
 use crate::progress::Progress;
@@ -159,10 +159,10 @@ fn verified(check: &Check, inputs: &Inputs) -> Vec<VerifiedRow> {
     let asked = check.figures.len();
     let computed = (check.compute)(inputs).and_then(|figures| match figures.len() == asked {
         true => Ok(figures),
-        false => Err(VerifyError::Count {
-            computed: figures.len(),
-            asked,
-        }),
+        false => Err(LabError::new(format!(
+            "{} figures were computed, {asked} are asked for",
+            figures.len()
+        ))),
     });
     let seconds = start.elapsed().as_secs_f64();
     let row = |(number, (figure, asked)): (usize, &(String, _))| {

@@ -1,15 +1,16 @@
 //! Blocks of tissue under large deformation, which the verification and the hard cases move.
 
+use crate::error::LabError;
 use std::f64::consts::{PI, TAU};
 
 use sinew_core::{Integrator, LinearSystem, Ramp, State, StepError, StepReport, System};
 use sinew_fem::hyperelastic::{Hyperelastic, Parameters};
-use sinew_fem::{Element, FemError, Law, LoadKind, LoadSpec, Model, On, Problem, Rayleigh};
+use sinew_fem::{Element, Law, LoadKind, LoadSpec, Model, On, Problem, Rayleigh};
 use sinew_integrators::explicit::PatchedCentralDifference;
 use sinew_integrators::{Frame, StaticError, static_solution_under};
 use sinew_measure::reference::ErrorNorm;
 use sinew_mesh::TetMesh;
-use sinew_mesh::structured::{Split, StructuredError, block};
+use sinew_mesh::structured::{Split, block};
 
 use crate::bodies::held;
 
@@ -20,17 +21,6 @@ pub const EDGE: f64 = 0.1;
 
 /// Size (m) of the slender column.
 pub const COLUMN: [f64; 3] = [0.02, 0.02, 0.12];
-
-/// Why there is no such block.
-#[derive(Debug, thiserror::Error)]
-pub enum TissueError {
-    /// Its mesh.
-    #[error(transparent)]
-    Mesh(#[from] StructuredError),
-    /// Its model.
-    #[error(transparent)]
-    Model(#[from] FemError),
-}
 
 /// A hyperelastic law with these moduli at small strain, and example values of its other parameters; one that does not
 /// exist is refused by the model.
@@ -71,7 +61,7 @@ pub struct Specimen {
 
 impl Specimen {
     /// A body at rest.
-    pub fn new(mesh: &TetMesh, problem: &Problem) -> Result<Self, TissueError> {
+    pub fn new(mesh: &TetMesh, problem: &Problem) -> Result<Self, LabError> {
         let model = Model::build(mesh, problem)?;
         let start = State::at_rest(model.dofs());
         Ok(Self { model, start })
@@ -148,7 +138,7 @@ pub fn relative_error(found: &[Vec<f64>], exact: &[Vec<f64>]) -> f64 {
 }
 
 /// A cube that is stretched by half along z at the volume of rest, and let go.
-pub fn release(cells: usize, law: Law, element: Element) -> Result<Specimen, TissueError> {
+pub fn release(cells: usize, law: Law, element: Element) -> Result<Specimen, LabError> {
     let mesh = block([cells; 3], [EDGE; 3], Split::Mirrored)?;
     let specimen = Specimen::new(&mesh, &standing(law, element))?;
     Ok(specimen.displaced(|[x, y, z]| {
@@ -165,7 +155,7 @@ pub fn spun_column(
     size: [f64; 3],
     spin: f64,
     problem: &Problem,
-) -> Result<Specimen, TissueError> {
+) -> Result<Specimen, LabError> {
     let mesh = block(cells, size, Split::Mirrored)?;
     let specimen = Specimen::new(&mesh, problem)?;
     let [width, depth, height] = size;
@@ -182,7 +172,7 @@ pub fn pressed(
     element: Element,
     damping: f64,
     ramp: Ramp,
-) -> Result<Specimen, TissueError> {
+) -> Result<Specimen, LabError> {
     let mesh = block([cells; 3], [EDGE; 3], Split::Mirrored)?;
     let mut problem = standing(law, element);
     problem.damping = of_mass(damping);

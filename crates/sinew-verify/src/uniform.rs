@@ -7,7 +7,7 @@ use sinew_fem::{Element, Model, Problem};
 use sinew_mesh::TetMesh;
 use sinew_mesh::structured::{Split, cube};
 
-use crate::error::VerifyError;
+use crate::error::LabError;
 use crate::places::on_surface;
 use crate::vector::{cross, dot};
 
@@ -26,11 +26,22 @@ pub(crate) const ELEMENTS: [Element; 5] = [
     },
 ];
 
+/// An element in words, with the size of its patches where that is not the default.
+pub(crate) fn name(element: Element) -> String {
+    match element {
+        Element::Fbar { patch: Some(patch) }
+        | Element::FbarEdge {
+            patch: Some(patch), ..
+        } => format!("{element}, patches of {patch}"),
+        element => element.to_string(),
+    }
+}
+
 /// Edge (m) of the cubes.
 pub(crate) const EDGE: f64 = 0.1;
 
 /// A cube whose inner nodes are moved about.
-pub(crate) fn uneven_cube(cells: usize, split: Split, seed: u64) -> Result<TetMesh, VerifyError> {
+pub(crate) fn uneven_cube(cells: usize, split: Split, seed: u64) -> Result<TetMesh, LabError> {
     let mut mesh = cube(cells, EDGE, split)?;
     let surface = on_surface(&mesh);
     let shifts = noise(3 * mesh.points.len(), seed);
@@ -51,7 +62,7 @@ pub(crate) struct Uniform {
 
 impl Uniform {
     /// An uneven cube whose displacement has this gradient.
-    pub(crate) fn new(problem: &Problem, h: Tensor<f64>) -> Result<Self, VerifyError> {
+    pub(crate) fn new(problem: &Problem, h: Tensor<f64>) -> Result<Self, LabError> {
         let model = Model::build(&uneven_cube(3, Split::Kuhn, 1)?, problem)?;
         let at = |point: &[f64; 3]| {
             h.0.map(|row| (0..3).map(|axis| row[axis] * point[axis]).sum())
@@ -63,7 +74,7 @@ impl Uniform {
     }
 
     /// Elastic energy (J), and the forces (N) of the body at its nodes.
-    pub(crate) fn forces(&self) -> Result<(f64, Vec<f64>), VerifyError> {
+    pub(crate) fn forces(&self) -> Result<(f64, Vec<f64>), LabError> {
         let (mut force, v) = (vec![0.0; self.u.len()], vec![0.0; self.u.len()]);
         let trial = Trial {
             load: LoadTime::at(0.0),
@@ -97,7 +108,7 @@ impl Uniform {
     }
 
     /// The largest difference of any tetrahedron's stress from the one of a first Piola-Kirchhoff stress, over the size of that.
-    pub(crate) fn off(&self, h: Tensor<f64>, p: Tensor<f64>) -> Result<f64, VerifyError> {
+    pub(crate) fn off(&self, h: Tensor<f64>, p: Tensor<f64>) -> Result<f64, LabError> {
         let f = h + Tensor::identity();
         let [a, b, c] = f.0;
         let volume = dot(a, cross(b, c));

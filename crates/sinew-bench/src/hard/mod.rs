@@ -3,7 +3,6 @@
 mod cases;
 mod checks;
 mod energy;
-mod error;
 mod hard_run;
 mod large;
 mod maps;

@@ -1,5 +1,6 @@
 //! Laps in turn: plain loops, then each machine.
 
+use sinew_verify::LabError;
 use std::sync::Arc;
 
 use sinew_cnn::{Machine, Program, Quotient, ReferenceMachine, Sweep, When};
@@ -10,7 +11,7 @@ use sinew_fem::Rayleigh;
 use sinew_machines::{FastMachine, Kind, Layout, PrecisionName};
 
 use super::baseline::Baseline;
-use super::bodies::{Body, KernelBenchError};
+use super::bodies::Body;
 use super::memory::bandwidth;
 use super::row::KernelRow;
 use super::variant::{Variant, variants};
@@ -42,7 +43,7 @@ struct Runner {
 }
 
 /// Measures all machines on a body.
-pub(super) fn rows(body: &Body, quick: bool) -> Result<Vec<KernelRow>, KernelBenchError> {
+pub(super) fn rows(body: &Body, quick: bool) -> Result<Vec<KernelRow>, LabError> {
     let model = &body.model;
     let Some((program, dt)) = central_difference(model)? else {
         return Ok(Vec::new());
@@ -147,7 +148,7 @@ pub(super) fn rows(body: &Body, quick: bool) -> Result<Vec<KernelRow>, KernelBen
 /// A step of central difference as a program, with its length (s).
 pub(super) fn central_difference(
     model: &dyn System,
-) -> Result<Option<(Arc<Program>, f64)>, KernelBenchError> {
+) -> Result<Option<(Arc<Program>, f64)>, LabError> {
     let omega = model.spectrum(None);
     let dt = SHARE * 2.0 / omega.map_or(1.0, |spectrum| spectrum.omega_max);
     let mut method = sinew_integrators::build("central-difference", &Options::new())?;

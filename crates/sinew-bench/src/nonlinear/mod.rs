@@ -10,7 +10,7 @@ mod picture;
 
 use std::path::PathBuf;
 
-pub use self::picture::{PictureError, picture};
+pub use self::picture::picture;
 
 use crate::BenchError;
 use crate::planned::Plan;

@@ -12,7 +12,7 @@ use sinew_fem::hyperelastic::{Hyperelastic, Tensor};
 
 use crate::bodies::YOUNGS_MODULUS;
 use crate::check::Asked;
-use crate::error::VerifyError;
+use crate::error::LabError;
 
 const POISSONS_RATIO: f64 = 0.45;
 
@@ -53,8 +53,8 @@ impl ClosedForms {
 ///
 /// # Errors
 ///
-/// [`VerifyError`] where one cannot be computed; wrong figures are no error.
-pub(crate) fn all() -> Result<Vec<ClosedForm>, VerifyError> {
+/// [`LabError`] where one cannot be computed; wrong figures are no error.
+pub(crate) fn all() -> Result<Vec<ClosedForm>, LabError> {
     let mut list = ClosedForms(Vec::new());
     uniaxial(&mut list)?;
     shear(&mut list)?;
@@ -66,12 +66,12 @@ pub(crate) fn all() -> Result<Vec<ClosedForm>, VerifyError> {
     Ok(list.0)
 }
 
-fn law(id: &str) -> Result<Hyperelastic, VerifyError> {
+fn law(id: &str) -> Result<Hyperelastic, LabError> {
     let parameters = Hyperelastic::parameters(id, YOUNGS_MODULUS, POISSONS_RATIO)?;
     Ok(Hyperelastic::new(id, &parameters)?)
 }
 
-fn uniaxial(list: &mut ClosedForms) -> Result<(), VerifyError> {
+fn uniaxial(list: &mut ClosedForms) -> Result<(), LabError> {
     for (id, stretch, lateral, stress) in UNIAXIAL.iter().copied() {
         let [t, _, p] = pulled(&law(id)?, stretch);
         let case = |what: &str| format!("uniaxial stress, stretch {stretch}: {what}");
@@ -81,7 +81,7 @@ fn uniaxial(list: &mut ClosedForms) -> Result<(), VerifyError> {
     Ok(())
 }
 
-fn shear(list: &mut ClosedForms) -> Result<(), VerifyError> {
+fn shear(list: &mut ClosedForms) -> Result<(), LabError> {
     for (id, shear, s12, difference, p21) in SHEAR.iter().copied() {
         let h = Tensor([[0.0, shear, 0.0], [0.0; 3], [0.0; 3]]);
         let p = law(id)?.stress(h);
@@ -95,7 +95,7 @@ fn shear(list: &mut ClosedForms) -> Result<(), VerifyError> {
     Ok(())
 }
 
-fn dilation(list: &mut ClosedForms) -> Result<(), VerifyError> {
+fn dilation(list: &mut ClosedForms) -> Result<(), LabError> {
     for (id, figures) in DILATION.iter().copied() {
         for (stretch, asked) in [0.8, 0.9, 1.1, 1.25].into_iter().zip(figures) {
             let p = law(id)?.stress(stretched([stretch; 3]));
@@ -106,7 +106,7 @@ fn dilation(list: &mut ClosedForms) -> Result<(), VerifyError> {
     Ok(())
 }
 
-fn confined(list: &mut ClosedForms) -> Result<(), VerifyError> {
+fn confined(list: &mut ClosedForms) -> Result<(), LabError> {
     let id = "neo-hookean";
     let law = law(id)?;
     for (stretch, asked) in CONFINED.iter().copied() {
@@ -120,7 +120,7 @@ fn confined(list: &mut ClosedForms) -> Result<(), VerifyError> {
     Ok(())
 }
 
-fn incompressible(list: &mut ClosedForms) -> Result<(), VerifyError> {
+fn incompressible(list: &mut ClosedForms) -> Result<(), LabError> {
     for (id, figures) in INCOMPRESSIBLE.iter().copied() {
         for (stretch, asked) in [0.7, 1.5, 2.0].into_iter().zip(figures) {
             let lateral = 1.0 / f64::sqrt(stretch);
@@ -134,7 +134,7 @@ fn incompressible(list: &mut ClosedForms) -> Result<(), VerifyError> {
     Ok(())
 }
 
-fn inversion(list: &mut ClosedForms) -> Result<(), VerifyError> {
+fn inversion(list: &mut ClosedForms) -> Result<(), LabError> {
     for (id, stresses, energies) in INVERSION.iter().copied() {
         let law = law(id)?;
         for &(stretch, asked) in stresses {
@@ -152,7 +152,7 @@ fn inversion(list: &mut ClosedForms) -> Result<(), VerifyError> {
     Ok(())
 }
 
-fn eigenvalues(list: &mut ClosedForms) -> Result<(), VerifyError> {
+fn eigenvalues(list: &mut ClosedForms) -> Result<(), LabError> {
     let states = [[0.7, 1.0, 1.0], [2.0, 1.0, 1.0], [0.8; 3]];
     for (id, figures) in EIGENVALUES.iter().copied() {
         for (stretches, asked) in states.into_iter().zip(figures) {

@@ -10,7 +10,7 @@ use sinew_core::{BlockMatrix, Damping, Layers, LinearModel, LinearOperators, Pat
 use sinew_integrators::static_solution;
 use sinew_mesh::TetMesh;
 
-use crate::error::VerifyError;
+use crate::error::LabError;
 use crate::modes::lowest_omega;
 use crate::vector::{cross, difference, dot, norm};
 
@@ -91,7 +91,7 @@ impl Tet10 {
         &self,
         tissue: Tissue,
         is_held: impl Fn([f64; 3]) -> bool,
-    ) -> Result<HeldTet10, VerifyError> {
+    ) -> Result<HeldTet10, LabError> {
         let mut moving = Vec::new();
         let cell_of: Vec<Option<u32>> = (0..)
             .zip(&self.points)
@@ -148,7 +148,7 @@ pub struct HeldTet10 {
 
 impl HeldTet10 {
     /// The displacement (m) of each node under a force (N) on each.
-    pub fn equilibrium(&self, force: &[[f64; 3]]) -> Result<Vec<[f64; 3]>, VerifyError> {
+    pub fn equilibrium(&self, force: &[[f64; 3]]) -> Result<Vec<[f64; 3]>, LabError> {
         let acting: Vec<f64> = self.moving.iter().flat_map(|node| force[*node]).collect();
         let solution = static_solution(&self.system, &acting)?;
         let mut u = vec![[0.0; 3]; force.len()];
@@ -159,7 +159,7 @@ impl HeldTet10 {
     }
 
     /// The lowest angular frequency (rad/s).
-    pub fn lowest_omega(&self) -> Result<f64, VerifyError> {
+    pub fn lowest_omega(&self) -> Result<f64, LabError> {
         lowest_omega(&self.system, |x, out| self.mass.multiply(x, out))
     }
 }

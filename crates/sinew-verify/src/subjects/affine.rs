@@ -13,11 +13,11 @@ use crate::bodies::{
     YOUNGS_MODULUS, body, equilibrium, held, linear, of_law, springs, stiffness_times,
 };
 use crate::check::{Asked, Check, Source};
-use crate::error::VerifyError;
+use crate::error::LabError;
 use crate::kinds::Kind;
 use crate::places::{nodes_where, on_surface};
 use crate::subject::Subject;
-use crate::uniform::{ELEMENTS, uneven_cube};
+use crate::uniform::{ELEMENTS, name, uneven_cube};
 
 pub(super) const SUBJECT: Subject = Subject {
     id: "uniform-strain",
@@ -104,7 +104,7 @@ fn checks() -> Vec<Check> {
 }
 
 /// Uneven cubes, three of each of both splits.
-fn uneven_cubes(cells: usize) -> impl Iterator<Item = Result<TetMesh, VerifyError>> {
+fn uneven_cubes(cells: usize) -> impl Iterator<Item = Result<TetMesh, LabError>> {
     let splits = [Split::Kuhn, Split::Mirrored].into_iter();
     splits.flat_map(move |split| (1..=3).map(move |seed| uneven_cube(cells, split, seed)))
 }
@@ -121,7 +121,10 @@ fn on_uneven_cubes(element: Element, nu: f64, source: Source) -> Check {
         "largest asymmetry of K over its largest entry",
     ];
     let figures = figures.map(|name| (name, Asked::at_most(1e-11)));
-    let case = format!("{element}, nu = {nu}, uneven cubes of 4 cells a side");
+    let case = format!(
+        "{}, nu = {nu}, uneven cubes of 4 cells a side",
+        name(element)
+    );
     Check::several(case, figures, source, move |_| {
         let mut worst = vec![0.0_f64; figures.len()];
         for mesh in uneven_cubes(4) {
@@ -137,7 +140,7 @@ fn on_uneven_cubes(element: Element, nu: f64, source: Source) -> Check {
 /// xx, yy, zz, xy, yz, zx.
 const PLACES: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0)];
 
-fn patch_test(mesh: &TetMesh, element: Element, nu: f64) -> Result<[f64; 7], VerifyError> {
+fn patch_test(mesh: &TetMesh, element: Element, nu: f64) -> Result<[f64; 7], LabError> {
     let gradient = Matrix3::new(1.0, 0.3, -0.7, 0.2, -0.4, 0.5, 0.9, -0.6, 0.8) * 1e-3;
     let strain = (gradient + gradient.transpose()) / 2.0;
     let (lambda, mu) = lame(YOUNGS_MODULUS, nu);
@@ -223,13 +226,13 @@ fn relative(found: &[f64], expected: &[f64]) -> f64 {
 }
 
 /// The largest force of a rigid motion of 1 at some node over the largest sum of a row of K, and the largest asymmetry of K over its largest entry.
-fn rigid_and_symmetric(model: &Model, points: &[[f64; 3]]) -> Result<[f64; 2], VerifyError> {
+fn rigid_and_symmetric(model: &Model, points: &[[f64; 3]]) -> Result<[f64; 2], LabError> {
     let stiffness = model.operators().stiffness();
     let (mut row_sum, mut entry, mut asymmetry) = (0.0_f64, 0.0_f64, 0.0_f64);
     for row in 0..stiffness.pattern().cells() {
         let mut sums = [0.0; 3];
         for (column, block) in stiffness.row_blocks(row) {
-            let mirrored = stiffness.block(column, row).ok_or(VerifyError::NoBody)?;
+            let mirrored = stiffness.block(column, row).ok_or_else(LabError::no_body)?;
             for (k, value) in block.iter().enumerate() {
                 sums[k / 3] += value.abs();
                 entry = entry.max(value.abs());
@@ -259,7 +262,7 @@ fn rigid_and_symmetric(model: &Model, points: &[[f64; 3]]) -> Result<[f64; 2], V
 }
 
 /// The worst of [`rigid_and_symmetric`] and of the eigenvalues of free bodies.
-fn free_bodies(law: &Law) -> Result<Vec<f64>, VerifyError> {
+fn free_bodies(law: &Law) -> Result<Vec<f64>, LabError> {
     let (mut worst, mut seventh) = ([0.0_f64; 3], f64::INFINITY);
     for mesh in uneven_cubes(3).step_by(3) {
         let mesh = mesh?;
@@ -281,12 +284,12 @@ fn free_bodies(law: &Law) -> Result<Vec<f64>, VerifyError> {
 }
 
 /// Largest forces inside under uniform strain, and anywhere under a rotation.
-fn forces(mesh: &TetMesh, kind: Kind) -> Result<Vec<f64>, VerifyError> {
+fn forces(mesh: &TetMesh, kind: Kind) -> Result<Vec<f64>, LabError> {
     let model = Model::build(
         mesh,
         &body(YOUNGS_MODULUS, POISSONS_RATIO, kind.element(None)),
     )?;
-    let under = |rows: [[f64; 3]; 3]| -> Result<Vec<f64>, VerifyError> {
+    let under = |rows: [[f64; 3]; 3]| -> Result<Vec<f64>, LabError> {
         let at = |point: &[f64; 3]| rows.map(|row| row.iter().zip(point).map(|(a, x)| a * x).sum());
         let field: Vec<[f64; 3]> = mesh.points.iter().map(at).collect();
         let mut u = vec![0.0; model.dofs()];
@@ -307,7 +310,7 @@ fn forces(mesh: &TetMesh, kind: Kind) -> Result<Vec<f64>, VerifyError> {
 }
 
 /// The reaction (N) at the top of a unit cube that is pressed down by a tenth, with u_x = u_y = 0 at its surface.
-fn confined_compression(mesh: &TetMesh, kind: Kind) -> Result<f64, VerifyError> {
+fn confined_compression(mesh: &TetMesh, kind: Kind) -> Result<f64, LabError> {
     let (low, high) = mesh.bounding_box();
     let face =
         |axis: usize, value: f64| nodes_where(mesh, |point| (point[axis] - value).abs() <= 1e-9);

@@ -6,7 +6,7 @@ use sinew_mesh::structured::{Split, block};
 
 use crate::bodies::held;
 use crate::check::{Asked, Check};
-use crate::error::VerifyError;
+use crate::error::LabError;
 use crate::places::nodes_where;
 use crate::quasi_static::{SLOW, follow};
 use crate::sources::PROTOTYPE_OF_MOTIONS;
@@ -63,7 +63,7 @@ fn checks() -> Vec<Check> {
 }
 
 /// Newton iterations of each part, and rise and way of the tip, the mean of its nodes.
-fn bent(id: &'static str) -> Result<(Vec<u64>, [f64; 2]), VerifyError> {
+fn bent(id: &'static str) -> Result<(Vec<u64>, [f64; 2]), LabError> {
     const THICK: f64 = 0.1;
     let mesh = block([20, 2, 2], [1.0, THICK, THICK], Split::Mirrored)?;
     let tip = nodes_where(&mesh, |[x, _, _]| x > 1.0 - 1e-9);
@@ -82,7 +82,7 @@ fn bent(id: &'static str) -> Result<(Vec<u64>, [f64; 2]), VerifyError> {
     }];
     let model = Model::build(&mesh, &problem)?;
     let states = follow(&model, 4)?;
-    let (last, _) = states.last().ok_or(VerifyError::NoBody)?;
+    let (last, _) = states.last().ok_or_else(LabError::no_body)?;
     let mut field = vec![[0.0; 3]; mesh.points.len()];
     model.to_nodes(&last.u, &mut field)?;
     let mean = |axis: usize| {

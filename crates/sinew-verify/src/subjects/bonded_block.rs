@@ -5,7 +5,7 @@ use sinew_fem::{Course, Element, Model, Moving};
 use sinew_mesh::structured::{Split, cube};
 
 use crate::check::{Asked, Check};
-use crate::error::VerifyError;
+use crate::error::LabError;
 use crate::kinds::Kind;
 use crate::quasi_static::{SLOW, follow};
 use crate::sources::PROTOTYPE;
@@ -92,7 +92,7 @@ fn checks() -> Vec<Check> {
     checks
 }
 
-fn force_on_top(nu: f64, element: Element, cells: usize, press: f64) -> Result<f64, VerifyError> {
+fn force_on_top(nu: f64, element: Element, cells: usize, press: f64) -> Result<f64, LabError> {
     let law = tissue::law("neo-hookean", 1.0, nu);
     let mut problem = tissue::standing(law, element);
     problem.moves = vec![Moving {
@@ -105,7 +105,7 @@ fn force_on_top(nu: f64, element: Element, cells: usize, press: f64) -> Result<f
     }];
     let model = Model::build(&cube(cells, 1.0, Split::Kuhn)?, &problem)?;
     let states = follow(&model, 12)?;
-    let (state, _) = states.last().ok_or(VerifyError::NoBody)?;
+    let (state, _) = states.last().ok_or_else(LabError::no_body)?;
     let still = vec![0.0; state.v.len()];
     let [_, _, force] = model.reaction(state.t(), &state.u, &still, &"top".into())?;
     Ok(force)

@@ -9,7 +9,7 @@ use sinew_mesh::structured::{Split, block};
 
 use crate::bodies::{DENSITY, YOUNGS_MODULUS, body, equilibrium, held, load, loads};
 use crate::check::{Asked, Check, Source};
-use crate::error::VerifyError;
+use crate::error::LabError;
 use crate::inputs::Inputs;
 use crate::kinds::Kind;
 use crate::modes::lowest_omega_lumped;
@@ -361,7 +361,7 @@ impl BeamMesh {
         }
     }
 
-    fn read(self, inputs: &Inputs) -> Result<Beam, VerifyError> {
+    fn read(self, inputs: &Inputs) -> Result<Beam, LabError> {
         match self {
             Self::Kuhn(thick) => Beam::of_cells(thick, 10 * thick, Split::Kuhn),
             Self::Long => Beam::of_cells(6, 40, Split::Kuhn),
@@ -387,7 +387,7 @@ struct Beam {
 }
 
 impl Beam {
-    fn of_cells(thick: usize, long: usize, split: Split) -> Result<Self, VerifyError> {
+    fn of_cells(thick: usize, long: usize, split: Split) -> Result<Self, LabError> {
         let size = [THICKNESS, THICKNESS, LENGTH];
         Ok(Self {
             mesh: block([thick, thick, long], size, split)?,
@@ -404,7 +404,7 @@ impl Beam {
         traction
     }
 
-    fn model(&self, kind: Kind, nu: f64) -> Result<Model, VerifyError> {
+    fn model(&self, kind: Kind, nu: f64) -> Result<Model, LabError> {
         let mut problem = body(YOUNGS_MODULUS, nu, kind.element(self.patch));
         problem.fixed = vec![held(self.root, [true; 3])];
         problem.loads = vec![load(self.tip, LoadKind::Traction(self.traction()))];
@@ -429,13 +429,13 @@ fn timoshenko(nu: f64) -> f64 {
     bending + shear
 }
 
-fn deflection(beam: &Beam, kind: Kind, nu: f64) -> Result<f64, VerifyError> {
+fn deflection(beam: &Beam, kind: Kind, nu: f64) -> Result<f64, LabError> {
     let model = beam.model(kind, nu)?;
     let mean = dot(&loads(&model), &equilibrium(&model)?) / (TRACTION * area());
     Ok(mean / timoshenko(nu))
 }
 
-fn deflection_of_tet10(thick: usize, nu: f64) -> Result<f64, VerifyError> {
+fn deflection_of_tet10(thick: usize, nu: f64) -> Result<f64, LabError> {
     let beam = Beam::of_cells(thick, 10 * thick, Split::Kuhn)?;
     let body = Tet10::new(&beam.mesh);
     let force = body.traction(
@@ -452,7 +452,7 @@ fn deflection_of_tet10(thick: usize, nu: f64) -> Result<f64, VerifyError> {
     Ok(work / (TRACTION * area()) / timoshenko(nu))
 }
 
-fn frequency(beam: &Beam, kind: Kind, nu: f64) -> Result<f64, VerifyError> {
+fn frequency(beam: &Beam, kind: Kind, nu: f64) -> Result<f64, LabError> {
     let model = beam.model(kind, nu)?;
     let stiffness = YOUNGS_MODULUS * second_moment();
     let beams = 1.8751_f64.powi(2) * (stiffness / (DENSITY * area())).sqrt() / LENGTH.powi(2);
@@ -460,7 +460,7 @@ fn frequency(beam: &Beam, kind: Kind, nu: f64) -> Result<f64, VerifyError> {
 }
 
 /// The twist of a beam between two sections under a torque on its tip, over that of Saint-Venant's bar.
-fn twist(thick: usize, split: Split, kind: Kind, nu: f64) -> Result<f64, VerifyError> {
+fn twist(thick: usize, split: Split, kind: Kind, nu: f64) -> Result<f64, LabError> {
     let mesh = Beam::of_cells(thick, 10 * thick, split)?.mesh;
     let mut problem = body(YOUNGS_MODULUS, nu, kind.element(None));
     problem.fixed = vec![held("bottom", [true; 3])];

@@ -11,7 +11,7 @@ use sinew_tools::{Convex, Motion, Pose, Tool};
 
 use crate::bodies::{YOUNGS_MODULUS, body, held};
 use crate::check::{Asked, Check, Source};
-use crate::error::VerifyError;
+use crate::error::LabError;
 use crate::pressed::{Pressed, energy_sweeps, method, through, tool};
 use crate::staggered_energy::staggered_energy;
 use crate::subject::Subject;
@@ -232,17 +232,17 @@ fn under(
     (cells, size): ([usize; 3], [f64; 3]),
     problem: &Problem,
     tool: Tool,
-) -> Result<Pressed, VerifyError> {
+) -> Result<Pressed, LabError> {
     let mesh = block(cells, size, Split::Kuhn)?;
     Pressed::new(&mesh, problem, tool, |_| true)
 }
 
-fn plate_on_a_bar() -> Result<Vec<f64>, VerifyError> {
+fn plate_on_a_bar() -> Result<Vec<f64>, LabError> {
     plate_by(("symplectic-euler", Options::new()), None)
 }
 
 /// Figures of a plate on a bar by a method, in steps of `dt` (s) or half the stable one.
-fn plate_by((id, options): (&str, Options), dt: Option<f64>) -> Result<Vec<f64>, VerifyError> {
+fn plate_by((id, options): (&str, Options), dt: Option<f64>) -> Result<Vec<f64>, LabError> {
     let (length, width, depth) = (0.1, 0.02, 0.002);
     let down = [(0.0, [0.0, 0.0, length]), (0.1, [0.0, 0.0, length - depth])];
     let plate = tool(Convex::Plane, through(&down, DOWN)?, 0.0);
@@ -268,12 +268,12 @@ fn plate_by((id, options): (&str, Options), dt: Option<f64>) -> Result<Vec<f64>,
     ])
 }
 
-fn settled_forces() -> Result<Vec<f64>, VerifyError> {
+fn settled_forces() -> Result<Vec<f64>, LabError> {
     let down = [
         (0.0, [0.05, 0.05, EDGE + 0.0125]),
         (0.2, [0.05, 0.05, EDGE + 0.002]),
     ];
-    let settled = |id: &str, dt: f64| -> Result<f64, VerifyError> {
+    let settled = |id: &str, dt: f64| -> Result<f64, LabError> {
         let ball = tool(Convex::sphere(0.012)?, through(&down, [0.0; 3])?, 0.0);
         let mut pressed = under(([10; 3], [EDGE; 3]), &cube(0.45, 30.0), ball)?;
         let mut integrator = method(id, &Options::new())?;
@@ -297,7 +297,7 @@ fn settled_forces() -> Result<Vec<f64>, VerifyError> {
 }
 
 /// Differences of the forces after a ball was pressed into a cube and drawn aside, by sweeps, from those of central difference, over these.
-fn rubbed_by_sweeps() -> Result<Vec<f64>, VerifyError> {
+fn rubbed_by_sweeps() -> Result<Vec<f64>, LabError> {
     let down = [
         (0.0, [0.03, 0.03, 0.0725]),
         (0.2, [0.03, 0.03, 0.067]),
@@ -307,7 +307,7 @@ fn rubbed_by_sweeps() -> Result<Vec<f64>, VerifyError> {
         let ball = tool(Convex::sphere(0.012)?, through(&down, [0.0; 3])?, 0.3);
         let mut pressed = under(([5; 3], [0.06; 3]), &cube(0.45, 40.0), ball)?;
         pressed.run(&mut *method(id, &options)?, dt, (1.6 / dt) as usize)?;
-        Ok::<[f64; 3], VerifyError>(pressed.force())
+        Ok::<[f64; 3], LabError>(pressed.force())
     };
     let expected = settled(("central-difference", Options::new()), 0.5e-3)?;
     let found = settled(energy_sweeps(30), 2e-3)?;
@@ -317,7 +317,7 @@ fn rubbed_by_sweeps() -> Result<Vec<f64>, VerifyError> {
 }
 
 /// A free slab on a floor that rubs, under an acceleration (m/s^2).
-fn slab(nu: f64, gravity: [f64; 3], friction: f64) -> Result<Pressed, VerifyError> {
+fn slab(nu: f64, gravity: [f64; 3], friction: f64) -> Result<Pressed, LabError> {
     let floor = tool(Convex::Plane, Motion::Held(Pose::identity()), friction);
     let problem = Problem {
         gravity: Some(gravity),
@@ -326,7 +326,7 @@ fn slab(nu: f64, gravity: [f64; 3], friction: f64) -> Result<Pressed, VerifyErro
     under(([3, 3, 1], [0.06, 0.06, 0.02]), &problem, floor)
 }
 
-fn slowed(sweeps: u32) -> Result<f64, VerifyError> {
+fn slowed(sweeps: u32) -> Result<f64, LabError> {
     let (friction, start, dt, steps) = (0.3, 0.5, 0.5e-3, 200);
     let mut pressed = slab(0.0, [0.0, 0.0, -GRAVITY], friction)?;
     pressed
@@ -341,7 +341,7 @@ fn slowed(sweeps: u32) -> Result<f64, VerifyError> {
 }
 
 /// Mean acceleration of a slab that is pulled sideways, over that of a point, and its mean force on the floor over its weight.
-fn drawn(id: &str, options: &Options, share: f64) -> Result<Vec<f64>, VerifyError> {
+fn drawn(id: &str, options: &Options, share: f64) -> Result<Vec<f64>, LabError> {
     let (friction, pull, weight) = (0.1, 1.5, 6.0);
     let mut pressed = slab(0.3, [pull, 0.0, -weight], friction)?;
     let dt = share * pressed.stable_step()?;
@@ -360,7 +360,7 @@ fn drawn(id: &str, options: &Options, share: f64) -> Result<Vec<f64>, VerifyErro
 
 /// Three ratios for a cube that falls on a plate: error of the change of momentum relative to the impulse, impulse over
 /// the momentum before, and kinetic energy after over that before.
-fn bounce() -> Result<Vec<f64>, VerifyError> {
+fn bounce() -> Result<Vec<f64>, LabError> {
     let below = Pose::new([0.0, 0.0, -0.003], [0.0; 3]);
     let plate = tool(Convex::Plane, Motion::Held(below), 0.0);
     let free = body(YOUNGS_MODULUS, 0.3, Element::P1);
@@ -396,7 +396,7 @@ fn rise_under(
     convex: Convex,
     (rotation, above): ([f64; 3], f64),
     share: f64,
-) -> Result<f64, VerifyError> {
+) -> Result<f64, LabError> {
     let body = || ([10; 3], [EDGE; 3]);
     let far = tool(
         Convex::Plane,
@@ -442,7 +442,7 @@ fn expected_acceleration(angle: f64) -> f64 {
 }
 
 /// The acceleration (m/s^2) of a block that slides, or the speed (m/s) of one that should rest.
-fn on_an_incline(angle: f64) -> Result<f64, VerifyError> {
+fn on_an_incline(angle: f64) -> Result<f64, LabError> {
     let (sin, cos) = angle.to_radians().sin_cos();
     let problem = Problem {
         damping: Rayleigh {
@@ -471,7 +471,7 @@ fn on_an_incline(angle: f64) -> Result<f64, VerifyError> {
 
 /// Depth (m) of the deepest node of a slab of one cell in a ball that passes through the slab: the largest after any
 /// step.
-fn depth_in_a_fast_ball(speed: f64) -> Result<f64, VerifyError> {
+fn depth_in_a_fast_ball(speed: f64) -> Result<f64, LabError> {
     let ball = Convex::sphere(0.005)?;
     let start = Pose::new([0.0413, 0.0529, 0.02], [0.0; 3]);
     let velocity = [0.0, 0.0, -speed];
@@ -494,12 +494,12 @@ fn depth_in_a_fast_ball(speed: f64) -> Result<f64, VerifyError> {
     if touched {
         Ok(deepest)
     } else {
-        Err(VerifyError::NoBody)
+        Err(LabError::no_body())
     }
 }
 
 /// A cube under a ball that rubs, after .1 s, by so many threads, its world turned by a rotation vector about the origin.
-fn rubbed(threads: f64, turn: [f64; 3]) -> Result<Vec<f64>, VerifyError> {
+fn rubbed(threads: f64, turn: [f64; 3]) -> Result<Vec<f64>, LabError> {
     let pose = Pose::new([0.0; 3], turn);
     let mut mesh = block([8; 3], [0.06; 3], Split::Kuhn)?;
     for point in &mut mesh.points {
@@ -523,7 +523,7 @@ fn largest(values: impl Iterator<Item = f64>) -> f64 {
     values.fold(0.0, |largest, value| largest.max(value.abs()))
 }
 
-fn threads() -> Result<f64, VerifyError> {
+fn threads() -> Result<f64, LabError> {
     let one = rubbed(1.0, [0.0; 3])?;
     let mut off: f64 = 0.0;
     for threads in [2.0, 8.0] {
@@ -533,7 +533,7 @@ fn threads() -> Result<f64, VerifyError> {
     Ok(off)
 }
 
-fn turned_world() -> Result<f64, VerifyError> {
+fn turned_world() -> Result<f64, LabError> {
     let turn = [0.3, -0.7, 0.4];
     let pose = Pose::new([0.0; 3], turn);
     let (plain, turned) = (rubbed(1.0, [0.0; 3])?, rubbed(1.0, turn)?);

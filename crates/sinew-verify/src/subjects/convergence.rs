@@ -12,7 +12,7 @@ use sinew_mesh::structured::{Split, cube};
 
 use crate::bodies::{YOUNGS_MODULUS, body, held};
 use crate::check::{Asked, Check};
-use crate::error::VerifyError;
+use crate::error::LabError;
 use crate::quadrature::rule;
 use crate::sources::PROTOTYPE;
 use crate::subject::Subject;
@@ -115,7 +115,7 @@ fn corners(mesh: &TetMesh, tet: usize) -> [Vector3<f64>; 4] {
 }
 
 /// Norm of the error in L2, seminorm in H1.
-fn errors(cells: usize, nu: f64) -> Result<[f64; 2], VerifyError> {
+fn errors(cells: usize, nu: f64) -> Result<[f64; 2], LabError> {
     let mesh = cube(cells, 1.0, Split::Kuhn)?;
     let mut problem = body(YOUNGS_MODULUS, nu, Element::P1);
     problem.fixed = ["sides", "top", "bottom"]
@@ -144,7 +144,7 @@ fn errors(cells: usize, nu: f64) -> Result<[f64; 2], VerifyError> {
         let vertices = corners(&mesh, tet);
         let moved = nodes.map(|node| Vector3::from(moved[node as usize]));
         let inverse = differences(&vertices).try_inverse();
-        let slope = differences(&moved) * inverse.ok_or(VerifyError::NoBody)?;
+        let slope = differences(&moved) * inverse.ok_or_else(LabError::no_body)?;
         for (shape, weight) in &rule {
             let x = mean(&vertices, shape);
             let share = weight * mesh.volume(tet);

@@ -6,7 +6,7 @@ use sinew_mesh::structured::{Split, block};
 
 use crate::bodies::{body, equilibrium, held, load};
 use crate::check::{Asked, Check};
-use crate::error::VerifyError;
+use crate::error::LabError;
 use crate::kinds::Kind;
 use crate::places::{node_at, nodes_where, triangles_where};
 use crate::sources::PROTOTYPE;
@@ -81,7 +81,7 @@ fn checks() -> Vec<Check> {
     TABLE.iter().flat_map(of_row).collect()
 }
 
-fn panel(cells: usize) -> Result<TetMesh, VerifyError> {
+fn panel(cells: usize) -> Result<TetMesh, LabError> {
     let thickness = 48.0 / cells as f64;
     let mut mesh = block([cells, cells, 1], [48.0, 1.0, thickness], Split::Kuhn)?;
     for [x, y, _] in &mut mesh.points {
@@ -91,7 +91,7 @@ fn panel(cells: usize) -> Result<TetMesh, VerifyError> {
     Ok(mesh)
 }
 
-fn corner(kind: Kind, cells: usize) -> Result<f64, VerifyError> {
+fn corner(kind: Kind, cells: usize) -> Result<f64, LabError> {
     let mesh = panel(cells)?;
     let mut problem = body(240.565, 0.4999, kind.element(None));
     let left = nodes_where(&mesh, |[x, ..]| x == 0.0);

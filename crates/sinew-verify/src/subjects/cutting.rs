@@ -14,7 +14,7 @@ use sinew_mesh::structured::{Split, block, cube};
 use super::full_strokes;
 use crate::bodies::{DENSITY, YOUNGS_MODULUS, body, held, of_law, springs};
 use crate::check::{Asked, Check, Source};
-use crate::error::VerifyError;
+use crate::error::LabError;
 use crate::pressed::method;
 use crate::staggered_energy::staggered_energy;
 use crate::subject::Subject;
@@ -261,15 +261,15 @@ fn held_cube(nu: f64) -> Problem {
     }
 }
 
-fn cuttable(cells: usize, nu: f64, snap: f64) -> Result<CutModel, VerifyError> {
+fn cuttable(cells: usize, nu: f64, snap: f64) -> Result<CutModel, LabError> {
     let mesh = cube(cells, EDGE, Split::Kuhn)?;
     Ok(CutModel::new(Arc::new(mesh), held_cube(nu), snap)?)
 }
 
 /// A blade along y comes down in the middle to a height (m).
-fn slit(cut: &mut CutModel, state: &mut State, height: f64) -> Result<usize, VerifyError> {
+fn slit(cut: &mut CutModel, state: &mut State, height: f64) -> Result<usize, LabError> {
     let blade = |z: f64| [[0.05, -0.05, z], [0.05, 0.15, z]];
-    let sheet = Sheet::swept(blade(0.2), blade(height)).ok_or(VerifyError::NoBody)?;
+    let sheet = Sheet::swept(blade(0.2), blade(height)).ok_or_else(LabError::no_body)?;
     Ok(cut.stroke(&sheet, state, Inputs::none())?.new_nodes)
 }
 
@@ -278,17 +278,17 @@ fn omega_max(model: &Model) -> f64 {
     largest_eigenvalue(model.mass(), |x, out| k.multiply(x, out)).sqrt()
 }
 
-fn bounds(cut: &CutModel) -> Result<ElementBounds, VerifyError> {
+fn bounds(cut: &CutModel) -> Result<ElementBounds, LabError> {
     let bounds = cut.model().operators().element_bounds();
-    bounds.ok_or(VerifyError::NoBody)
+    bounds.ok_or_else(LabError::no_body)
 }
 
-fn omega_bound(cut: &CutModel) -> Result<f64, VerifyError> {
+fn omega_bound(cut: &CutModel) -> Result<f64, LabError> {
     Ok(bounds(cut)?.omega_max)
 }
 
 /// A cube of springs that stands on its bottom.
-fn of_springs(cells: usize, rule: SpringRule) -> Result<CutModel, VerifyError> {
+fn of_springs(cells: usize, rule: SpringRule) -> Result<CutModel, LabError> {
     let mut problem = of_law(springs(rule), Element::P1);
     problem.fixed = vec![held("bottom", [true; 3])];
     let mesh = cube(cells, EDGE, Split::Kuhn)?;
@@ -308,13 +308,13 @@ fn inner_faces(cut: &CutModel) -> Vec<(u32, usize)> {
 }
 
 /// The largest eigenvalue of K beside its own blocks, by iteration.
-fn block_factor(model: &Model) -> Result<f64, VerifyError> {
+fn block_factor(model: &Model) -> Result<f64, LabError> {
     let k = model.operators().stiffness();
     let mut inverse = Vec::new();
     for cell in 0..k.pattern().cells() {
-        let block = k.block(cell, cell).ok_or(VerifyError::NoBody)?;
+        let block = k.block(cell, cell).ok_or_else(LabError::no_body)?;
         let block = Matrix3::from_row_slice(block).try_inverse();
-        inverse.push(block.ok_or(VerifyError::NoBody)?);
+        inverse.push(block.ok_or_else(LabError::no_body)?);
     }
     let solve = |x: &[f64], out: &mut [f64]| {
         let cells = x.chunks_exact(3).zip(out.chunks_exact_mut(3));
@@ -326,12 +326,12 @@ fn block_factor(model: &Model) -> Result<f64, VerifyError> {
     Ok(largest_eigenvalue_of_pencil(model.dofs(), multiply, solve))
 }
 
-fn blocks(nu: f64) -> Result<Vec<f64>, VerifyError> {
+fn blocks(nu: f64) -> Result<Vec<f64>, LabError> {
     let mut cut = cuttable(10, nu, 0.0)?;
     let (before, whole) = (bounds(&cut)?, block_factor(cut.model())?);
     let mut state = State::at_rest(cut.model().dofs());
     let blade = |z: f64| [[0.05, -0.01, z], [0.05, 0.11, z]];
-    let sheet = Sheet::swept(blade(0.11), blade(0.0301)).ok_or(VerifyError::NoBody)?;
+    let sheet = Sheet::swept(blade(0.11), blade(0.0301)).ok_or_else(LabError::no_body)?;
     let faces = cut.stroke(&sheet, &mut state, Inputs::none())?.faces;
     let quarter: Vec<_> = inner_faces(&cut).into_iter().step_by(4).collect();
     cut.cut_faces(quarter, &mut state, Inputs::none())?;
@@ -352,7 +352,7 @@ fn blocks(nu: f64) -> Result<Vec<f64>, VerifyError> {
     ])
 }
 
-fn frequencies(nu: f64) -> Result<Vec<f64>, VerifyError> {
+fn frequencies(nu: f64) -> Result<Vec<f64>, LabError> {
     let mut cut = cuttable(10, nu, 0.0)?;
     let bounds = bounds(&cut)?;
     let whole = omega_max(cut.model());
@@ -367,7 +367,7 @@ fn frequencies(nu: f64) -> Result<Vec<f64>, VerifyError> {
     ])
 }
 
-fn loose_tetrahedra() -> Result<Vec<f64>, VerifyError> {
+fn loose_tetrahedra() -> Result<Vec<f64>, LabError> {
     let mut cut = cuttable(10, 0.45, 0.0)?;
     let mass = cut.model().report().mass;
     let mut state = State::at_rest(cut.model().dofs());
@@ -393,12 +393,12 @@ fn some_state(model: &Model) -> State {
     )
 }
 
-fn kept_by_a_slit(mut cut: CutModel) -> Result<Vec<f64>, VerifyError> {
+fn kept_by_a_slit(mut cut: CutModel) -> Result<Vec<f64>, LabError> {
     let mut state = some_state(cut.model());
-    let figures = |model: &Model, state: &State| -> Result<[f64; 4], VerifyError> {
+    let figures = |model: &Model, state: &State| -> Result<[f64; 4], LabError> {
         let energy = model
             .energy(&state.u, &state.v)
-            .ok_or(VerifyError::NoBody)?;
+            .ok_or_else(LabError::no_body)?;
         let terms = model.mass().iter().zip(&state.v).step_by(3);
         let momentum = terms.map(|(mass, v)| mass * v).sum();
         Ok([
@@ -418,15 +418,15 @@ fn kept_by_a_slit(mut cut: CutModel) -> Result<Vec<f64>, VerifyError> {
         .collect())
 }
 
-fn bar() -> Result<Vec<f64>, VerifyError> {
-    let bar = |layers: usize| -> Result<CutModel, VerifyError> {
+fn bar() -> Result<Vec<f64>, LabError> {
+    let bar = |layers: usize| -> Result<CutModel, LabError> {
         let size = [0.02, 0.02, 0.02 * layers as f64];
         let mesh = block([1, 1, layers], size, Split::Kuhn)?;
         let mut problem = held_cube(0.0);
         problem.damping.mass = 6.0;
         Ok(CutModel::new(Arc::new(mesh), problem, 0.0)?)
     };
-    let stretched = |model: &Model| -> Result<State, VerifyError> {
+    let stretched = |model: &Model| -> Result<State, LabError> {
         let mut state = State::at_rest(model.dofs());
         let field: Vec<[f64; 3]> = model
             .mesh()
@@ -441,7 +441,7 @@ fn bar() -> Result<Vec<f64>, VerifyError> {
     let (mut state, mut alone) = (stretched(whole.model())?, stretched(half.model())?);
     // In the stretched bar the middle is at 0.22 m.
     let blade = |x: f64| [[x, -0.01, 0.22], [x, 0.03, 0.22]];
-    let sheet = Sheet::swept(blade(-0.01), blade(0.03)).ok_or(VerifyError::NoBody)?;
+    let sheet = Sheet::swept(blade(-0.01), blade(0.03)).ok_or_else(LabError::no_body)?;
     whole.stroke(&sheet, &mut state, Inputs::none())?;
     let mut methods = [
         method("central-difference", &Options::new())?,
@@ -466,7 +466,7 @@ fn bar() -> Result<Vec<f64>, VerifyError> {
 }
 
 /// A bend of the whole body, at rest.
-fn bent(model: &Model) -> Result<State, VerifyError> {
+fn bent(model: &Model) -> Result<State, LabError> {
     let bend = |p: &[f64; 3]| [2.0 * p[2] * p[2], 0.0, -0.5 * p[0] * p[2]];
     let field: Vec<[f64; 3]> = model.mesh().points.iter().map(bend).collect();
     let mut state = State::at_rest(model.dofs());
@@ -474,7 +474,7 @@ fn bent(model: &Model) -> Result<State, VerifyError> {
     Ok(state)
 }
 
-fn leapfrog_over_cuts() -> Result<f64, VerifyError> {
+fn leapfrog_over_cuts() -> Result<f64, LabError> {
     let mut cut = cuttable(4, 0.45, 0.0)?;
     let dt = 0.95 * 2.0 / omega_bound(&cut)?;
     let mut state = bent(cut.model())?;
@@ -493,7 +493,7 @@ fn leapfrog_over_cuts() -> Result<f64, VerifyError> {
     Ok(staggered_energy(cut.model(), &state, None, dt) / first - 1.0)
 }
 
-fn newmark_over_a_cut() -> Result<f64, VerifyError> {
+fn newmark_over_a_cut() -> Result<f64, LabError> {
     let mut cut = cuttable(4, 0.45, 0.0)?;
     let mut state = bent(cut.model())?;
     let mut method = method("newmark", &Options::new())?;
@@ -501,7 +501,7 @@ fn newmark_over_a_cut() -> Result<f64, VerifyError> {
         let energy = cut.model().energy(&state.u, &state.v);
         energy
             .map(sinew_core::Energy::total)
-            .ok_or(VerifyError::NoBody)
+            .ok_or_else(LabError::no_body)
     };
     let first = energy(&cut, &state)?;
     for step in 0..1000 {
@@ -513,7 +513,7 @@ fn newmark_over_a_cut() -> Result<f64, VerifyError> {
     Ok(energy(&cut, &state)? / first - 1.0)
 }
 
-fn stabilised_over_cuts() -> Result<f64, VerifyError> {
+fn stabilised_over_cuts() -> Result<f64, LabError> {
     let mut cut = cuttable(6, 0.45, 0.0)?;
     let mut state = bent(cut.model())?;
     let (dt, mut integrator) = (0.02, Frame::new(CnnStabilised::default()));
@@ -536,7 +536,7 @@ fn stabilised_over_cuts() -> Result<f64, VerifyError> {
     Ok(rise / largest)
 }
 
-fn planes() -> Result<Vec<f64>, VerifyError> {
+fn planes() -> Result<Vec<f64>, LabError> {
     let mesh = Arc::new(cube(10, EDGE, Split::Kuhn)?);
     let free = || body(YOUNGS_MODULUS, 0.45, Element::P1);
     let (grid, whole) = (EDGE / 10.0, DENSITY * EDGE.powi(3));
@@ -548,7 +548,7 @@ fn planes() -> Result<Vec<f64>, VerifyError> {
             angle.sin() * tilt.cos(),
             angle.sin() * tilt.sin(),
         ];
-        let sheet = plane([0.0512, 0.0493, 0.0507], normal).ok_or(VerifyError::NoBody)?;
+        let sheet = plane([0.0512, 0.0493, 0.0507], normal).ok_or_else(LabError::no_body)?;
         let mut cut = CutModel::new(Arc::clone(&mesh), free(), 0.25)?;
         let mut state = State::at_rest(cut.model().dofs());
         cut.stroke(&sheet, &mut state, Inputs::none())?;
@@ -597,7 +597,7 @@ fn plane(centre: [f64; 3], normal: [f64; 3]) -> Option<Sheet> {
     )
 }
 
-fn removal() -> Result<Vec<f64>, VerifyError> {
+fn removal() -> Result<Vec<f64>, LabError> {
     let mut cut = cuttable(10, 0.45, 0.0)?;
     let mass = cut.model().report().mass;
     let mut state = State::at_rest(cut.model().dofs());
@@ -616,7 +616,7 @@ fn removal() -> Result<Vec<f64>, VerifyError> {
     ])
 }
 
-fn drift() -> Result<f64, VerifyError> {
+fn drift() -> Result<f64, LabError> {
     let mesh = cube(10, EDGE, Split::Mirrored)?;
     let mut problem = held_cube(0.45);
     problem.gravity = Some([0.0, 0.0, -9.81]);

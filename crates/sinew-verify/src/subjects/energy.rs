@@ -8,7 +8,7 @@ use sinew_mesh::structured::{Split, cube};
 
 use crate::bodies::{YOUNGS_MODULUS, body, equilibrium, held, load, stiffness_times};
 use crate::check::{Asked, Check, Source};
-use crate::error::VerifyError;
+use crate::error::LabError;
 use crate::kinds::Kind;
 use crate::subject::Subject;
 
@@ -68,7 +68,7 @@ fn checks() -> Vec<Check> {
                 for _ in 0..100 {
                     integrator.step(&model, &mut state, dt)?;
                 }
-                Ok::<_, VerifyError>(state.u)
+                Ok::<_, LabError>(state.u)
             };
             let euler = run("forward-euler", Options::new())?;
             let network = run("cnn", Options::new().with_number("saturation", 1e6))?;
@@ -95,7 +95,7 @@ fn checks() -> Vec<Check> {
     checks
 }
 
-fn standing(kind: Kind) -> Result<Model, VerifyError> {
+fn standing(kind: Kind) -> Result<Model, LabError> {
     let mut problem = body(YOUNGS_MODULUS, 0.45, kind.element(None));
     problem.fixed = vec![held("bottom", [true; 3])];
     Ok(Model::build(&cube(CELLS, 0.1, Split::Kuhn)?, &problem)?)
@@ -112,7 +112,7 @@ fn energy_change(
     kind: Kind,
     of_stable: f64,
     is_staggered: bool,
-) -> Result<f64, VerifyError> {
+) -> Result<f64, LabError> {
     let model = standing(kind)?;
     let dt = of_stable * critical_step(model.operators());
     let system = LinearModel::new(model.operators().clone());
@@ -131,7 +131,7 @@ fn energy_change(
 }
 
 /// The distance from the equilibrium under a load after three seconds with mass damping of 20/s.
-fn distance_from_rest(method: &str) -> Result<f64, VerifyError> {
+fn distance_from_rest(method: &str) -> Result<f64, LabError> {
     let mut problem = body(YOUNGS_MODULUS, 0.45, Element::P1);
     problem.fixed = vec![held("bottom", [true; 3])];
     problem.damping.mass = 20.0;

@@ -8,7 +8,7 @@ use sinew_fem::hyperelastic::{
 
 use crate::bodies::{YOUNGS_MODULUS, of_law};
 use crate::check::{Asked, Check, Source};
-use crate::error::VerifyError;
+use crate::error::LabError;
 use crate::sources::PROTOTYPE_OF_MOTIONS;
 use crate::subject::Subject;
 use crate::tissue::law;
@@ -251,7 +251,7 @@ fn stress(
     stiffening: Stiffening,
     direction: [f64; 3],
     h: Tensor<f64>,
-) -> Result<Tensor<f64>, VerifyError> {
+) -> Result<Tensor<f64>, LabError> {
     let law = NeoHookean::new(&Parameters::new(YOUNGS_MODULUS, 0.45)).map_err(LawError::from)?;
     let at = law.at(h);
     let fibres = Fibres::new(stiffening).map_err(LawError::from)?;

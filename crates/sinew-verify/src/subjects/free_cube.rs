@@ -8,7 +8,7 @@ use sinew_mesh::structured::{Split, cube};
 
 use crate::bodies::{YOUNGS_MODULUS, body, held};
 use crate::check::{Asked, Check, Source};
-use crate::error::VerifyError;
+use crate::error::LabError;
 use crate::inputs::Inputs;
 use crate::kinds::Kind;
 use crate::modes::largest_beside_stiffness;
@@ -220,7 +220,7 @@ fn checks() -> Vec<Check> {
                 move |inputs| {
                     let body = mesh.read(inputs)?;
                     let of = |element| {
-                        Ok::<_, VerifyError>(critical_step(free(&body, nu, element)?.operators()))
+                        Ok::<_, LabError>(critical_step(free(&body, nu, element)?.operators()))
                     };
                     Ok(of(kind.element(mesh.patch()))? / of(Element::P1)?)
                 },
@@ -247,7 +247,7 @@ impl CubeMesh {
         }
     }
 
-    fn read(self, inputs: &Inputs) -> Result<TetMesh, VerifyError> {
+    fn read(self, inputs: &Inputs) -> Result<TetMesh, LabError> {
         match self {
             Self::Grid(split, cells) => Ok(cube(cells, EDGE, split)?),
             Self::Gmsh(name, _) => inputs.mesh(name),
@@ -262,7 +262,7 @@ impl CubeMesh {
     }
 }
 
-fn free(mesh: &TetMesh, nu: f64, element: Element) -> Result<Model, VerifyError> {
+fn free(mesh: &TetMesh, nu: f64, element: Element) -> Result<Model, LabError> {
     Ok(Model::build(mesh, &body(YOUNGS_MODULUS, nu, element))?)
 }
 
@@ -279,7 +279,7 @@ fn against_rigid_motions(mesh: &TetMesh) -> Vec<Fixed> {
 }
 
 /// The smallest eigenvalue of K beside that of plain tetrahedra with lambda = 0.
-fn coercivity(mesh: &TetMesh, element: Element) -> Result<f64, VerifyError> {
+fn coercivity(mesh: &TetMesh, element: Element) -> Result<f64, LabError> {
     let nu = 0.45;
     let build = |youngs_modulus, nu, element| {
         let mut problem = body(youngs_modulus, nu, element);
@@ -294,7 +294,7 @@ fn coercivity(mesh: &TetMesh, element: Element) -> Result<f64, VerifyError> {
 }
 
 /// The mean number of blocks in the rows of nodes none of whose tetrahedra is at the surface.
-fn inner_blocks(mesh: &TetMesh, element: Element) -> Result<f64, VerifyError> {
+fn inner_blocks(mesh: &TetMesh, element: Element) -> Result<f64, LabError> {
     let mut is_outer = vec![false; mesh.points.len()];
     let surface = on_surface(mesh);
     for tet in &mesh.tets {

@@ -9,7 +9,7 @@ use sinew_tools::{Convex, Motion, Pose, Row, Table, Tool, ToolBody};
 
 use crate::bodies::{YOUNGS_MODULUS, body, held};
 use crate::check::{Asked, Check, Source};
-use crate::error::VerifyError;
+use crate::error::LabError;
 use crate::pressed::{Pressed, method, through, tool};
 use crate::staggered_energy::staggered_energy;
 
@@ -218,12 +218,12 @@ fn body_of(nu: f64) -> Problem {
     }
 }
 
-fn under(cells: usize, problem: &Problem, tool: Tool) -> Result<Pressed, VerifyError> {
+fn under(cells: usize, problem: &Problem, tool: Tool) -> Result<Pressed, LabError> {
     let mesh = block([cells; 3], [EDGE; 3], Split::Kuhn)?;
     Pressed::new(&mesh, problem, tool, |_| true)
 }
 
-fn ball(motion: Motion, body: ToolBody) -> Result<Tool, VerifyError> {
+fn ball(motion: Motion, body: ToolBody) -> Result<Tool, LabError> {
     Ok(Tool {
         body: Some(body),
         ..tool(Convex::sphere(0.012)?, motion, 0.0)
@@ -239,7 +239,7 @@ fn place(pressed: &Pressed) -> [f64; 3] {
 }
 
 /// The largest difference (m) of a swing from its closed form, after the path stopped.
-fn off_swing(dt: f64) -> Result<f64, VerifyError> {
+fn off_swing(dt: f64) -> Result<f64, LabError> {
     let (stop, speed, damping) = (0.05, 0.06, 0.1);
     let rows = [(0.0, [0.0, 0.0, 1.0]), (stop, [speed * stop, 0.0, 1.0])];
     let tool = ball(through(&rows, [0.0; 3])?, ToolBody { damping, ..BODY })?;
@@ -260,7 +260,7 @@ fn off_swing(dt: f64) -> Result<f64, VerifyError> {
 }
 
 /// Orders along and about of the differences of a swing from its closed form, and the largest difference along over the swing.
-fn orders(id: &str, options: &Options) -> Result<Vec<f64>, VerifyError> {
+fn orders(id: &str, options: &Options) -> Result<Vec<f64>, LabError> {
     let [coarse, fine] = [1e-4, 5e-5].map(|dt| off_both(id, options, dt));
     let (coarse, fine) = (coarse?, fine?);
     Ok(vec![
@@ -271,7 +271,7 @@ fn orders(id: &str, options: &Options) -> Result<Vec<f64>, VerifyError> {
 }
 
 /// The largest difference of a swing along x, and of one about y, from its closed form, over its size.
-fn off_both(id: &str, options: &Options, dt: f64) -> Result<[f64; 2], VerifyError> {
+fn off_both(id: &str, options: &Options, dt: f64) -> Result<[f64; 2], LabError> {
     let (stop, end, damping) = (0.05, 0.1, 0.1);
     let (speed, spin) = (0.06, 0.4);
     let way = [(0.0, [0.0, 0.0, 1.0]), (stop, [speed * stop, 0.0, 1.0])];
@@ -294,7 +294,7 @@ fn off_both(id: &str, options: &Options, dt: f64) -> Result<[f64; 2], VerifyErro
             let offset = of(&pose(&pressed)) - start * stop;
             worst = worst.max((offset - expected).abs());
         }
-        Ok::<f64, VerifyError>(worst / (start / swings))
+        Ok::<f64, LabError>(worst / (start / swings))
     };
     let rates = [
         BODY.coupling / BODY.mass,
@@ -309,7 +309,7 @@ fn off_both(id: &str, options: &Options, dt: f64) -> Result<[f64; 2], VerifyErro
     ])
 }
 
-fn light_rise() -> Result<f64, VerifyError> {
+fn light_rise() -> Result<f64, LabError> {
     let rows = [
         (0.0, [0.025, 0.03, EDGE + 0.0121]),
         (0.05, [0.027, 0.03, EDGE + 0.007]),
@@ -326,7 +326,7 @@ fn light_rise() -> Result<f64, VerifyError> {
     largest_rise(under(5, &cube(0.0), tool)?, 0.4)
 }
 
-fn collision() -> Result<f64, VerifyError> {
+fn collision() -> Result<f64, LabError> {
     let free = body(YOUNGS_MODULUS, 0.3, Element::P1);
     let velocity = [0.02, 0.0, -0.6];
     let start = Pose::new([0.033, 0.028, EDGE + 0.015], [0.0; 3]);
@@ -352,7 +352,7 @@ fn collision() -> Result<f64, VerifyError> {
     Ok(worst)
 }
 
-fn rubbing_collision() -> Result<Vec<f64>, VerifyError> {
+fn rubbing_collision() -> Result<Vec<f64>, LabError> {
     let free = body(YOUNGS_MODULUS, 0.3, Element::P1);
     let velocity = [0.02, 0.0, -0.6];
     let start = Pose::new([0.033, 0.028, EDGE + 0.015], [0.0; 3]);
@@ -378,7 +378,7 @@ fn rubbing_collision() -> Result<Vec<f64>, VerifyError> {
             off = off.max(change.abs() / (BODY.mass * velocity[2].abs()));
         }
     }
-    let end = of_tool(&pressed).ok_or(VerifyError::NoBody)?;
+    let end = of_tool(&pressed).ok_or_else(LabError::no_body)?;
     let residual = pressed.tools.report(&pressed.state, 0).largest_residual;
     Ok(vec![
         off,
@@ -390,13 +390,13 @@ fn rubbing_collision() -> Result<Vec<f64>, VerifyError> {
 }
 
 /// The largest differences of spring and force, of spring and torque, and of the force from that on a tool led to the same pose.
-fn askew_at_rest() -> Result<Vec<f64>, VerifyError> {
+fn askew_at_rest() -> Result<Vec<f64>, LabError> {
     let [start, end] = [[0.03, 0.03, EDGE + 0.0125], [0.031, 0.029, EDGE + 0.007]];
     let settled = |tool: Tool| {
         let mut pressed = under(5, &cube(40.0), tool)?;
         let mut integrator = method("central-difference", &Options::new())?;
         pressed.run(&mut *integrator, 1e-3, 2500)?;
-        Ok::<Pressed, VerifyError>(pressed)
+        Ok::<Pressed, LabError>(pressed)
     };
     let way = through(&[(0.0, start), (0.2, end)], [0.0; 3])?;
     let pressed = settled(ball(way, BODY)?)?;
@@ -427,7 +427,7 @@ fn askew_at_rest() -> Result<Vec<f64>, VerifyError> {
     ])
 }
 
-fn at_rest() -> Result<f64, VerifyError> {
+fn at_rest() -> Result<f64, LabError> {
     let end = [0.031, 0.029, EDGE + 0.007];
     let rows = [(0.0, [0.03, 0.03, EDGE + 0.0125]), (0.2, end)];
     let tool = ball(through(&rows, [0.0; 3])?, BODY)?;
@@ -438,12 +438,12 @@ fn at_rest() -> Result<f64, VerifyError> {
     Ok((pulled / pressed.force()[2] - 1.0).abs())
 }
 
-fn rise(coupling: f64) -> Result<f64, VerifyError> {
+fn rise(coupling: f64) -> Result<f64, LabError> {
     largest_rise(under(5, &cube(0.0), plate(coupling)?)?, 0.3)
 }
 
 /// A plate of 50 g that is pressed 10 mm down and lifted; it may not turn, so that its normal does not.
-fn plate(coupling: f64) -> Result<Tool, VerifyError> {
+fn plate(coupling: f64) -> Result<Tool, LabError> {
     let at = |z: f64| [0.03, 0.03, EDGE + z];
     let rows = [
         (0.0, at(1e-4)),
@@ -465,7 +465,7 @@ fn plate(coupling: f64) -> Result<Tool, VerifyError> {
 
 /// The largest rise of the energy above where it was lowest, over the largest, of balls of several masses and dampings in a second: with friction and
 /// without; and the smallest of the largest energies (J).
-fn light_tools(id: &str, share: f64) -> Result<Vec<f64>, VerifyError> {
+fn light_tools(id: &str, share: f64) -> Result<Vec<f64>, LabError> {
     let rows = [
         (0.0, [0.025, 0.03, EDGE + 0.0121]),
         (0.05, [0.027, 0.03, EDGE + 0.007]),
@@ -496,7 +496,7 @@ fn light_tools(id: &str, share: f64) -> Result<Vec<f64>, VerifyError> {
 }
 
 /// [`largest_rise_in_steps`] by central difference in nine tenths of the stable step.
-fn largest_rise(pressed: Pressed, duration: f64) -> Result<f64, VerifyError> {
+fn largest_rise(pressed: Pressed, duration: f64) -> Result<f64, LabError> {
     let dt = 0.9 * pressed.stable_step()?;
     largest_rise_in_steps(pressed, "central-difference", dt, duration)
 }
@@ -507,7 +507,7 @@ fn largest_rise_in_steps(
     id: &str,
     dt: f64,
     duration: f64,
-) -> Result<f64, VerifyError> {
+) -> Result<f64, LabError> {
     let (mut last, mut largest, mut rise): (Option<f64>, f64, f64) = (None, 0.0, 0.0);
     follow(pressed, id, dt, duration, |energy, left| {
         rise = rise.max(last.map_or(0.0, |last| left - last));
@@ -523,7 +523,7 @@ fn rise_above_lowest(
     id: &str,
     dt: f64,
     duration: f64,
-) -> Result<(f64, f64), VerifyError> {
+) -> Result<(f64, f64), LabError> {
     let (mut lowest, mut largest, mut rise): (f64, f64, f64) = (f64::INFINITY, 0.0, 0.0);
     follow(pressed, id, dt, duration, |energy, left| {
         lowest = lowest.min(left);
@@ -540,7 +540,7 @@ fn follow(
     dt: f64,
     duration: f64,
     mut see: impl FnMut(f64, f64),
-) -> Result<(), VerifyError> {
+) -> Result<(), LabError> {
     let is_energy = id == "cnn-energy";
     let options = match is_energy {
         true => Options::new().with_text("kind", "ie"),
@@ -550,7 +550,7 @@ fn follow(
     for _ in 0..(duration / dt) as usize {
         pressed.run(&mut *integrator, dt, 1)?;
         let tool = pressed.tools.report(&pressed.state, 0).body;
-        let tool = tool.ok_or(VerifyError::NoBody)?;
+        let tool = tool.ok_or_else(LabError::no_body)?;
         let of_body = match is_energy {
             true => pressed.energy()?,
             false => staggered_energy(&pressed.model, &pressed.state, None, dt),
@@ -562,7 +562,7 @@ fn follow(
 }
 
 /// The solid angle of the surface of a block, over 4 pi, as seen from a tip of a tenth of an edge that is shot at it: 0 outside, 1 inside.
-fn shot(speed: f64, meets_triangles: bool) -> Result<f64, VerifyError> {
+fn shot(speed: f64, meets_triangles: bool) -> Result<f64, LabError> {
     let edge = EDGE / 6.0;
     let free = body(YOUNGS_MODULUS, 0.3, Element::P1);
     let start = Pose::new([0.0327, 0.0269, EDGE + edge], [0.0; 3]);
@@ -608,8 +608,8 @@ fn solid_angle([a, b, c]: [[f64; 3]; 3]) -> f64 {
 }
 
 /// The force of a tip at rest on a coarse mesh over that on a fine one.
-fn coarse_over_fine() -> Result<f64, VerifyError> {
-    let force = |cells: usize| -> Result<f64, VerifyError> {
+fn coarse_over_fine() -> Result<f64, LabError> {
+    let force = |cells: usize| -> Result<f64, LabError> {
         let at = |z: f64| [0.0317, 0.0289, EDGE + z];
         let rows = [(0.0, at(0.0016)), (0.1, at(-0.0015))];
         let tip = tool(Convex::sphere(0.0015)?, through(&rows, [0.0; 3])?, 0.0);

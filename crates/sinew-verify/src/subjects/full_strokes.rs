@@ -9,7 +9,7 @@ use sinew_mesh::TetMesh;
 use sinew_mesh::structured::{Split, block, cube};
 
 use crate::bodies::{YOUNGS_MODULUS, body, held};
-use crate::error::VerifyError;
+use crate::error::LabError;
 use crate::pressed::method;
 
 type Vector = [f64; 3];
@@ -90,7 +90,7 @@ fn after_stroke(
     state: &mut State,
     blade: &Blade,
     steps: u32,
-) -> Result<(bool, f64), VerifyError> {
+) -> Result<(bool, f64), LabError> {
     let mut method = method("central-difference", &Options::new())?;
     let share = |step: u32| f64::from(step) / f64::from(steps);
     for step in 0..steps {
@@ -122,7 +122,7 @@ fn state_of(
     mesh: &TetMesh,
     displacement: impl Fn(Vector) -> Vector,
     velocity: impl Fn(Vector) -> Vector,
-) -> Result<State, VerifyError> {
+) -> Result<State, LabError> {
     let mut state = State::at_rest(model.dofs());
     let field = |of: &dyn Fn(Vector) -> Vector| -> Vec<Vector> {
         mesh.points.iter().map(|place| of(*place)).collect()
@@ -134,7 +134,7 @@ fn state_of(
 
 /// 20 sheets through a strip that is stretched by 0 to 30 % and held so, each with three laws: strokes that leave other than two pieces, and area told as
 /// uncut.
-pub(super) fn under_tension() -> Result<Vec<f64>, VerifyError> {
+pub(super) fn under_tension() -> Result<Vec<f64>, LabError> {
     let size = [0.08, 0.04, 0.01];
     let mut left = Left::default();
     for sheet in 0..20_u32 {
@@ -185,7 +185,7 @@ pub(super) fn under_tension() -> Result<Vec<f64>, VerifyError> {
 
 /// 100 strokes along 20 sheets through a free cube that begins at strains of 0 to 30 % with random velocities, by three laws: strokes that leave other than
 /// two pieces, and area told as uncut.
-pub(super) fn free() -> Result<Vec<f64>, VerifyError> {
+pub(super) fn free() -> Result<Vec<f64>, LabError> {
     let mut left = Left::default();
     let middle = [0.05; 3];
     for run in 0..100_u32 {

@@ -6,7 +6,7 @@ use sinew_mesh::structured::{Split, block};
 
 use crate::bodies::{equilibrium, held};
 use crate::check::{Asked, Check, Source};
-use crate::error::VerifyError;
+use crate::error::LabError;
 use crate::places::nodes_where;
 use crate::subject::{Quoted, Subject};
 use crate::tissue;
@@ -88,7 +88,7 @@ fn law(id: &'static str) -> Law {
     tissue::law(id, 2.5 * MODULUS, 0.25)
 }
 
-fn sag_of_tetrahedra(law: Law) -> Result<f64, VerifyError> {
+fn sag_of_tetrahedra(law: Law) -> Result<f64, LabError> {
     let mesh = block([2, 2, 20], [WIDTH, WIDTH, LENGTH], Split::Mirrored)?;
     let near = |x: f64, place: f64| (x - place).abs() < 1e-9;
     let on = |belongs: &dyn Fn([f64; 3]) -> bool| On::Nodes(nodes_where(&mesh, belongs));
@@ -112,10 +112,10 @@ fn sag_of_tetrahedra(law: Law) -> Result<f64, VerifyError> {
 }
 
 /// The sag (m) by Simpson's rule over the length.
-fn sag_as_integral(id: &'static str) -> Result<f64, VerifyError> {
+fn sag_as_integral(id: &'static str) -> Result<f64, LabError> {
     const PARTS: usize = 400;
     let Law::Hyperelastic { id, parameters } = law(id) else {
-        return Err(VerifyError::NoBody);
+        return Err(LabError::no_body());
     };
     let law = Hyperelastic::new(id, &parameters)?;
     // Stretches along and across, which go on from place to place.

@@ -11,7 +11,7 @@ use sinew_world::World;
 
 use crate::bodies::{DENSITY, YOUNGS_MODULUS};
 use crate::check::{Asked, Check, Source};
-use crate::error::VerifyError;
+use crate::error::LabError;
 use crate::subject::Subject;
 
 pub(super) const SUBJECT: Subject = Subject {
@@ -93,7 +93,7 @@ fn cube(
     (radius, start): (f64, [f64; 3]),
     coupling: Option<Coupling>,
     (method, dt): (&str, f64),
-) -> Result<ToolSimulation, VerifyError> {
+) -> Result<ToolSimulation, LabError> {
     let inertia = [0.4 * MASS * radius * radius; 3];
     let body = coupling.map(|coupling| {
         let stiffness = coupling.stiffness;
@@ -123,7 +123,7 @@ struct Felt {
 }
 
 /// A hand that presses, lets go and moves aside for some seconds.
-fn felt(is_rigid: bool, hertz: f64, stiffness: f64, seconds: u32) -> Result<Felt, VerifyError> {
+fn felt(is_rigid: bool, hertz: f64, stiffness: f64, seconds: u32) -> Result<Felt, LabError> {
     let radius = 0.012;
     let (height, depth) = if is_rigid {
         (0.0, 0.012)
@@ -161,9 +161,9 @@ fn in_lockstep<S: Simulated>(
     coupling: Coupling,
     device: &mut SoftwareDevice,
     seconds: u32,
-) -> Result<Felt, VerifyError>
+) -> Result<Felt, LabError>
 where
-    VerifyError: From<S::Error>,
+    LabError: From<S::Error>,
 {
     let mut lockstep = Lockstep::new(simulation, coupling, device)?;
     let (mut felt, mut last) = (Felt::default(), [0.0; 3]);
@@ -182,7 +182,7 @@ where
 }
 
 /// The delay, in steps, at which forces are nearest to those of a simulation at 1000 Hz.
-fn lag(hertz: f64) -> Result<f64, VerifyError> {
+fn lag(hertz: f64) -> Result<f64, LabError> {
     let (ticks, skipped) = (1000.0 / hertz, 1000);
     let [fast, slow] = [1000.0, hertz].map(|hertz| felt(false, hertz, 400.0, 5));
     let (fast, slow) = (fast?.forces, slow?.forces);
@@ -196,12 +196,12 @@ fn lag(hertz: f64) -> Result<f64, VerifyError> {
     Ok(best.unwrap_or_default() as f64 / ticks)
 }
 
-fn stiffness_over_slope(law: &str) -> Result<f64, VerifyError> {
+fn stiffness_over_slope(law: &str) -> Result<f64, LabError> {
     let (radius, dt) = (0.04, 2e-3);
     let mut from = -1e-3;
     let start = [0.5 * EDGE, 0.5 * EDGE, EDGE + radius - from];
     let mut cube = cube(law, (radius, start), None, ("symplectic-euler", dt))?;
-    let mut pressed = |depth: f64| -> Result<Published, VerifyError> {
+    let mut pressed = |depth: f64| -> Result<Published, LabError> {
         let steps = 1000;
         let mut at = |step: u32, iterations: usize| {
             cube.set_iterations(iterations);

@@ -13,7 +13,7 @@ use crate::bodies::{
     DENSITY, YOUNGS_MODULUS, body, equilibrium, held, linear, load, loads, of_law, springs,
 };
 use crate::check::{Asked, Check, Source};
-use crate::error::VerifyError;
+use crate::error::LabError;
 use crate::kinds::Kind;
 use crate::modes::{lowest_omega, lowest_omega_lumped};
 use crate::places::triangles_where;
@@ -238,14 +238,14 @@ fn checks() -> Vec<Check> {
 }
 
 /// Plain tetrahedra under a pressure (Pa) on the top.
-fn pressed_cube(law: &Law, edge: f64, pressure: f64) -> Result<Model, VerifyError> {
+fn pressed_cube(law: &Law, edge: f64, pressure: f64) -> Result<Model, LabError> {
     let mut problem = of_law(law.clone(), Element::P1);
     problem.fixed = vec![held("sides", [true; 3])];
     problem.loads = vec![load("top", LoadKind::Pressure(pressure))];
     Ok(Model::build(&cube(10, edge, Split::Kuhn)?, &problem)?)
 }
 
-fn held_cube(kind: Kind, cells: usize, nu: f64) -> Result<Model, VerifyError> {
+fn held_cube(kind: Kind, cells: usize, nu: f64) -> Result<Model, LabError> {
     let mut problem = body(YOUNGS_MODULUS, nu, kind.element(None));
     problem.fixed = vec![held("sides", [true; 3])];
     problem.loads = vec![load("top", LoadKind::Traction([0.0, 0.0, -TRACTION]))];
@@ -253,13 +253,13 @@ fn held_cube(kind: Kind, cells: usize, nu: f64) -> Result<Model, VerifyError> {
 }
 
 /// The work (J) of the load on the equilibrium.
-fn compliance(kind: Kind, cells: usize, nu: f64) -> Result<f64, VerifyError> {
+fn compliance(kind: Kind, cells: usize, nu: f64) -> Result<f64, LabError> {
     let model = held_cube(kind, cells, nu)?;
     Ok(dot(&loads(&model), &equilibrium(&model)?))
 }
 
 /// 10-node tetrahedra, and those of them that move.
-fn tet10(cells: usize, nu: f64) -> Result<(Tet10, HeldTet10), VerifyError> {
+fn tet10(cells: usize, nu: f64) -> Result<(Tet10, HeldTet10), LabError> {
     let body = Tet10::new(&cube(cells, EDGE, Split::Kuhn)?);
     let tissue = Tissue {
         youngs_modulus: YOUNGS_MODULUS,
@@ -272,7 +272,7 @@ fn tet10(cells: usize, nu: f64) -> Result<(Tet10, HeldTet10), VerifyError> {
 }
 
 /// The work (J) of the load on the equilibrium of 10-node tetrahedra.
-fn compliance_of_tet10(cells: usize, nu: f64) -> Result<f64, VerifyError> {
+fn compliance_of_tet10(cells: usize, nu: f64) -> Result<f64, LabError> {
     let (body, held) = tet10(cells, nu)?;
     let mesh = cube(cells, EDGE, Split::Kuhn)?;
     let top = triangles_where(&mesh, "top", |_| true)?;
@@ -282,7 +282,7 @@ fn compliance_of_tet10(cells: usize, nu: f64) -> Result<f64, VerifyError> {
 }
 
 /// The first frequency (Hz) with the mass of linear shape functions, V rho/20 between two nodes and twice that on a node.
-fn frequency_consistent(model: &Model) -> Result<f64, VerifyError> {
+fn frequency_consistent(model: &Model) -> Result<f64, LabError> {
     let pattern = Arc::clone(model.operators().stiffness().pattern());
     let mut mass = BlockMatrix::zeros(pattern, Layers::Three);
     let mesh = model.mesh();

@@ -8,7 +8,7 @@ use sinew_tools::Convex;
 
 use crate::bodies::{DENSITY, YOUNGS_MODULUS, body, held};
 use crate::check::{Asked, Check, Source};
-use crate::error::VerifyError;
+use crate::error::LabError;
 use crate::places::nodes_where;
 use crate::pressed::{Pressed, method, through, tool};
 use crate::subject::Subject;
@@ -128,7 +128,7 @@ fn checks() -> Vec<Check> {
 
 const HERTZ: &str = "F = 4/3 E/(1 - nu^2) sqrt(R) d^1.5 (Johnson, Contact Mechanics, section 4.2)";
 
-fn force_over_hertz(press: Press) -> Result<f64, VerifyError> {
+fn force_over_hertz(press: Press) -> Result<f64, LabError> {
     let depth = press.depth * BALL;
     let plane = YOUNGS_MODULUS / (1.0 - press.nu * press.nu);
     Ok(force(press)? / (4.0 / 3.0 * plane * BALL.sqrt() * depth.powf(1.5)))
@@ -150,7 +150,7 @@ fn planes(press: Press) -> Vec<f64> {
 }
 
 /// A quarter of the block below z = 0, its symmetric sides at x = 0 and y = 0.
-fn quarter(press: Press) -> Result<TetMesh, VerifyError> {
+fn quarter(press: Press) -> Result<TetMesh, LabError> {
     let planes = planes(press);
     let cells = planes.len() - 1;
     let mut mesh = block([cells; 3], [cells as f64; 3], Split::Kuhn)?;
@@ -162,7 +162,7 @@ fn quarter(press: Press) -> Result<TetMesh, VerifyError> {
 }
 
 /// The force (N) on the whole ball at rest.
-fn force(press: Press) -> Result<f64, VerifyError> {
+fn force(press: Press) -> Result<f64, LabError> {
     let (size, depth) = (press.size * CONTACT, press.depth * BALL);
     let mesh = quarter(press)?;
     let near = |x: f64, place: f64| (x - place).abs() < 1e-9;

@@ -8,10 +8,10 @@ use sinew_mesh::structured::{Split, cube};
 use crate::bodies::{YOUNGS_MODULUS, body, of_law};
 use crate::check::{Asked, Check, Source};
 use crate::closed_forms;
-use crate::error::VerifyError;
+use crate::error::LabError;
 use crate::subject::Subject;
 use crate::tissue;
-use crate::uniform::{EDGE, ELEMENTS, Uniform};
+use crate::uniform::{EDGE, ELEMENTS, Uniform, name};
 
 pub(super) const SUBJECT: Subject = Subject {
     id: "hyperelastic",
@@ -46,13 +46,14 @@ fn checks() -> Vec<Check> {
 /// A nearly incompressible block in confined compression by a tenth, on every element.
 fn confined() -> Check {
     let figures = ELEMENTS.into_iter().flat_map(|element| {
+        let of = name(element);
         [
             (
-                format!("{element}: P33 for E = 1 Pa"),
+                format!("{of}: P33 for E = 1 Pa"),
                 Asked::value(-16.714_846_935, 1e-9),
             ),
             (
-                format!("{element}: largest force within over that on the top"),
+                format!("{of}: largest force within over that on the top"),
                 Asked::at_most(1e-12),
             ),
         ]
@@ -229,7 +230,7 @@ fn least_eigenvalue(tensor: Tensor<f64>) -> f64 {
 }
 
 /// The largest stress (Pa) of linear elasticity in a cube that is turned by 30 degrees as one.
-fn linear_stress_of_a_turn() -> Result<f64, VerifyError> {
+fn linear_stress_of_a_turn() -> Result<f64, LabError> {
     let model = Model::build(
         &cube(2, 0.1, Split::Kuhn)?,
         &body(YOUNGS_MODULUS, NU, Element::P1),

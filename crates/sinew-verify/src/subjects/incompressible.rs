@@ -5,7 +5,7 @@ use sinew_core::vectors::largest;
 use sinew_fem::Element;
 
 use crate::check::{Asked, Check, Source};
-use crate::error::VerifyError;
+use crate::error::LabError;
 use crate::subject::Subject;
 use crate::tissue::{self, Specimen, relative_error, rotation_of_top};
 
@@ -50,14 +50,14 @@ fn checks() -> Vec<Check> {
 }
 
 /// Displacements of a push at 50 instants.
-fn pressed(nu: f64) -> Result<Vec<Vec<f64>>, VerifyError> {
+fn pressed(nu: f64) -> Result<Vec<Vec<f64>>, LabError> {
     let law = tissue::law("neo-hookean", tissue::YOUNGS_MODULUS, nu);
     let specimen = tissue::pressed(6, law, EDGES, 10.0, Ramp::Sin2 { rise: 0.2 })?;
     Ok(specimen.by_central_difference(1e-4, 100, 50)?)
 }
 
 /// The farthest turn (rad) of the column's top with so many cells across.
-fn farthest_turn(across: usize) -> Result<f64, VerifyError> {
+fn farthest_turn(across: usize) -> Result<f64, LabError> {
     let law = tissue::law("neo-hookean", 17e6, 0.495);
     let mut problem = tissue::standing(law, EDGES);
     problem.regions[0].density = 1100.0;

@@ -5,7 +5,7 @@ use sinew_core::{Inputs, OptionValue, Options, Ramp, State, System};
 use sinew_fem::Element;
 
 use crate::check::{Asked, Check};
-use crate::error::VerifyError;
+use crate::error::LabError;
 use crate::places::node_at;
 use crate::sources::PROTOTYPE_OF_MOTIONS;
 use crate::subject::Subject;
@@ -45,7 +45,7 @@ impl Scene {
         }
     }
 
-    fn specimen(self) -> Result<Specimen, VerifyError> {
+    fn specimen(self) -> Result<Specimen, LabError> {
         let law = tissue::soft();
         let specimen = match self {
             Self::Release => tissue::release(6, law, Element::P1),
@@ -60,13 +60,13 @@ impl Scene {
 }
 
 /// The displacements at `rate` steps a second by central difference.
-fn track(specimen: &Specimen, rate: usize, instants: usize) -> Result<Vec<Vec<f64>>, VerifyError> {
+fn track(specimen: &Specimen, rate: usize, instants: usize) -> Result<Vec<Vec<f64>>, LabError> {
     let steps = (DURATION * rate as f64 / instants as f64).round() as usize;
     Ok(specimen.by_central_difference(1.0 / rate as f64, steps, instants)?)
 }
 
 /// The same, extrapolated to steps of no length.
-fn exact(specimen: &Specimen, instants: usize) -> Result<Vec<Vec<f64>>, VerifyError> {
+fn exact(specimen: &Specimen, instants: usize) -> Result<Vec<Vec<f64>>, LabError> {
     let coarse = track(specimen, FINEST / 2, instants)?;
     let mut fine = track(specimen, FINEST, instants)?;
     for (fine, coarse) in fine.iter_mut().flatten().zip(coarse.iter().flatten()) {
@@ -76,18 +76,14 @@ fn exact(specimen: &Specimen, instants: usize) -> Result<Vec<Vec<f64>>, VerifyEr
 }
 
 /// The vertical displacement (m) of the middle of the top at numbered instants.
-fn tops(
-    specimen: &Specimen,
-    track: &[Vec<f64>],
-    instants: &[usize],
-) -> Result<Vec<f64>, VerifyError> {
+fn tops(specimen: &Specimen, track: &[Vec<f64>], instants: &[usize]) -> Result<Vec<f64>, LabError> {
     let mesh = specimen.model.mesh();
     let (_, high) = mesh.bounding_box();
     let node = node_at(&mesh.points, [high[0] / 2.0, high[1] / 2.0, high[2]])?;
     let cell = specimen
         .model
         .cell_of_node(node)
-        .ok_or(VerifyError::NoBody)?;
+        .ok_or_else(LabError::no_body)?;
     let heights = instants
         .iter()
         .map(|instant| track[instant - 1][3 * cell as usize + 2]);
@@ -132,9 +128,11 @@ fn energies() -> Check {
         ("twist: kinetic (J)", Asked::value(5.83e-3, 5e-6)),
     ];
     Check::several("energy at the start", figures, PROTOTYPE_OF_MOTIONS, |_| {
-        let energy = |scene: Scene| -> Result<_, VerifyError> {
+        let energy = |scene: Scene| -> Result<_, LabError> {
             let Specimen { model, start } = scene.specimen()?;
-            model.energy(&start.u, &start.v).ok_or(VerifyError::NoBody)
+            model
+                .energy(&start.u, &start.v)
+                .ok_or_else(LabError::no_body)
         };
         Ok(vec![
             energy(Scene::Release)?.elastic,
@@ -172,7 +170,7 @@ fn released() -> Check {
 }
 
 /// Kinetic and elastic energy (J) at a time (s), by the finest steps.
-fn energies_at(specimen: &Specimen, t: f64) -> Result<[f64; 2], VerifyError> {
+fn energies_at(specimen: &Specimen, t: f64) -> Result<[f64; 2], LabError> {
     let mut integrator = sinew_integrators::build("central-difference", &Options::new())?;
     let mut state: State = specimen.start.clone();
     let dt = 1.0 / FINEST as f64;
@@ -184,7 +182,7 @@ fn energies_at(specimen: &Specimen, t: f64) -> Result<[f64; 2], VerifyError> {
     let energy = specimen
         .model
         .energy(&state.u, &v)
-        .ok_or(VerifyError::NoBody)?;
+        .ok_or_else(LabError::no_body)?;
     Ok([
         0.5 * weighted_dot(specimen.model.mass(), &v, &v),
         energy.elastic,

@@ -11,11 +11,11 @@ use sinew_fem::{Element, FibreFamily, Memory, Model, Moduli, ViscousPart};
 
 use crate::bodies::{YOUNGS_MODULUS, of_law};
 use crate::check::{Asked, Check, Source};
-use crate::error::VerifyError;
+use crate::error::LabError;
 use crate::sources::PROTOTYPE_OF_MOTIONS;
 use crate::subject::Subject;
 use crate::tissue::law;
-use crate::uniform::{ELEMENTS, Uniform};
+use crate::uniform::{ELEMENTS, Uniform, name};
 
 pub(super) const SUBJECT: Subject = Subject {
     id: "memory",
@@ -189,9 +189,10 @@ fn checks() -> Vec<Check> {
         )
     };
     for element in ELEMENTS {
+        let of = name(element);
         for steps in [1, 10, 400] {
             checks.push(Check::several(
-                format!("{element}, fibres, strained at once and held for 1 s in {steps} steps"),
+                format!("{of}, fibres, strained at once and held for 1 s in {steps} steps"),
                 [off(1e-12)],
                 INTEGRAL,
                 move |_| Ok(vec![held_body(element, steps)?]),
@@ -199,7 +200,7 @@ fn checks() -> Vec<Check> {
         }
         for id in ["neo-hookean-iso", "mooney-rivlin"] {
             checks.push(Check::several(
-                format!("{id}, {element}, deviatoric stress alone relaxes for .4 s"),
+                format!("{id}, {of}, deviatoric stress alone relaxes for .4 s"),
                 [off(1e-12)],
                 INTEGRAL,
                 move |_| Ok(vec![pressure_stays(id, element)?]),
@@ -207,7 +208,7 @@ fn checks() -> Vec<Check> {
         }
         for steps in [10, 100] {
             checks.push(Check::several(
-                format!("stvk, {element}, Green's strain of .1/s, in {steps} steps"),
+                format!("stvk, {of}, Green's strain of .1/s, in {steps} steps"),
                 [off(1e-11)],
                 INTEGRAL,
                 move |_| Ok(vec![grown_body(element, steps)?]),
@@ -226,7 +227,7 @@ fn relaxing(
     element: Element,
     part: ViscousPart,
     with_fibres: bool,
-) -> Result<(Uniform, State), VerifyError> {
+) -> Result<(Uniform, State), LabError> {
     let mut problem = of_law(law(id, YOUNGS_MODULUS, 0.45), element);
     problem.regions[0].tissue.memory = Some(Memory {
         terms: TERMS.into(),
@@ -246,7 +247,7 @@ fn relaxing(
     Ok((body, state))
 }
 
-fn stresses(model: &Model, state: &State) -> Result<Vec<[f64; 6]>, VerifyError> {
+fn stresses(model: &Model, state: &State) -> Result<Vec<[f64; 6]>, LabError> {
     let mut stress = vec![[0.0; 6]; model.mesh().tets.len()];
     let asked = model.with_memory(&state.internal);
     asked.stress(0.0, &state.u, &mut stress)?;
@@ -268,7 +269,7 @@ fn left(t: f64) -> f64 {
     1.0 - lost.sum::<f64>()
 }
 
-fn held_body(element: Element, steps: u32) -> Result<f64, VerifyError> {
+fn held_body(element: Element, steps: u32) -> Result<f64, LabError> {
     let (body, mut state) = relaxing("neo-hookean", element, ViscousPart::All, true)?;
     state.u.clone_from(&body.u);
     // Not uniform, so that averages over edges and patches matter.
@@ -284,7 +285,7 @@ fn held_body(element: Element, steps: u32) -> Result<f64, VerifyError> {
     Ok(apart(&stresses(&body.model, &state)?, &expected))
 }
 
-fn pressure_stays(id: &'static str, element: Element) -> Result<f64, VerifyError> {
+fn pressure_stays(id: &'static str, element: Element) -> Result<f64, LabError> {
     let (body, mut state) = relaxing(id, element, ViscousPart::Deviatoric, false)?;
     state.u.clone_from(&body.u);
     body.model.accept(&mut state, Inputs::none(), 0.0)?;
@@ -302,7 +303,7 @@ fn pressure_stays(id: &'static str, element: Element) -> Result<f64, VerifyError
 }
 
 /// A second Piola-Kirchhoff stress that grows evenly.
-fn grown_body(element: Element, steps: u32) -> Result<f64, VerifyError> {
+fn grown_body(element: Element, steps: u32) -> Result<f64, LabError> {
     let (body, mut state) = relaxing("stvk", element, ViscousPart::All, false)?;
     let points = &body.model.mesh().points;
     for step in 1..=steps {

@@ -6,7 +6,7 @@ use sinew_core::{
 };
 
 use crate::check::{Asked, Check, Source};
-use crate::error::VerifyError;
+use crate::error::LabError;
 use crate::motion::relative_error;
 use crate::subject::Subject;
 
@@ -181,7 +181,7 @@ fn checks() -> Vec<Check> {
             ],
             describing,
             move |_| {
-                let size = |q: f64| -> Result<f64, VerifyError> {
+                let size = |q: f64| -> Result<f64, LabError> {
                     let found = largest_within("cnn", Some(q), dt, [98.0, 100.0])?;
                     Ok(found / (4.0 / std::f64::consts::PI * q * f64::sqrt(dt * MASS / DASHPOT)))
                 };
@@ -228,7 +228,7 @@ fn checks() -> Vec<Check> {
     checks
 }
 
-fn model() -> Result<LinearModel, VerifyError> {
+fn model() -> Result<LinearModel, LabError> {
     Ok(LinearModel::new(LinearOperators::oscillator(
         MASS, SPRING, DASHPOT,
     )?))
@@ -247,7 +247,7 @@ fn motion(
     saturation: Option<f64>,
     dt: f64,
     duration: f64,
-) -> Result<Vec<(f64, f64)>, VerifyError> {
+) -> Result<Vec<(f64, f64)>, LabError> {
     let options = match saturation {
         Some(q) => Options::new().with_number("saturation", q),
         None => Options::new(),
@@ -266,7 +266,7 @@ fn motion(
     Ok(motion)
 }
 
-fn error(method: &str, saturation: Option<f64>, dt: f64) -> Result<f64, VerifyError> {
+fn error(method: &str, saturation: Option<f64>, dt: f64) -> Result<f64, LabError> {
     let motion = motion(method, saturation, dt, 1.0)?.into_iter();
     Ok(relative_error(motion.map(|(t, u)| (u, exact(t)))))
 }
@@ -277,7 +277,7 @@ fn largest_within(
     saturation: Option<f64>,
     dt: f64,
     [from, to]: [f64; 2],
-) -> Result<f64, VerifyError> {
+) -> Result<f64, LabError> {
     let motion = motion(method, saturation, dt, to)?.into_iter();
     let within = motion.filter(|(t, _)| (from - 1e-9..=to + 1e-9).contains(t));
     Ok(within.fold(0.0, |most: f64, (_, u)| most.max(u.abs())))

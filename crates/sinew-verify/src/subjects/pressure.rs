@@ -12,7 +12,7 @@ use sinew_mesh::structured::{Split, cube};
 
 use crate::bodies::{body, held};
 use crate::check::{Asked, Check};
-use crate::error::VerifyError;
+use crate::error::LabError;
 use crate::inputs::Inputs;
 use crate::kinds::Kind;
 use crate::places::on_surface;
@@ -159,7 +159,7 @@ fn body_force(place: [f64; 3], mu: f64) -> [f64; 3] {
 }
 
 /// The errors of displacement and pressure.
-fn errors(mesh: &TetMesh, kind: Kind, patch: Option<u32>) -> Result<Vec<f64>, VerifyError> {
+fn errors(mesh: &TetMesh, kind: Kind, patch: Option<u32>) -> Result<Vec<f64>, LabError> {
     let mut problem = body(1.0, POISSONS_RATIO, kind.element(patch));
     let surface = on_surface(mesh);
     let held_nodes = (0..)
@@ -191,7 +191,7 @@ fn errors(mesh: &TetMesh, kind: Kind, patch: Option<u32>) -> Result<Vec<f64>, Ve
 }
 
 /// The change of volume that each tetrahedron's pressure follows from: the mean stress of a law that resists nothing else.
-fn dilations(model: &Model, problem: &Problem, u: &[f64]) -> Result<Vec<f64>, VerifyError> {
+fn dilations(model: &Model, problem: &Problem, u: &[f64]) -> Result<Vec<f64>, LabError> {
     let (youngs_modulus, poissons_ratio) = (1.0, 0.5 - 1e-12);
     let element = problem.regions[0].element;
     let mut fluid = body(youngs_modulus, poissons_ratio, element);

@@ -8,7 +8,7 @@ use sinew_measure::{Case, Effort, MethodChoice, Row, measure};
 
 use crate::bodies::equilibrium;
 use crate::check::{Asked, Check, Source};
-use crate::error::VerifyError;
+use crate::error::LabError;
 use crate::inputs::Inputs;
 use crate::subject::Subject;
 
@@ -336,24 +336,24 @@ fn checks() -> Vec<Check> {
     checks
 }
 
-fn case(inputs: &Inputs, scene: &str) -> Result<Case, VerifyError> {
+fn case(inputs: &Inputs, scene: &str) -> Result<Case, LabError> {
     Ok(Case::load(&inputs.scene(scene))?)
 }
 
-fn row(case: &mut Case, method: &str, options: Options, dt: f64) -> Result<Row, VerifyError> {
+fn row(case: &mut Case, method: &str, options: Options, dt: f64) -> Result<Row, LabError> {
     let mut method = MethodChoice::new(method);
     method.options = options;
     Ok(measure(case, &method, dt, Effort::UNTIMED)?)
 }
 
 /// The error (%) of a method.
-fn error(case: &mut Case, method: &str, options: Options, dt: f64) -> Result<f64, VerifyError> {
+fn error(case: &mut Case, method: &str, options: Options, dt: f64) -> Result<f64, LabError> {
     let row = row(case, method, options, dt)?;
     Ok(100.0 * row.error.unwrap_or(f64::INFINITY))
 }
 
-fn static_displacement(case: &Case) -> Result<f64, VerifyError> {
+fn static_displacement(case: &Case) -> Result<f64, LabError> {
     let body = case.simulation().model().body();
-    let model = body.map(|body| &body.model).ok_or(VerifyError::NoBody)?;
+    let model = body.map(|body| &body.model).ok_or_else(LabError::no_body)?;
     Ok(largest(&equilibrium(model)?))
 }

@@ -10,7 +10,7 @@ use sinew_mesh::structured::{Split, block};
 
 use crate::bodies::{YOUNGS_MODULUS, body, equilibrium, held, load, loads};
 use crate::check::{Asked, Check, Source};
-use crate::error::VerifyError;
+use crate::error::LabError;
 use crate::modes::lowest_omega_lumped;
 use crate::subject::Subject;
 
@@ -61,19 +61,19 @@ fn nodes(mesh: &TetMesh, holds: impl Fn([f64; 3]) -> bool) -> On {
 }
 
 /// A blade along y, beyond the body, that goes along x at a height (m) up to some place (m).
-fn slit(cut: &mut CutModel, height: f64, end: f64) -> Result<(), VerifyError> {
+fn slit(cut: &mut CutModel, height: f64, end: f64) -> Result<(), LabError> {
     let blade = |x: f64| [[x, -1.0, height], [x, 1.0, height]];
-    let sheet = Sheet::swept(blade(-1.0), blade(end)).ok_or(VerifyError::NoBody)?;
+    let sheet = Sheet::swept(blade(-1.0), blade(end)).ok_or_else(LabError::no_body)?;
     let mut state = State::at_rest(cut.model().dofs());
     cut.stroke(&sheet, &mut state, Inputs::none())?;
     Ok(())
 }
 
-fn doubled() -> Result<f64, VerifyError> {
+fn doubled() -> Result<f64, LabError> {
     let layers = 40;
     let mesh = Arc::new(block([1, 1, layers], [0.01, 0.01, 0.4], Split::Kuhn)?);
     // Up to some height (m) nothing moves but along the bar.
-    let model = |height: f64| -> Result<CutModel, VerifyError> {
+    let model = |height: f64| -> Result<CutModel, LabError> {
         let problem = Problem {
             fixed: vec![
                 held("bottom", [true; 3]),
@@ -92,7 +92,7 @@ fn doubled() -> Result<f64, VerifyError> {
     Ok(lowest_omega_lumped(cut.model())? / whole)
 }
 
-fn released() -> Result<f64, VerifyError> {
+fn released() -> Result<f64, LabError> {
     let (h, width, height, nu, pull) = (1e-3, 25, 100, 0.3, 10.0);
     let size = [width, 1, height].map(|cells| h * f64::from(cells as u32));
     let mesh = Arc::new(block([width, 1, height], size, Split::Kuhn)?);
@@ -106,7 +106,7 @@ fn released() -> Result<f64, VerifyError> {
         loads: vec![load("top", LoadKind::Traction([0.0, 0.0, pull]))],
         ..body(YOUNGS_MODULUS, nu, Element::P1)
     };
-    let energy = |cells: f64| -> Result<f64, VerifyError> {
+    let energy = |cells: f64| -> Result<f64, LabError> {
         let mut cut = CutModel::new(Arc::clone(&mesh), problem.clone(), 0.0)?;
         slit(&mut cut, 0.5 * size[2], (cells + 0.01) * h)?;
         let u = equilibrium(cut.model())?;

@@ -6,7 +6,7 @@ use sinew_mesh::structured::{Split, cube};
 
 use crate::bodies::{self, YOUNGS_MODULUS, of_law};
 use crate::check::{Asked, Check, Source};
-use crate::error::VerifyError;
+use crate::error::LabError;
 use crate::places::on_surface;
 use crate::subject::Subject;
 use crate::vector::{difference, norm};
@@ -72,7 +72,7 @@ fn moduli(rule: SpringRule) -> [(String, Asked); 3] {
     ]
 }
 
-fn stiffness_and_moduli(rule: SpringRule) -> Result<Vec<f64>, VerifyError> {
+fn stiffness_and_moduli(rule: SpringRule) -> Result<Vec<f64>, LabError> {
     let mesh = cube(10, 0.1, Split::Kuhn)?;
     let surface = on_surface(&mesh);
     let all = springs(&mesh.points, mesh.tets.iter(), YOUNGS_MODULUS, rule);

@@ -10,7 +10,7 @@ use sinew_fem::{Element, Law, Model};
 use sinew_mesh::structured::{Split, cube};
 
 use crate::check::{Asked, Check, Source};
-use crate::error::VerifyError;
+use crate::error::LabError;
 use crate::subject::Subject;
 use crate::tissue::{self, COLUMN, EDGE, Specimen, YOUNGS_MODULUS};
 use crate::vector::{cross, difference, dot};
@@ -125,7 +125,7 @@ fn checks() -> Vec<Check> {
 }
 
 /// Energy of motion and of deformation (J).
-fn energy(specimen: &Specimen, state: &State) -> Result<f64, VerifyError> {
+fn energy(specimen: &Specimen, state: &State) -> Result<f64, LabError> {
     let mut v = vec![0.0; state.v.len()];
     state.velocity_at_t(&specimen.model, Inputs::none(), &mut v)?;
     let (mut force, model) = (vec![0.0; v.len()], &specimen.model);
@@ -145,7 +145,7 @@ fn at(u: &[f64]) -> Trial<'_> {
 }
 
 /// Energies over the first by central difference.
-fn energies(specimen: &Specimen, dt: f64, steps: usize) -> Result<Vec<f64>, VerifyError> {
+fn energies(specimen: &Specimen, dt: f64, steps: usize) -> Result<Vec<f64>, LabError> {
     let mut integrator = sinew_integrators::build("central-difference", &Options::new())?;
     let mut state = specimen.start.clone();
     let first = energy(specimen, &state)?;
@@ -165,7 +165,7 @@ const STABLE: f64 = 1.206e-3;
 /// A mode of frequency w with an amplitude of energy e has the energy `e (1 - w^2 dt^2/8)` in the mean, by velocities at the displacement's time,
 /// and `e (1 - w^2 dt^2/4)` by `v'M v/2 + (W + W+)/2 - dt^2/4 v'K v` between two displacements. What leapfrog keeps, also where modes exchange
 /// energy, is its modified energy `e (1 - w^2 dt^2/12)`: 4/3 of the first less 1/3 of the second, to fourth order.
-fn energy_drift(steps: usize) -> Result<Vec<f64>, VerifyError> {
+fn energy_drift(steps: usize) -> Result<Vec<f64>, LabError> {
     const APART: usize = 10;
     let problem = tissue::standing(tissue::soft(), Element::P1);
     let specimen = tissue::spun_column([3, 3, 18], COLUMN, 75.0, &problem)?;
@@ -198,7 +198,7 @@ fn energy_drift(steps: usize) -> Result<Vec<f64>, VerifyError> {
     Ok(vec![change(0), change(1)])
 }
 
-fn energy_ripple(dt: f64) -> Result<f64, VerifyError> {
+fn energy_ripple(dt: f64) -> Result<f64, LabError> {
     let specimen = tissue::release(3, tissue::soft(), Element::P1)?;
     let energies = energies(&specimen, dt, (0.2 / dt).round() as usize)?;
     Ok(energies
@@ -207,7 +207,7 @@ fn energy_ripple(dt: f64) -> Result<f64, VerifyError> {
 }
 
 /// The largest rise of the energy in a step over that at the start, or the work of the load, among several starts, kinds and steps.
-fn largest_rise(id: &'static str, element: Element) -> Result<f64, VerifyError> {
+fn largest_rise(id: &'static str, element: Element) -> Result<f64, LabError> {
     let law = tissue::law(id, YOUNGS_MODULUS, 0.45);
     let standing = tissue::standing(law.clone(), element);
     let specimens = [
@@ -229,7 +229,7 @@ fn largest_rise(id: &'static str, element: Element) -> Result<f64, VerifyError> 
                 .with_number("sweeps", f64::from(sweeps));
             let mut integrator = sinew_integrators::build("cnn-energy", &options)?;
             let mut state = specimen.start.clone();
-            let all = |state: &State| -> Result<f64, VerifyError> {
+            let all = |state: &State| -> Result<f64, LabError> {
                 Ok(energy(specimen, state)? - vectors::dot(&load, &state.u))
             };
             let (mut before, mut size) = (all(&state)?, energy(specimen, &state)?);
@@ -245,7 +245,7 @@ fn largest_rise(id: &'static str, element: Element) -> Result<f64, VerifyError> 
     Ok(most)
 }
 
-fn change_of_angular_momentum(element: Element) -> Result<f64, VerifyError> {
+fn change_of_angular_momentum(element: Element) -> Result<f64, LabError> {
     let mesh = cube(3, EDGE, Split::Kuhn)?;
     let specimen = Specimen::new(&mesh, &tissue::free(tissue::soft(), element))?;
     let specimen = specimen
@@ -293,21 +293,17 @@ fn change_of_angular_momentum(element: Element) -> Result<f64, VerifyError> {
 }
 
 /// A cube without supports, its nodes displaced at random by up to so much (m).
-fn shaken(
-    id: &'static str,
-    element: Element,
-    scale: f64,
-) -> Result<(Model, Vec<f64>), VerifyError> {
+fn shaken(id: &'static str, element: Element, scale: f64) -> Result<(Model, Vec<f64>), LabError> {
     let law = tissue::law(id, YOUNGS_MODULUS, 0.45);
     let model = Model::build(&cube(3, EDGE, Split::Kuhn)?, &tissue::free(law, element))?;
     let u = noise(model.dofs(), 7).iter().map(|x| scale * x).collect();
     Ok((model, u))
 }
 
-fn pairs_beside_forces(id: &'static str) -> Result<f64, VerifyError> {
+fn pairs_beside_forces(id: &'static str) -> Result<f64, LabError> {
     let (model, u) = shaken(id, Element::P1, 0.004)?;
     let Law::Hyperelastic { id, parameters } = tissue::law(id, YOUNGS_MODULUS, 0.45) else {
-        return Err(VerifyError::NoBody);
+        return Err(LabError::no_body());
     };
     let law = Hyperelastic::new(id, &parameters)?;
     let mesh = model.mesh();
@@ -353,11 +349,7 @@ fn pairs_beside_forces(id: &'static str) -> Result<f64, VerifyError> {
     Ok(largest(&off) / largest(&sizes))
 }
 
-fn blocks_beside_tangent(
-    id: &'static str,
-    element: Element,
-    scale: f64,
-) -> Result<f64, VerifyError> {
+fn blocks_beside_tangent(id: &'static str, element: Element, scale: f64) -> Result<f64, LabError> {
     let (model, u) = shaken(id, element, scale)?;
     let mut force = vec![0.0; u.len()];
     let found = model.elastic_force(&at(&u), &mut force)?;

@@ -12,7 +12,7 @@ use sinew_mesh::structured::{Split, block};
 
 use crate::bodies::{DENSITY, YOUNGS_MODULUS, body, held, stiffness_times};
 use crate::check::{Asked, Check, Source};
-use crate::error::VerifyError;
+use crate::error::LabError;
 use crate::kinds::Kind;
 use crate::modes::lowest_omega_lumped;
 use crate::subject::Subject;
@@ -82,7 +82,7 @@ fn checks() -> Vec<Check> {
 }
 
 /// The Rayleigh quotient of a quarter sine on the bar as tetrahedra with nu = 0, held at z = 0.
-fn axial_frequency(split: Split, cells: usize, kind: Kind) -> Result<f64, VerifyError> {
+fn axial_frequency(split: Split, cells: usize, kind: Kind) -> Result<f64, LabError> {
     let size = [LENGTH / 10.0, LENGTH / 10.0, LENGTH];
     let mesh = block([2, 3, cells], size, split)?;
     let mut problem = body(YOUNGS_MODULUS, 0.0, kind.element(None));
@@ -98,7 +98,7 @@ fn axial_frequency(split: Split, cells: usize, kind: Kind) -> Result<f64, Verify
 }
 
 /// A bar of unit section as a chain of masses, held at both ends or at the first alone.
-fn chain(cells: usize, is_free: bool) -> Result<LinearModel, VerifyError> {
+fn chain(cells: usize, is_free: bool) -> Result<LinearModel, LabError> {
     let spacing = LENGTH / cells as f64;
     let spring = YOUNGS_MODULUS / spacing;
     let moving = if is_free { cells } else { cells - 1 };
@@ -140,7 +140,7 @@ fn hump(x: f64, is_free: bool) -> f64 {
     }
 }
 
-fn hump_error(cells: usize, is_free: bool) -> Result<f64, VerifyError> {
+fn hump_error(cells: usize, is_free: bool) -> Result<f64, LabError> {
     let spacing = LENGTH / cells as f64;
     let dt = spacing / wave_speed();
     let model = chain(cells, is_free)?;

@@ -2,8 +2,7 @@
 
 use std::path::Path;
 
-use sinew_verify::Machine;
-use sinew_verify::{Verification, VerifyPlan};
+use sinew_verify::{Machine, Verification, VerifyPlan};
 
 fn plan(only: &[&str]) -> VerifyPlan {
     VerifyPlan {
@@ -20,30 +19,40 @@ fn run(only: &[&str]) -> Verification {
         .unwrap()
 }
 
+/// Subjects of which every row is computed here; the others take long without optimisation, and `cargo xtask ci` computes them.
+const QUICK: [&str; 18] = [
+    "uniform-strain",
+    "cook",
+    "free-cube",
+    "convergence",
+    "oscillator",
+    "bar",
+    "motion",
+    "laws",
+    "springs",
+    "hyperelastic",
+    "fibres",
+    "memory",
+    "hanging-bar",
+    "bent-beam",
+    "tissue-laws",
+    "contact",
+    "cutting",
+    "slits",
+];
+
 #[test]
 fn quick_subjects_pass_and_come_in_the_order_of_the_page() {
-    let verification = run(&["springs", "oscillator", "bar"]);
+    let verification = run(&QUICK);
     let ids: Vec<&str> = verification
         .subjects
         .iter()
         .map(|subject| subject.id)
         .collect();
-    assert_eq!(ids, ["oscillator", "bar", "springs"]);
-    assert!(
-        verification
-            .subjects
-            .iter()
-            .all(|subject| subject.rows.len() >= 10)
-    );
+    assert_eq!(ids, QUICK);
     let failures: Vec<_> = verification.failures().map(|(_, row)| row).collect();
     assert!(failures.is_empty(), "{failures:?}");
-}
-
-#[test]
-fn laws_keep_their_properties_and_meet_their_closed_forms() {
-    let verification = run(&["hyperelastic"]);
-    let failures: Vec<_> = verification.failures().map(|(_, row)| row).collect();
-    assert!(failures.is_empty(), "{failures:?}");
+    assert!(verification.rows().count() > 1000);
 }
 
 #[test]
