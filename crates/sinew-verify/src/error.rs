@@ -3,7 +3,8 @@
 use std::error::Error;
 use std::fmt;
 
-/// A reason for which there is no figure: an error of what was called, or a sentence. Reasons are read, and nobody tells them apart.
+/// A reason for which there is no figure: an error of what was called, or a sentence. Reasons are read, and nobody
+/// tells them apart.
 pub struct LabError(Box<dyn Error + Send + Sync>);
 
 impl LabError {

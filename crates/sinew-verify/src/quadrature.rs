@@ -1,7 +1,7 @@
 //! Integrals over tetrahedra.
 
-/// Barycentric points and weights, for a volume of 1, of the rule of degree `2 order + 1` of Grundmann and Moeller, SIAM J. Numer. Anal.
-/// 15(2), 1978.
+/// Barycentric points and weights, for a volume of 1, of the rule of degree `2 order + 1` of Grundmann and Moeller,
+/// SIAM J. Numer. Anal. 15(2), 1978.
 pub(crate) fn rule(order: i32) -> Vec<([f64; 4], f64)> {
     let factorial = |n: i32| (1..=n).map(f64::from).product::<f64>();
     let mut rule = Vec::new();

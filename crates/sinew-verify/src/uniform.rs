@@ -107,7 +107,8 @@ impl Uniform {
         inner.fold(0.0, |most: f64, (force, _)| most.max(largest(force)))
     }
 
-    /// The largest difference of any tetrahedron's stress from the one of a first Piola-Kirchhoff stress, over the size of that.
+    /// The largest difference of any tetrahedron's stress from the one of a first Piola-Kirchhoff stress, over the size
+    /// of that.
     pub(crate) fn off(&self, h: Tensor<f64>, p: Tensor<f64>) -> Result<f64, LabError> {
         let f = h + Tensor::identity();
         let [a, b, c] = f.0;

@@ -65,7 +65,8 @@ pub(super) fn check(root: &Path, crates: &[Light]) -> Result<Vec<Breach>, RuleEr
     Ok(breaches)
 }
 
-/// Checks a tree as `cargo tree --prefix none` prints it, with features in lines such as `sinew-cnn feature "conformance"`.
+/// Checks a tree as `cargo tree --prefix none` prints it, with features in lines such as `sinew-cnn feature
+/// "conformance"`.
 fn check_tree(light: &Light, tree: &str) -> Vec<Breach> {
     let first_words = tree
         .lines()

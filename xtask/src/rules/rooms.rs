@@ -199,7 +199,8 @@ pub(super) fn check(packages: &[Package]) -> Vec<Breach> {
     breaches
 }
 
-/// Crates of the laboratory that a crate of the product depends on, and those of the laboratory that would be published.
+/// Crates of the laboratory that a crate of the product depends on, and those of the laboratory that would be
+/// published.
 fn of_laboratory(package: &Package) -> Vec<Breach> {
     let name = &package.name;
     if LABORATORY.contains(&name.as_str()) {

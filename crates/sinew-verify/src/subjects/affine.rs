@@ -22,8 +22,9 @@ use crate::uniform::{ELEMENTS, name, uneven_cube};
 pub(super) const SUBJECT: Subject = Subject {
     id: "uniform-strain",
     title: "Uniform strain",
-    says: "Every element reproduces every uniform strain, on a mesh of gmsh (nu = .499) and on uneven cubes: forces within the body vanish \
-           beside those on its surface, a body that is moved at its surface follows within, rigid motions cost nothing.",
+    says: "Every element reproduces every uniform strain, on a mesh of gmsh (nu = .499) and on uneven cubes: \
+           forces within the body vanish beside those on its surface, a body that is moved at its surface \
+           follows within, rigid motions cost nothing.",
     checks,
     quoted: &[],
 };
@@ -225,7 +226,8 @@ fn relative(found: &[f64], expected: &[f64]) -> f64 {
     largest(&difference) / largest(expected)
 }
 
-/// The largest force of a rigid motion of 1 at some node over the largest sum of a row of K, and the largest asymmetry of K over its largest entry.
+/// The largest force of a rigid motion of 1 at some node over the largest sum of a row of K, and the largest asymmetry
+/// of K over its largest entry.
 fn rigid_and_symmetric(model: &Model, points: &[[f64; 3]]) -> Result<[f64; 2], LabError> {
     let stiffness = model.operators().stiffness();
     let (mut row_sum, mut entry, mut asymmetry) = (0.0_f64, 0.0_f64, 0.0_f64);

@@ -296,7 +296,8 @@ fn settled_forces() -> Result<Vec<f64>, LabError> {
     Ok(vec![worst, expected])
 }
 
-/// Differences of the forces after a ball was pressed into a cube and drawn aside, by sweeps, from those of central difference, over these.
+/// Differences of the forces after a ball was pressed into a cube and drawn aside, by sweeps, from those of central
+/// difference, over these.
 fn rubbed_by_sweeps() -> Result<Vec<f64>, LabError> {
     let down = [
         (0.0, [0.03, 0.03, 0.0725]),
@@ -340,7 +341,8 @@ fn slowed(sweeps: u32) -> Result<f64, LabError> {
     Ok(pressed.mean_velocity(0).0 / (start - friction * GRAVITY * dt * steps as f64))
 }
 
-/// Mean acceleration of a slab that is pulled sideways, over that of a point, and its mean force on the floor over its weight.
+/// Mean acceleration of a slab that is pulled sideways, over that of a point, and its mean force on the floor over its
+/// weight.
 fn drawn(id: &str, options: &Options, share: f64) -> Result<Vec<f64>, LabError> {
     let (friction, pull, weight) = (0.1, 1.5, 6.0);
     let mut pressed = slab(0.3, [pull, 0.0, -weight], friction)?;

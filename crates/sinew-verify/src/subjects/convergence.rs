@@ -20,10 +20,11 @@ use crate::subject::Subject;
 pub(super) const SUBJECT: Subject = Subject {
     id: "convergence",
     title: "How fast errors fall with the mesh",
-    says: "Manufactured solution u = a sin(pi x) sin(pi y) sin(pi z), a = (1, -.4, .3), on the unit cube, held on its surface (Roache, J. \
-           Fluids Eng. 124, 2002), by plain tetrahedra. The body force is integrated with the shape functions, not lumped: lumping \
-           hides errors of its own among those of the element. Where all diagonals point one way, errors along them fall faster than \
-           anywhere else, so a does not. Near incompressibility locking costs half an order.",
+    says: "Manufactured solution u = a sin(pi x) sin(pi y) sin(pi z), a = (1, -.4, .3), on the unit cube, held \
+           on its surface (Roache, J. Fluids Eng. 124, 2002), by plain tetrahedra. The body force is integrated \
+           with the shape functions, not lumped: lumping hides errors of its own among those of the element. \
+           Where all diagonals point one way, errors along them fall faster than anywhere else, so a does not. \
+           Near incompressibility locking costs half an order.",
     checks,
     quoted: &[],
 };

@@ -259,7 +259,8 @@ fn off_swing(dt: f64) -> Result<f64, LabError> {
     Ok(worst)
 }
 
-/// Orders along and about of the differences of a swing from its closed form, and the largest difference along over the swing.
+/// Orders along and about of the differences of a swing from its closed form, and the largest difference along over the
+/// swing.
 fn orders(id: &str, options: &Options) -> Result<Vec<f64>, LabError> {
     let [coarse, fine] = [1e-4, 5e-5].map(|dt| off_both(id, options, dt));
     let (coarse, fine) = (coarse?, fine?);
@@ -389,7 +390,8 @@ fn rubbing_collision() -> Result<Vec<f64>, LabError> {
     ])
 }
 
-/// The largest differences of spring and force, of spring and torque, and of the force from that on a tool led to the same pose.
+/// The largest differences of spring and force, of spring and torque, and of the force from that on a tool led to the
+/// same pose.
 fn askew_at_rest() -> Result<Vec<f64>, LabError> {
     let [start, end] = [[0.03, 0.03, EDGE + 0.0125], [0.031, 0.029, EDGE + 0.007]];
     let settled = |tool: Tool| {
@@ -463,8 +465,8 @@ fn plate(coupling: f64) -> Result<Tool, LabError> {
     })
 }
 
-/// The largest rise of the energy above where it was lowest, over the largest, of balls of several masses and dampings in a second: with friction and
-/// without; and the smallest of the largest energies (J).
+/// The largest rise of the energy above where it was lowest, over the largest, of balls of several masses and dampings
+/// in a second: with friction and without; and the smallest of the largest energies (J).
 fn light_tools(id: &str, share: f64) -> Result<Vec<f64>, LabError> {
     let rows = [
         (0.0, [0.025, 0.03, EDGE + 0.0121]),
@@ -501,7 +503,8 @@ fn largest_rise(pressed: Pressed, duration: f64) -> Result<f64, LabError> {
     largest_rise_in_steps(pressed, "central-difference", dt, duration)
 }
 
-/// The largest rise in a step of the energy of body, tool and coupling, less the work of the hand, over the largest energy, in a time (s).
+/// The largest rise in a step of the energy of body, tool and coupling, less the work of the hand, over the largest
+/// energy, in a time (s).
 fn largest_rise_in_steps(
     pressed: Pressed,
     id: &str,
@@ -533,7 +536,8 @@ fn rise_above_lowest(
     Ok((rise, largest))
 }
 
-/// Shows the energy of body, tool and coupling after each step, and what is left of it without the work of the hand (J).
+/// Shows the energy of body, tool and coupling after each step, and what is left of it without the work of the hand
+/// (J).
 fn follow(
     mut pressed: Pressed,
     id: &str,
@@ -561,7 +565,8 @@ fn follow(
     Ok(())
 }
 
-/// The solid angle of the surface of a block, over 4 pi, as seen from a tip of a tenth of an edge that is shot at it: 0 outside, 1 inside.
+/// The solid angle of the surface of a block, over 4 pi, as seen from a tip of a tenth of an edge that is shot at it: 0
+/// outside, 1 inside.
 fn shot(speed: f64, meets_triangles: bool) -> Result<f64, LabError> {
     let edge = EDGE / 6.0;
     let free = body(YOUNGS_MODULUS, 0.3, Element::P1);

@@ -98,7 +98,8 @@ fn swung(per_second: u32) -> [f64; 2] {
     [storage, loss]
 }
 
-/// The moduli at 2 Hz: `E (1 - sum g + sum g x^2/(1 + x^2))` and `E sum g x/(1 + x^2)`, x = w tau (Ferry, Viscoelastic Properties of Polymers, chapter 3).
+/// The moduli at 2 Hz: `E (1 - sum g + sum g x^2/(1 + x^2))` and `E sum g x/(1 + x^2)`, x = w tau (Ferry, Viscoelastic
+/// Properties of Polymers, chapter 3).
 fn moduli() -> [f64; 2] {
     let part = |term: &Term| {
         let x = 2.0 * TAU * term.time;

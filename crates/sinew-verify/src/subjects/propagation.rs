@@ -70,8 +70,8 @@ const PAPERS_ERRORS: &[PapersError] = &[
 
 const LIGHT: &str = "light-cube.toml";
 
-/// A run whose error and work are known: method, options, steps for every 20 ms, error (fraction, to 3 %, or a bound) and sweeps, or
-/// solutions of implicit methods, of the second.
+/// A run whose error and work are known: method, options, steps for every 20 ms, error (fraction, to 3 %, or a bound)
+/// and sweeps, or solutions of implicit methods, of the second.
 type Costed = (&'static str, Options, usize, Asked, u64);
 
 fn number(name: &str, value: f64) -> Options {
@@ -90,8 +90,8 @@ fn chebyshev(sweeps: f64) -> Options {
     Options::new().with("inner", OptionValue::Table(BTreeMap::from(entries)))
 }
 
-/// Runs on the paper's cube and on one of half its size, damped by 10/s. The modified leapfrog begins with three sweeps instead of two; a
-/// propagator takes two a degree and one for the residual.
+/// Runs on the paper's cube and on one of half its size, damped by 10/s. The modified leapfrog begins with three sweeps
+/// instead of two; a propagator takes two a degree and one for the residual.
 fn costed() -> [(&'static str, Vec<Costed>); 2] {
     let about = |error: f64| Asked::relative(error, 0.03);
     let plain = Options::new;
@@ -216,7 +216,8 @@ fn errors_and_work((scene, runs): (&'static str, Vec<Costed>)) -> Check {
 /// Tolerance, fit to the load, error and sweeps a second of the two-step propagator.
 type TwoStep = (Option<f64>, bool, f64, f64);
 
-/// Runs on the peers' cube, of which a sweep is to cost a fifth of a product of SciPy's, whose central difference takes 1000.
+/// Runs on the peers' cube, of which a sweep is to cost a fifth of a product of SciPy's, whose central difference takes
+/// 1000.
 const TWO_STEP: &[TwoStep] = &[
     (Some(1e-3), false, 1e-3, 1666.0),
     (Some(1e-8), false, 1e-6, 5000.0),
@@ -226,8 +227,8 @@ const TWO_STEP: &[TwoStep] = &[
     (Some(2e-6), true, 4e-6, 1020.0),
 ];
 
-/// Errors of the two-step propagator, its sweeps, and where it is fitted to the load its error over the one that it estimates over eight
-/// periods.
+/// Errors of the two-step propagator, its sweeps, and where it is fitted to the load its error over the one that it
+/// estimates over eight periods.
 fn two_step() -> Check {
     let figures = TWO_STEP
         .iter()
