@@ -1,4 +1,4 @@
-"""Prints the figures that crates/sinew-bench/src/verify/closed_forms asks of laws, fibres and relaxation, from
+"""Prints the figures that crates/sinew-verify asks of laws (src/closed_forms), fibres and relaxation (src/subjects), from
 energies in 50 digits. Run it with mpmath: `python law_figures.py`."""
 
 from mpmath import mp, mpf

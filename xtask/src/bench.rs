@@ -6,11 +6,12 @@ use sinew_bench::hands::HandsBench;
 use sinew_bench::hard::HardBench;
 use sinew_bench::kernels::KernelBench;
 use sinew_bench::nonlinear::NonlinearBench;
-use sinew_bench::output::{OutputError, OutputFolder, OwnedFolder, say};
 use sinew_bench::report::{WriteError, brief, terminal, write_all};
 use sinew_bench::results::BenchResults;
 use sinew_bench::scale::ScaleBench;
-use sinew_bench::{Bench, BenchError, Progress, machine, revision};
+use sinew_bench::{Bench, BenchError};
+use sinew_scene::output::{OutputError, OutputFolder, OwnedFolder, say};
+use sinew_verify::{Progress, machine, revision};
 
 use crate::beside::{self, Program};
 use crate::failure::Failure;
@@ -350,8 +351,9 @@ fn write(results: &BenchResults, folder: &OutputFolder, all: bool) -> Result<(),
 
 #[cfg(test)]
 mod tests {
-    use sinew_bench::results::{Mark, MarkVerdict};
+    use sinew_bench::results::Mark;
     use sinew_measure::CaseInfo;
+    use sinew_verify::MarkVerdict;
 
     use super::*;
 

@@ -5,7 +5,7 @@ mod packages;
 
 use std::process::Command;
 
-use sinew_bench::output::say;
+use sinew_scene::output::say;
 
 use self::cost::{Cost, Stopwatch};
 use crate::failure::Failure;

@@ -1,9 +1,9 @@
 //! `cargo xtask docs`.
 
 use sinew_bench::nonlinear;
-use sinew_bench::output::{Destination, OutputError, say};
 use sinew_bench::report::{markdown_cheapest, work_precision};
 use sinew_bench::results::BenchResults;
+use sinew_scene::output::{Destination, OutputError, say};
 
 use crate::failure::Failure;
 use crate::repository::root;

@@ -2,7 +2,7 @@
 
 use std::process::ExitCode;
 
-use sinew_bench::output::{OutputError, complain};
+use sinew_scene::output::{OutputError, complain};
 
 /// A chore that did not succeed.
 #[derive(Debug)]

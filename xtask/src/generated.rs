@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use sinew_bench::output::say;
+use sinew_scene::output::say;
 
 use crate::failure::Failure;
 use crate::python::{Packages, Python, last_line};

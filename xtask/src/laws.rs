@@ -3,11 +3,11 @@
 use std::process::Stdio;
 
 use serde_json::{Value, json};
-use sinew_bench::output::{OutputFolder, say};
 use sinew_fem::hyperelastic::fibres::{Fibres, Stiffening};
 use sinew_fem::hyperelastic::{
     Deformation, Hyperelastic, LawParameter, NeoHookean, Tensor, sample_deformations,
 };
+use sinew_scene::output::{OutputFolder, say};
 
 use crate::failure::Failure;
 use crate::python::{Packages, Python, last_line};

@@ -1,9 +1,9 @@
 //! `cargo xtask meshes`.
 
 use sinew_bench::hard::meshes::{inclusion_cube, sliver_cube};
-use sinew_bench::output::{Destination, say};
 use sinew_mesh::structured::{Split, cube};
 use sinew_mesh::{TetMesh, write_msh41_ascii};
+use sinew_scene::output::{Destination, say};
 
 use crate::failure::Failure;
 use crate::repository::root;

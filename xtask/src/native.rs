@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use sinew_bench::output::say;
+use sinew_scene::output::say;
 
 use crate::failure::Failure;
 use crate::repository::root;

@@ -7,7 +7,7 @@ use std::process::{Child, Command, ExitStatus, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use sinew_bench::output::say;
+use sinew_scene::output::say;
 use tempfile::TempDir;
 
 use crate::failure::Failure;

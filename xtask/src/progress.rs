@@ -1,7 +1,7 @@
 //! A progress bar, shown on terminals only.
 
 use indicatif::{ProgressBar, ProgressStyle};
-use sinew_bench::Progress;
+use sinew_verify::Progress;
 
 /// A bar that follows a bench. Hidden where standard error is no terminal.
 pub(crate) struct Bar(ProgressBar);

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use sinew_bench::output::say;
+use sinew_scene::output::say;
 
 use crate::failure::Failure;
 use crate::repository::root;

@@ -1,6 +1,6 @@
 //! `cargo xtask reference`.
 
-use sinew_bench::output::{Destination, say};
+use sinew_scene::output::{Destination, say};
 
 use crate::failure::Failure;
 use crate::repository::root;

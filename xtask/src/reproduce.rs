@@ -2,10 +2,10 @@
 
 use std::path::PathBuf;
 
-use sinew_bench::output::{OutputFolder, say};
 use sinew_bench::reproduce::{Reproduction, reproduce};
 use sinew_bench::scene_files;
 use sinew_measure::Case;
+use sinew_scene::output::{OutputFolder, say};
 
 use crate::failure::Failure;
 use crate::repository::root;

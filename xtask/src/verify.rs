@@ -2,9 +2,9 @@
 
 use std::path::PathBuf;
 
-use sinew_bench::output::{OutputFolder, OwnedFolder, say};
-use sinew_bench::verify::{Verification, VerifyPlan, WriteVerificationError};
-use sinew_bench::{machine, revision};
+use sinew_scene::output::{OutputFolder, OwnedFolder, say};
+use sinew_verify::{Verification, VerifyPlan, WriteVerificationError};
+use sinew_verify::{machine, revision};
 
 use crate::failure::Failure;
 use crate::progress::Bar;
@@ -75,8 +75,8 @@ fn conclude(verification: &Verification, folder: &OutputFolder, all: bool) -> Re
 mod tests {
     use std::process::ExitCode;
 
-    use sinew_bench::results::MarkVerdict;
-    use sinew_bench::verify::{Asked, Source, VerifiedRow, VerifiedSubject};
+    use sinew_verify::MarkVerdict;
+    use sinew_verify::{Asked, Source, VerifiedRow, VerifiedSubject};
 
     use super::*;
 

@@ -13,7 +13,9 @@ use sinew_measure::{
 use sinew_scene::Scene;
 
 use crate::report::file_names;
-use crate::results::{BenchResults, Machine, Missing, Skipped};
+use sinew_verify::{Machine, Progress};
+
+use crate::results::{BenchResults, Missing, Skipped};
 
 /// Scenes, integrators and steps to measure.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -49,25 +51,6 @@ pub enum BenchError {
 fn in_one_line(errors: &[CaseError]) -> String {
     let errors: Vec<String> = errors.iter().map(ToString::to_string).collect();
     errors.join("; ")
-}
-
-/// Progress of a bench.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Progress {
-    /// A scene is read and its reference solved.
-    Reference {
-        /// The scene's file.
-        scene: PathBuf,
-    },
-    /// A run begins.
-    Run {
-        /// Runs done before.
-        done: usize,
-        /// Runs in all.
-        of: usize,
-        /// Description of the run.
-        what: String,
-    },
 }
 
 /// Steps (s) at which a scene is measured unless others are asked for: its own and fractions of

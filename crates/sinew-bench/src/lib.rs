@@ -8,7 +8,6 @@ pub mod beside;
 pub mod hands;
 pub mod hard;
 pub mod kernels;
-mod machine;
 mod median;
 pub mod nonlinear;
 pub mod peers;
@@ -18,10 +17,8 @@ pub mod report;
 pub mod reproduce;
 pub mod results;
 pub mod scale;
-mod tissue;
-pub mod verify;
+mod timed;
 
-pub use sinew_scene::output;
+pub use timed::TimedRunError;
 
-pub use bench::{Bench, BenchError, Progress, default_steps, scene_files};
-pub use machine::{machine, revision};
+pub use bench::{Bench, BenchError, default_steps, scene_files};

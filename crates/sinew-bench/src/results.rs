@@ -6,6 +6,7 @@
 
 use serde::{Deserialize, Serialize};
 use sinew_measure::{CaseInfo, Row};
+use sinew_verify::{Machine, MarkVerdict};
 
 mod json;
 mod mark;
@@ -13,7 +14,7 @@ mod missing;
 mod stability_map;
 
 pub use json::ResultsError;
-pub use mark::{Mark, MarkVerdict};
+pub use mark::Mark;
 pub use missing::Missing;
 pub use stability_map::{MapPanel, MapRun, StabilityMap};
 
@@ -52,23 +53,6 @@ pub struct BenchResults {
     /// Stability maps.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub maps: Vec<StabilityMap>,
-}
-
-/// The machine a bench ran on.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Machine {
-    /// Model of the processor.
-    pub cpu: String,
-    /// Threads the runs could use.
-    pub threads: usize,
-    /// Operating system.
-    pub os: String,
-    /// Architecture, as in `x86_64`.
-    #[serde(default)]
-    pub arch: String,
-    /// Version of the compiler.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub compiler: Option<String>,
 }
 
 /// A run that was asked for and not made.

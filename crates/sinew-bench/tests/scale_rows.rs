@@ -3,9 +3,9 @@
 #![cfg(test)]
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-use sinew_bench::machine;
 use sinew_bench::scale::ScaleBench;
 use sinew_core::CountingAllocator;
+use sinew_verify::machine;
 
 #[global_allocator]
 static ALLOCATOR: CountingAllocator = CountingAllocator;

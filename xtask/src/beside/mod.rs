@@ -6,8 +6,9 @@ mod scipy;
 
 use sinew_bench::beside::factor::{EffectiveMatrix, FactorTable, run_factor_laps};
 use sinew_bench::beside::{ExportError, Exported, Rounds, export, run_beside};
-use sinew_bench::output::{OutputFolder, say};
 use sinew_bench::{Bench, peers, scene_files};
+use sinew_scene::output::{OutputFolder, say};
+
 use sinew_measure::Case;
 
 use crate::failure::Failure;

@@ -7,7 +7,7 @@ mod run_folder;
 use std::path::Path;
 use std::process::Stdio;
 
-use sinew_bench::output::{OutputFolder, say};
+use sinew_scene::output::{OutputFolder, say};
 
 use crate::failure::Failure;
 use crate::python::{Packages, Python, last_line};

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
-use sinew_bench::output::say;
+use sinew_scene::output::say;
 
 use super::bench::{Bench, complaints, require};
 use super::cdp::{Mouse, Tab};

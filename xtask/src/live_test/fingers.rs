@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use sinew_bench::output::say;
+use sinew_scene::output::say;
 
 use super::bench::{Bench, complaints, require};
 use super::blade::{SLAB, on_page};

@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use sinew_bench::output::say;
+use sinew_scene::output::say;
 
 use super::bench::{Bench, complaints, require};
 use super::cdp::{Mouse, Tab};

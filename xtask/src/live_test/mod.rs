@@ -13,7 +13,7 @@ mod strangers;
 
 use std::path::PathBuf;
 
-use sinew_bench::output::say;
+use sinew_scene::output::say;
 use tempfile::TempDir;
 
 use self::bench::Bench;

@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use serde_json::Value;
-use sinew_bench::output::say;
+use sinew_scene::output::say;
 
 use super::bench::{Bench, require};
 use super::cdp::{Mouse, Tab};

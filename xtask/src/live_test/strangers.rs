@@ -5,7 +5,7 @@ use std::net::TcpStream;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-use sinew_bench::output::say;
+use sinew_scene::output::say;
 use tungstenite::{Error, Message};
 
 use super::bench::{Bench, require};

@@ -9,6 +9,10 @@ pub(crate) enum Breach {
     NoRoom { name: String },
     #[error("`{name}` must not depend on `{other}`")]
     Dependency { name: String, other: String },
+    #[error("`{name}` is of the product and must not depend on `{other}`")]
+    Laboratory { name: String, other: String },
+    #[error("`{name}` is of the laboratory and must not be published")]
+    PublishedLaboratory { name: String },
     #[error("only `{owner}` may depend on {library}, not `{name}`")]
     PrivateLibrary {
         library: &'static str,

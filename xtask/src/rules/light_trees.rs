@@ -10,7 +10,7 @@ pub(super) struct Light {
     name: &'static str,
     /// True if its default features are on.
     with_features: bool,
-    /// Libraries that have no place in its tree.
+    /// Libraries, and features of any crate, that have no place in its tree.
     banned: &'static [&'static str],
     /// The most crates in its tree, itself included, where there is such a bound.
     most: Option<usize>,
@@ -35,6 +35,12 @@ pub(super) const LIGHT: &[Light] = &[
         banned: COMMAND,
         most: None,
     },
+    Light {
+        name: "sinew",
+        with_features: true,
+        banned: CHECKS,
+        most: None,
+    },
 ];
 
 const HEAVY: &[&str] = &["faer", "nalgebra", "rayon"];
@@ -42,11 +48,15 @@ const HEAVY: &[&str] = &["faer", "nalgebra", "rayon"];
 /// Libraries of the `sinew` command, which the library of that name must not bring along.
 const COMMAND: &[&str] = &["clap", "comfy-table", "annotate-snippets", "axum", "tokio"];
 
+/// Checks for tests, which a release has no use for.
+const CHECKS: &[&str] = &["\"conformance\"", "sinew-testkit", "proptest"];
+
 /// Checks the trees of the light crates, without what their tests need.
 pub(super) fn check(root: &Path, crates: &[Light]) -> Result<Vec<Breach>, RuleError> {
     let mut breaches = Vec::new();
     for light in crates {
-        let mut arguments = vec!["tree", "-p", light.name, "-e", "normal", "--prefix", "none"];
+        let edges = "normal,features";
+        let mut arguments = vec!["tree", "-p", light.name, "-e", edges, "--prefix", "none"];
         if !light.with_features {
             arguments.push("--no-default-features");
         }
@@ -55,7 +65,8 @@ pub(super) fn check(root: &Path, crates: &[Light]) -> Result<Vec<Breach>, RuleEr
     Ok(breaches)
 }
 
-/// Checks a tree as `cargo tree --prefix none` prints it.
+/// Checks a tree as `cargo tree --prefix none` prints it, with features in lines such as `sinew-cnn feature
+/// "conformance"`.
 fn check_tree(light: &Light, tree: &str) -> Vec<Breach> {
     let first_words = tree
         .lines()
@@ -63,7 +74,12 @@ fn check_tree(light: &Light, tree: &str) -> Vec<Breach> {
     let mut names: Vec<&str> = first_words.collect();
     names.sort_unstable();
     names.dedup();
-    let heavy = light.banned.iter().filter(|heavy| names.contains(heavy));
+    let features = tree
+        .lines()
+        .filter_map(|line| line.split_whitespace().nth(2));
+    let features: Vec<&str> = features.filter(|word| word.starts_with('"')).collect();
+    let is_there = |banned: &&&str| names.contains(*banned) || features.contains(*banned);
+    let heavy = light.banned.iter().filter(is_there);
     let mut breaches: Vec<Breach> = heavy
         .map(|library| Breach::Heavy {
             name: light.name,
@@ -106,6 +122,25 @@ mod tests {
                 "`a` pulls in rayon",
                 "`a` pulls in 3 crates, itself included; at most 2 are allowed"
             ]
+        );
+    }
+
+    #[test]
+    fn a_feature_that_has_no_place_is_named() {
+        let light = Light {
+            name: "a",
+            with_features: true,
+            banned: CHECKS,
+            most: None,
+        };
+        let said = |tree: &str| -> Vec<String> {
+            let breaches = check_tree(&light, tree);
+            breaches.iter().map(ToString::to_string).collect()
+        };
+        assert!(said("a v0.1.0 (/a)\nb feature \"default\"\nb v1.0.0\n").is_empty());
+        assert_eq!(
+            said("a v0.1.0 (/a)\nb feature \"conformance\"\nb v1.0.0\n"),
+            ["`a` pulls in \"conformance\""]
         );
     }
 

@@ -83,13 +83,11 @@ pub(super) const ROOMS: &[(&str, &[&str])] = &[
         ],
     ),
     (
-        "sinew-bench",
+        "sinew-verify",
         &[
             "sinew-core",
             "sinew-mesh",
             "sinew-fem",
-            "sinew-cnn",
-            "sinew-machines",
             "sinew-sparse",
             "sinew-tools",
             "sinew-haptics",
@@ -99,6 +97,24 @@ pub(super) const ROOMS: &[(&str, &[&str])] = &[
             "sinew-measure",
             "sinew-world",
             "sinew-draw",
+        ],
+    ),
+    (
+        "sinew-bench",
+        &[
+            "sinew-core",
+            "sinew-mesh",
+            "sinew-fem",
+            "sinew-cnn",
+            "sinew-machines",
+            "sinew-sparse",
+            "sinew-haptics",
+            "sinew-integrators",
+            "sinew-scene",
+            "sinew-measure",
+            "sinew-world",
+            "sinew-draw",
+            "sinew-verify",
         ],
     ),
     (
@@ -132,10 +148,17 @@ pub(super) const ROOMS: &[(&str, &[&str])] = &[
             "sinew-mesh",
             "sinew-record",
             "sinew-scene",
+            "sinew-verify",
             "sinew-world",
         ],
     ),
 ];
+
+/// The laboratory: crates that measure and verify the product, and are no part of it.
+const LABORATORY: &[&str] = &["sinew-bench", "sinew-verify", "sinew-testkit", "xtask"];
+
+/// The only crate of the laboratory that the product's tests may use.
+const FOR_TESTS: &str = "sinew-testkit";
 
 /// Libraries that only one published crate may name.
 pub(super) const PRIVATE: &[(&str, &str)] = &[
@@ -155,6 +178,7 @@ pub(super) fn check(packages: &[Package]) -> Vec<Breach> {
             breaches.push(Breach::NoRoom { name: name.clone() });
             continue;
         };
+        breaches.extend(of_laboratory(package));
         for other in &package.needs {
             let is_ours = rooms.contains_key(other.as_str());
             if is_ours && !allowed.contains(&other.as_str()) {
@@ -177,6 +201,30 @@ pub(super) fn check(packages: &[Package]) -> Vec<Breach> {
     breaches
 }
 
+/// Crates of the laboratory that a crate of the product depends on, and those of the laboratory that would be
+/// published.
+fn of_laboratory(package: &Package) -> Vec<Breach> {
+    let name = &package.name;
+    if LABORATORY.contains(&name.as_str()) {
+        let published = package
+            .is_published
+            .then(|| Breach::PublishedLaboratory { name: name.clone() });
+        return published.into_iter().collect();
+    }
+    let of_tests = package
+        .tests_need
+        .iter()
+        .filter(|other| *other != FOR_TESTS);
+    let others = package.needs.iter().chain(of_tests);
+    let others = others.filter(|other| LABORATORY.contains(&other.as_str()));
+    others
+        .map(|other| Breach::Laboratory {
+            name: name.clone(),
+            other: other.clone(),
+        })
+        .collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -195,6 +243,38 @@ mod tests {
     #[test]
     fn a_crate_that_keeps_to_its_room_is_fine() {
         assert!(said("sinew-fem", &["sinew-mesh", "nalgebra", "thiserror"]).is_empty());
+    }
+
+    #[test]
+    fn the_product_depends_on_no_laboratory_not_even_in_its_tests() {
+        let said = |package: Package| -> Vec<String> {
+            let breaches = of_laboratory(&package);
+            breaches.iter().map(ToString::to_string).collect()
+        };
+        let package = |name: &str, needs: &[&str], tests_need: &[&str]| Package {
+            name: name.to_owned(),
+            needs: needs.iter().map(ToString::to_string).collect(),
+            tests_need: tests_need.iter().map(ToString::to_string).collect(),
+            is_published: false,
+        };
+        for name in ["sinew-sparse", "sinew-fem", "sinew-live", "sinew"] {
+            for other in LABORATORY {
+                let breach = format!("`{name}` is of the product and must not depend on `{other}`");
+                assert_eq!(said(package(name, &[other], &[])), [breach.as_str()]);
+                let of_tests = said(package(name, &[], &[other]));
+                let expected: &[&str] = if *other == FOR_TESTS { &[] } else { &[&breach] };
+                assert_eq!(of_tests, expected);
+            }
+        }
+        assert!(said(package("sinew-bench", &["sinew-verify"], &[])).is_empty());
+        let published = Package {
+            is_published: true,
+            ..package("sinew-verify", &[], &[])
+        };
+        assert_eq!(
+            said(published),
+            ["`sinew-verify` is of the laboratory and must not be published"]
+        );
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! The commands that errors on files of other programs name.
 
-use sinew_bench::output::say;
+use sinew_scene::output::say;
 
 use super::place::Place;
 use crate::failure::Failure;

@@ -7,7 +7,7 @@ mod place;
 
 use std::fs;
 
-use sinew_bench::output::say;
+use sinew_scene::output::say;
 
 use self::page::{Block, Page};
 use self::place::Place;

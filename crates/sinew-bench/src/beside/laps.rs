@@ -1,15 +1,15 @@
 //! Laps in turn: theirs, ours, theirs, ours.
 
+use sinew_verify::LabError;
 use std::error::Error;
 
-use sinew_core::{Integrator, Run, SimulateError, State, simulate};
+use sinew_core::{Integrator, Run, State};
 
 use super::pilots::{Target, pilots};
 use crate::median::median_of_sorted;
+use crate::timed::{TimedRunError, time_run};
 use sinew_measure::reference::ErrorNorm;
-use sinew_measure::{
-    Case, MeasureError, MethodChoice, ThreadError, on_one_thread, thread_cpu_time,
-};
+use sinew_measure::{Case, MeasureError, MethodChoice, on_one_thread};
 
 /// An error of another program, whose kinds are not known here.
 pub type RivalError = Box<dyn Error + Send + Sync>;
@@ -38,35 +38,6 @@ pub trait Rival {
 /// Number of laps of each pair.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Rounds(pub usize);
-
-/// Why there are no ratios.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum LapError {
-    /// The other program failed.
-    #[error(transparent)]
-    Rival(RivalError),
-    /// One of our methods cannot run.
-    #[error(transparent)]
-    Ours(#[from] MeasureError),
-    /// There is no thread to measure on.
-    #[error(transparent)]
-    Thread(#[from] ThreadError),
-    /// The two did not solve the same problem.
-    #[error(
-        "{rival} and `{integrator}` are {difference:.1e} apart (relative), more than {allowed:.0e}: not the same computation"
-    )]
-    Apart {
-        /// The other program.
-        rival: String,
-        /// Ours.
-        integrator: String,
-        /// Relative L2 difference of the displacements.
-        difference: f64,
-        /// Largest difference that rounding explains.
-        allowed: f64,
-    },
-}
 
 /// Largest relative L2 difference that rounding explains over some thousand undamped steps.
 const ROUNDING: f64 = 1e-9;
@@ -109,13 +80,13 @@ pub struct Beside {
 /// in turn on one thread.
 ///
 /// # Errors
-/// [`LapError`].
+/// [`LabError`].
 pub fn run_beside(
     case: &mut Case,
     integrators: &[String],
     rival: &mut (dyn Rival + Send),
     rounds: Rounds,
-) -> Result<Beside, LapError> {
+) -> Result<Beside, LabError> {
     let run = || run_here(case, integrators, rival, rounds);
     on_one_thread(run)?
 }
@@ -125,20 +96,19 @@ fn run_here(
     integrators: &[String],
     rival: &mut dyn Rival,
     Rounds(rounds): Rounds,
-) -> Result<Beside, LapError> {
+) -> Result<Beside, LabError> {
     let same = rival.same();
-    let theirs = rival.displacements().map_err(LapError::Rival)?;
+    let theirs = rival.displacements().map_err(LabError::boxed)?;
     let error = apart(&theirs, &case.samples().displacements);
     let mut twin = Contender::new(case, &MethodChoice::on(case, same.0), same.1)?;
-    let ours = twin.displacements(case).map_err(MeasureError::from)?;
+    let ours = twin.displacements(case)?;
     let difference = apart(&theirs, &ours);
     if difference.is_nan() || difference > ROUNDING {
-        return Err(LapError::Apart {
-            rival: rival.name(),
-            integrator: same.0.to_owned(),
-            difference,
-            allowed: ROUNDING,
-        });
+        return Err(LabError::new(format!(
+            "{} and `{}` are {difference:.1e} apart (relative), more than {ROUNDING:.0e}: not the same computation",
+            rival.name(),
+            same.0
+        )));
     }
     let targets = pilots(case, integrators, same)?;
     let contenders = targets
@@ -150,8 +120,8 @@ fn run_here(
     // The first round brings memory and clocks up to speed and counts for nothing.
     for round in 0..=rounds {
         for (contender, ratios) in contenders.iter_mut().zip(&mut ratios) {
-            let theirs = rival.lap().map_err(LapError::Rival)?;
-            let ours = contender.lap(case).map_err(MeasureError::from)?;
+            let theirs = rival.lap().map_err(LabError::boxed)?;
+            let ours = contender.lap(case)?;
             if round > 0 {
                 laps.push(theirs);
                 ratios.push(ours / theirs);
@@ -196,22 +166,15 @@ impl Contender {
     }
 
     /// CPU time (s) of the steps.
-    fn lap(&mut self, case: &Case) -> Result<f64, SimulateError> {
+    fn lap(&mut self, case: &Case) -> Result<f64, TimedRunError> {
         let system = case.simulation().system();
         self.state.clone_from(case.simulation().initial_state());
-        let before = thread_cpu_time();
-        simulate(
-            system,
-            &mut *self.integrator,
-            &mut self.state,
-            &self.run,
-            &mut (),
-        )?;
-        Ok((thread_cpu_time() - before).as_secs_f64())
+        let spent = time_run(system, &mut *self.integrator, &mut self.state, &self.run)?;
+        Ok(spent.cpu)
     }
 
     /// Displacement (m) at the samples, for a step that meets them.
-    fn displacements(&mut self, case: &Case) -> Result<Vec<Vec<f64>>, SimulateError> {
+    fn displacements(&mut self, case: &Case) -> Result<Vec<Vec<f64>>, TimedRunError> {
         let system = case.simulation().system();
         let samples = case.simulation().settings().samples;
         let run = Run {
@@ -221,7 +184,7 @@ impl Contender {
         let mut state = case.simulation().initial_state().clone();
         let mut displacements = vec![state.u.clone()];
         for _ in 0..samples {
-            simulate(system, &mut *self.integrator, &mut state, &run, &mut ())?;
+            time_run(system, &mut *self.integrator, &mut state, &run)?;
             displacements.push(state.u.clone());
         }
         Ok(displacements)

@@ -10,5 +10,5 @@ mod pilots;
 mod table;
 
 pub use export::{ExportError, Exported, export};
-pub use laps::{Beside, LapError, Pair, Rival, RivalError, Rounds, run_beside};
+pub use laps::{Beside, Pair, Rival, RivalError, Rounds, run_beside};
 pub use pilots::{Target, pilots};

@@ -3,8 +3,8 @@
 use std::fmt;
 
 use super::laps::{Beside, Pair};
-use crate::report::ruled;
 use crate::report::{milliseconds, percent, three};
+use sinew_verify::ruled;
 
 const HEAD: [&str; 8] = [
     "wanted",

@@ -5,7 +5,8 @@ use sinew_measure::{CaseInfo, Row};
 use super::cases::{SIZES, Sizes};
 use crate::planned::{is_yardstick, yardstick};
 use crate::report::{number, percent};
-use crate::results::{Mark, MarkVerdict};
+use crate::results::Mark;
+use sinew_verify::MarkVerdict;
 
 /// Largest error (fraction) of a reference by which errors of some per cent can be measured.
 const OF_REFERENCE: f64 = 1e-3;

@@ -5,9 +5,10 @@ mod marks;
 
 use std::path::PathBuf;
 
+use crate::BenchError;
 use crate::planned::Plan;
-use crate::results::{BenchResults, Machine};
-use crate::{BenchError, Progress};
+use crate::results::BenchResults;
+use sinew_verify::{Machine, Progress};
 
 /// The bench of scenes with tools.
 #[derive(Clone, Debug, PartialEq)]

@@ -7,7 +7,7 @@ use sinew_measure::reference::ErrorNorm;
 use sinew_measure::{Case, Effort, MethodChoice, Row, finite, measure};
 
 use super::energy::{Energies, Ledger};
-use super::error::HardError;
+use sinew_verify::LabError;
 
 /// Distance from equilibrium (relative) below which a reference counts as come to rest.
 const AT_REST: f64 = 1e-3;
@@ -16,13 +16,13 @@ const AT_REST: f64 = 1e-3;
 /// distance from equilibrium at the end and the drift of its energy.
 ///
 /// # Errors
-/// [`HardError`] when the method cannot run on this case at all.
+/// [`LabError`] when the method cannot run on this case at all.
 pub(crate) fn hard_row(
     case: &mut Case,
     method: &MethodChoice,
     dt: f64,
     effort: Effort,
-) -> Result<Row, HardError> {
+) -> Result<Row, LabError> {
     let mut row = measure(case, method, dt, effort)?;
     row.step_over_critical = case.critical_step().map(|critical| dt / critical);
     if row.error.is_none() {
@@ -47,9 +47,11 @@ pub(crate) fn run_with_energies(
     method: &MethodChoice,
     dt: f64,
     steps: usize,
-) -> Result<(State, Energies), HardError> {
+) -> Result<(State, Energies), LabError> {
     let system = case.simulation().system();
-    let linear = system.as_linear().ok_or(HardError::NotLinear)?;
+    let linear = system
+        .as_linear()
+        .ok_or_else(|| LabError::new("needs the matrices of a linear system"))?;
     let mut integrator = method.build()?;
     integrator.prepare(system, dt)?;
     let entry = sinew_integrators::entry(&method.integrator);

@@ -1,13 +1,13 @@
 //! The stability maps: which scenes, parameters and steps.
 
-use sinew_measure::{Case, CaseError, MethodChoice};
+use sinew_measure::{Case, MethodChoice};
 use sinew_mesh::TetMesh;
 use sinew_mesh::structured::{Split, StructuredError, cube};
-use sinew_scene::{Scene, SceneError, SceneSource};
+use sinew_scene::{Scene, SceneSource};
+use sinew_verify::LabError;
 
 use super::meshes::{inclusion_cube, sliver_cube};
 use super::methods::{block, chebyshev, cnn};
-use super::stability_map::ColumnError;
 use crate::results::{Missing, StabilityMap};
 
 /// Hexahedra along an edge (m) of the cube: small enough for thousands of runs.
@@ -137,21 +137,8 @@ fn methods() -> [MethodChoice; 6] {
     ]
 }
 
-/// Why a value of the parameter has no runs.
-#[derive(Debug, thiserror::Error)]
-enum MapError {
-    #[error(transparent)]
-    Mesh(#[from] StructuredError),
-    #[error(transparent)]
-    Scene(#[from] SceneError),
-    #[error(transparent)]
-    Case(#[from] CaseError),
-    #[error(transparent)]
-    Column(#[from] ColumnError),
-}
-
 impl Varied {
-    fn case(&self, value: f64) -> Result<Case, MapError> {
+    fn case(&self, value: f64) -> Result<Case, LabError> {
         let duration = LONGEST * f64::from(self.samples);
         let text = format!(
             "[mesh]\ncube = {{ cells = {CELLS}, edge = {EDGE}, split = \"kuhn\" }}\n{}\n\
@@ -181,7 +168,7 @@ impl Varied {
         let methods = methods();
         for &value in self.values.iter().step_by(every) {
             let mut longer = map.clone();
-            let mut add = || -> Result<(), MapError> {
+            let mut add = || -> Result<(), LabError> {
                 Ok(longer.add(value, &mut self.case(value)?, &methods)?)
             };
             match add() {

@@ -1,6 +1,7 @@
 //! Marks in the making: what is asked, and the figure that is put to it.
 
-use crate::results::{Mark, MarkVerdict};
+use crate::results::Mark;
+use sinew_verify::MarkVerdict;
 
 /// A mark before it is measured.
 #[derive(Clone, Copy, Debug)]

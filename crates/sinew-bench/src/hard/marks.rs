@@ -9,11 +9,11 @@ use super::checks::{
     centre_of_mass, energy_and_work, energy_form, equilibrium, long_run, mirror, released_bar,
     rotation, slivers, units, within_work,
 };
-use super::error::HardError;
 use super::large;
 use super::mark::Asked;
 use crate::planned::yardstick;
 use crate::results::{Mark, StabilityMap};
+use sinew_verify::LabError;
 
 /// The cases and rows that marks are taken from.
 pub(crate) struct Measured<'a> {
@@ -27,10 +27,10 @@ pub(crate) struct Measured<'a> {
 }
 
 impl Measured<'_> {
-    fn case(&self, id: &str) -> Result<&Case, HardError> {
+    fn case(&self, id: &str) -> Result<&Case, LabError> {
         self.cases
             .get(id)
-            .ok_or_else(|| HardError::NotRead(id.to_owned()))
+            .ok_or_else(|| LabError::new(format!("{id} was not read")))
     }
 
     fn rows_of(&self, id: &str) -> Vec<&Row> {
@@ -60,7 +60,7 @@ pub(crate) fn all(measured: &Measured<'_>, mut begins: impl FnMut(&str)) -> Vec<
 }
 
 /// The mark that a check gives; failed where the check cannot be made.
-fn given(asked: Asked, check: &mut dyn FnMut(Asked) -> Result<Mark, HardError>) -> Mark {
+fn given(asked: Asked, check: &mut dyn FnMut(Asked) -> Result<Mark, LabError>) -> Mark {
     check(asked).unwrap_or_else(|error| asked.not_measured(error.to_string()))
 }
 
@@ -103,7 +103,7 @@ pub(crate) fn of_maps(maps: &[StabilityMap]) -> Mark {
 fn of_scenes(measured: &Measured<'_>, begins: &mut dyn FnMut(&str)) -> Vec<Mark> {
     let mut marks = Vec::new();
     let steps = |full, quick| if measured.quick { quick } else { full };
-    let mut give = |asked: Asked, mark: &mut dyn FnMut(Asked) -> Result<Mark, HardError>| {
+    let mut give = |asked: Asked, mark: &mut dyn FnMut(Asked) -> Result<Mark, LabError>| {
         begins(asked.case);
         marks.push(given(asked, mark));
     };
@@ -271,7 +271,7 @@ fn of_scenes(measured: &Measured<'_>, begins: &mut dyn FnMut(&str)) -> Vec<Mark>
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::results::MarkVerdict;
+    use sinew_verify::MarkVerdict;
 
     #[test]
     fn a_scene_that_was_not_read_fails_its_own_marks_by_name() {

@@ -3,7 +3,6 @@
 mod cases;
 mod checks;
 mod energy;
-mod error;
 mod hard_run;
 mod large;
 mod maps;
@@ -19,12 +18,13 @@ use std::path::PathBuf;
 
 use sinew_measure::{Case, Effort, mark_pareto, on_one_thread};
 
+use crate::BenchError;
 use crate::bench::{case_ids, scene_files};
 use crate::report::file_names;
-use crate::results::{BenchResults, Machine, Missing, Skipped};
-use crate::{BenchError, Progress};
+use crate::results::{BenchResults, Missing, Skipped};
 use cases::HardCase;
 use hard_run::hard_row;
+use sinew_verify::{Machine, Progress};
 
 /// The bench of hard cases.
 #[derive(Clone, Debug, PartialEq)]

@@ -5,7 +5,7 @@ use sinew_fem::{LoadKind, Model, Problem};
 use sinew_mesh::TetMesh;
 use sinew_scene::{BodyModel, Simulation};
 
-use super::error::HardError;
+use sinew_verify::LabError;
 
 /// A system with the state it starts from.
 pub(crate) struct Twin {
@@ -50,8 +50,9 @@ impl QuarterTurn {
 }
 
 /// A body turned as a whole: mesh, supports, loads and start.
-pub(crate) fn turned(simulation: &Simulation, turn: QuarterTurn) -> Result<Twin, HardError> {
-    let (built, problem) = body(simulation).ok_or(HardError::NoBody)?;
+pub(crate) fn turned(simulation: &Simulation, turn: QuarterTurn) -> Result<Twin, LabError> {
+    let (built, problem) = body(simulation)
+        .ok_or_else(|| LabError::new("an oscillator has no direction and no mirror image"))?;
     let mut mesh = TetMesh::clone(&built.mesh);
     for point in &mut mesh.points {
         *point = turn.of(*point);
@@ -81,7 +82,7 @@ pub(crate) fn turned(simulation: &Simulation, turn: QuarterTurn) -> Result<Twin,
 
 /// A body measured in another unit of length, `per_metre` of them a metre; kilograms and seconds
 /// stay.
-pub(crate) fn in_units(simulation: &Simulation, per_metre: f64) -> Result<Twin, HardError> {
+pub(crate) fn in_units(simulation: &Simulation, per_metre: f64) -> Result<Twin, LabError> {
     let start = simulation.initial_state();
     let scaled = |field: &[f64]| field.iter().map(|x| per_metre * x).collect();
     let start = State::new(scaled(&start.u), scaled(&start.v));
@@ -125,8 +126,10 @@ fn oscillator_in_units(
     system: &dyn System,
     start: State,
     per_metre: f64,
-) -> Result<Twin, HardError> {
-    let linear = system.as_linear().ok_or(HardError::NotLinear)?;
+) -> Result<Twin, LabError> {
+    let linear = system
+        .as_linear()
+        .ok_or_else(|| LabError::new("needs the matrices of a linear system"))?;
     let operators = linear.operators().clone();
     let mut loads = operators.loads().to_vec();
     for (_, force) in loads.iter_mut().flat_map(|load| &mut load.entries) {
@@ -137,7 +140,7 @@ fn oscillator_in_units(
     Ok(Twin { system, start })
 }
 
-fn twin(mesh: &TetMesh, problem: &Problem, start: State) -> Result<Twin, HardError> {
+fn twin(mesh: &TetMesh, problem: &Problem, start: State) -> Result<Twin, LabError> {
     let model = Model::build(mesh, problem)?;
     let system = Box::new(model);
     Ok(Twin { system, start })

@@ -1,20 +1,10 @@
 //! The runs of a stability map.
 
 use sinew_core::StableStep;
-use sinew_measure::{Case, Effort, MeasureError, MethodChoice, MethodError, Row, measure};
+use sinew_measure::{Case, Effort, MethodChoice, Row, measure};
+use sinew_verify::LabError;
 
 use crate::results::{MapPanel, MapRun, StabilityMap};
-
-/// Why a column of a map could not be measured.
-#[derive(Debug, thiserror::Error)]
-pub(crate) enum ColumnError {
-    /// A method cannot be used on the scene.
-    #[error(transparent)]
-    Method(#[from] MethodError),
-    /// A run failed.
-    #[error(transparent)]
-    Measure(#[from] MeasureError),
-}
 
 impl MapRun {
     fn of(row: &Row) -> Self {
@@ -34,7 +24,7 @@ impl StabilityMap {
         value: f64,
         case: &mut Case,
         methods: &[MethodChoice],
-    ) -> Result<(), ColumnError> {
+    ) -> Result<(), LabError> {
         self.values.push(value);
         if self.panels.is_empty() {
             let panel = |method: &MethodChoice| MapPanel {
@@ -55,7 +45,7 @@ impl StabilityMap {
                 let row = measure(case, method, dt, Effort::UNTIMED)?;
                 Ok(MapRun::of(&row))
             });
-            panel.runs.push(runs.collect::<Result<_, ColumnError>>()?);
+            panel.runs.push(runs.collect::<Result<_, LabError>>()?);
         }
         Ok(())
     }

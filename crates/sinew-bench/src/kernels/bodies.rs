@@ -1,11 +1,11 @@
 //! The bodies of a bench of kernels.
 
+use sinew_verify::LabError;
 use std::path::Path;
 
-use sinew_core::{EvaluationError, OptionError, SetupError, StepError};
-use sinew_fem::{FemError, Model, Problem, Rayleigh};
-use sinew_mesh::structured::{Split, StructuredError, cube};
-use sinew_mesh::{GroupMembers, MeshFileError, TetMesh, TetMeshError, read_msh_file};
+use sinew_fem::{Model, Problem, Rayleigh};
+use sinew_mesh::structured::{Split, cube};
+use sinew_mesh::{GroupMembers, TetMesh, read_msh_file};
 
 use crate::pressed;
 
@@ -17,43 +17,13 @@ pub(super) struct Body {
     pub(super) model: Model,
 }
 
-/// Reasons for which a bench of kernels cannot run.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum KernelBenchError {
-    /// A mesh file that cannot be read.
-    #[error(transparent)]
-    File(#[from] MeshFileError),
-    /// A mesh without tetrahedra.
-    #[error(transparent)]
-    Mesh(#[from] TetMeshError),
-    /// A cube that cannot be made.
-    #[error(transparent)]
-    Cube(#[from] StructuredError),
-    /// A body that cannot be built.
-    #[error(transparent)]
-    Body(#[from] FemError),
-    /// A method that cannot be built.
-    #[error(transparent)]
-    Options(#[from] OptionError),
-    /// A method that cannot be set up.
-    #[error(transparent)]
-    Method(#[from] SetupError),
-    /// A step that fails.
-    #[error(transparent)]
-    Step(#[from] StepError),
-    /// Forces that cannot be computed.
-    #[error(transparent)]
-    Forces(#[from] EvaluationError),
-}
-
 /// The peers' cube at several sizes, a body that no lattice fits, an organ and, where there is one, a larger mesh
 /// of a mesh generator.
 pub(super) fn bodies(
     meshes: &Path,
     generated: Option<&Path>,
     quick: bool,
-) -> Result<Vec<Body>, KernelBenchError> {
+) -> Result<Vec<Body>, LabError> {
     let sizes: &[usize] = if quick { &[6] } else { &[10, 20, 40] };
     let mut bodies = Vec::new();
     for cells in sizes {
@@ -73,14 +43,14 @@ pub(super) fn bodies(
     Ok(bodies)
 }
 
-/// The peers' cube with `cells` cells along an edge.
-pub(super) fn cube_body(cells: usize) -> Result<Body, KernelBenchError> {
+/// The peers' cube with so many cells along an edge.
+pub(super) fn cube_body(cells: usize) -> Result<Body, LabError> {
     let mesh = cube(cells, 0.1, Split::Kuhn)?;
     body(format!("cube {}^3", cells + 1), &mesh, "sides", "top")
 }
 
 /// A cube without loads whose mass damping (1/s) is another.
-pub(super) fn damped_cube(cells: usize, mass: f64) -> Result<Model, KernelBenchError> {
+pub(super) fn damped_cube(cells: usize, mass: f64) -> Result<Model, LabError> {
     let mesh = cube(cells, 0.1, Split::Kuhn)?;
     let mut problem = problem("sides", "top");
     problem.loads.clear();
@@ -114,7 +84,7 @@ fn scatter(mesh: &mut TetMesh) {
     }
 }
 
-fn body(name: String, mesh: &TetMesh, held: &str, pressed: &str) -> Result<Body, KernelBenchError> {
+fn body(name: String, mesh: &TetMesh, held: &str, pressed: &str) -> Result<Body, LabError> {
     Ok(Body {
         name,
         nodes: mesh.points.len(),

@@ -10,10 +10,10 @@ use sinew_measure::thread_cpu_time;
 use sinew_mesh::structured::{Split, cube};
 use sinew_sparse::simd::InstructionSet;
 use sinew_sparse::sweep::{Fields, Numbering, Precision};
+use sinew_verify::LabError;
 
-use super::bodies::KernelBenchError;
 use crate::median::median;
-use crate::tissue;
+use sinew_verify::tissue;
 
 /// Forces of one law and element on a cube.
 #[derive(Clone, Debug, Serialize)]
@@ -156,7 +156,7 @@ impl<T: ElementPrecision> Sweep for Of<T> {
 }
 
 /// Measures all laws and elements.
-pub(super) fn rows(quick: bool) -> Result<Vec<ElementRow>, KernelBenchError> {
+pub(super) fn rows(quick: bool) -> Result<Vec<ElementRow>, LabError> {
     let sizes: &[usize] = if quick { &[4] } else { &[10, 20] };
     let mut rows = Vec::new();
     for cells in sizes {
@@ -165,7 +165,7 @@ pub(super) fn rows(quick: bool) -> Result<Vec<ElementRow>, KernelBenchError> {
     Ok(rows)
 }
 
-fn on_cube(cells: usize, quick: bool) -> Result<Vec<ElementRow>, KernelBenchError> {
+fn on_cube(cells: usize, quick: bool) -> Result<Vec<ElementRow>, LabError> {
     let mesh = cube(cells, 0.1, Split::Kuhn)?;
     let tets = mesh.tets.len();
     let (laps, sweeps) = if quick {

@@ -1,22 +1,22 @@
 //! Laps in turn: plain loops, then each machine.
 
+use sinew_verify::LabError;
 use std::sync::Arc;
-use std::time::{Duration, Instant};
 
 use sinew_cnn::{Machine, Program, Quotient, ReferenceMachine, Sweep, When};
 use sinew_core::CountingAllocator;
 use sinew_core::ElementPrecision;
-use sinew_core::{Batch, Inputs, Layers, LinearSystem, Options, State, StepError, System};
+use sinew_core::{Batch, Inputs, Layers, LinearSystem, Options, State, System};
 use sinew_fem::Rayleigh;
 use sinew_machines::{FastMachine, Kind, Layout, PrecisionName};
-use sinew_measure::thread_cpu_time;
 
 use super::baseline::Baseline;
-use super::bodies::{Body, KernelBenchError};
+use super::bodies::Body;
 use super::memory::bandwidth;
 use super::row::KernelRow;
 use super::variant::{Variant, variants};
 use crate::median::median;
+use crate::timed::{Spent, TimedRunError, time, time_batch};
 
 /// Share of the stable step that steps take.
 const SHARE: f64 = 0.9;
@@ -43,7 +43,7 @@ struct Runner {
 }
 
 /// Measures all machines on a body.
-pub(super) fn rows(body: &Body, quick: bool) -> Result<Vec<KernelRow>, KernelBenchError> {
+pub(super) fn rows(body: &Body, quick: bool) -> Result<Vec<KernelRow>, LabError> {
     let model = &body.model;
     let Some((program, dt)) = central_difference(model)? else {
         return Ok(Vec::new());
@@ -66,27 +66,27 @@ pub(super) fn rows(body: &Body, quick: bool) -> Result<Vec<KernelRow>, KernelBen
     // Of the plain loops with and without checks (s).
     let mut plain: Vec<f64> = Vec::with_capacity(laps);
     for lap in 0..laps {
-        let with = timed(false, || baseline.steps(steps, dt, damping));
-        let without = timed(false, || baseline.steps_without_checks(steps, dt, damping));
-        plain.push(with / without);
+        let ((), with) = time(|| baseline.steps(steps, dt, damping));
+        let ((), without) = time(|| baseline.steps_without_checks(steps, dt, damping));
+        plain.push(with.cpu / without.cpu);
         for runner in &mut runners {
             let several = runner.variant.threads > 1;
-            let of_baseline = timed(several, || baseline.steps(steps, dt, damping));
+            let ((), of_baseline) = time(|| baseline.steps(steps, dt, damping));
             // Threads begin with a batch, and runs have long ones.
             let batches = if several && lap > 0 { LONG } else { 1 };
-            let mut batch = Batch::new(model, Inputs::none(), dt, batches * steps);
-            let mut done = Ok(());
-            let of_machine = timed(several, || {
-                done = runner.machine.run(&mut batch, &mut runner.state);
+            let of_machine = runner.take(model, dt, batches * steps)?;
+            // Of this thread's CPU time, or on the wall where there are several.
+            let [baseline, machine] = [of_baseline, of_machine].map(|spent| match several {
+                true => spent.wall,
+                false => spent.cpu,
             });
-            done?;
-            runner.laps.push([of_baseline, of_machine / batches as f64]);
+            runner.laps.push([baseline, machine / batches as f64]);
         }
         if lap == 0 {
             let mut reference = ReferenceMachine::default();
             reference.load(Arc::clone(&program), model);
             let mut batch = Batch::new(model, Inputs::none(), dt, steps);
-            reference.run(&mut batch, &mut expected)?;
+            time_batch(&mut reference, &mut batch, steps, &mut expected)?;
             for runner in &mut runners {
                 runner.laps.clear();
                 runner.note_difference(&expected);
@@ -148,7 +148,7 @@ pub(super) fn rows(body: &Body, quick: bool) -> Result<Vec<KernelRow>, KernelBen
 /// A step of central difference as a program, with its length (s).
 pub(super) fn central_difference(
     model: &dyn System,
-) -> Result<Option<(Arc<Program>, f64)>, KernelBenchError> {
+) -> Result<Option<(Arc<Program>, f64)>, LabError> {
     let omega = model.spectrum(None);
     let dt = SHARE * 2.0 / omega.map_or(1.0, |spectrum| spectrum.omega_max);
     let mut method = sinew_integrators::build("central-difference", &Options::new())?;
@@ -209,6 +209,12 @@ fn runner_in<T: ElementPrecision>(
 }
 
 impl Runner {
+    /// Takes steps; their time.
+    fn take(&mut self, model: &dyn System, dt: f64, steps: usize) -> Result<Spent, TimedRunError> {
+        let mut batch = Batch::new(model, Inputs::none(), dt, steps);
+        time_batch(&mut *self.machine, &mut batch, steps, &mut self.state)
+    }
+
     fn note_difference(&mut self, expected: &State) {
         let size = |values: &[f64]| values.iter().fold(0.0, |most: f64, x| x.abs().max(most));
         let pairs = self.state.u.iter().zip(&expected.u);
@@ -217,27 +223,13 @@ impl Runner {
     }
 
     /// Allocations in a step of a batch of ten; `None` where the program's allocator does not count.
-    fn allocations(&mut self, model: &dyn System, dt: f64) -> Result<Option<f64>, StepError> {
+    fn allocations(&mut self, model: &dyn System, dt: f64) -> Result<Option<f64>, TimedRunError> {
         let counts = CountingAllocator::count(|| drop(std::hint::black_box(vec![0_u8; 100])));
         if counts == 0 {
             return Ok(None);
         }
-        let mut batch = Batch::new(model, Inputs::none(), dt, 10);
         let mut done = Ok(());
-        let count = CountingAllocator::count(|| {
-            done = self.machine.run(&mut batch, &mut self.state);
-        });
+        let count = CountingAllocator::count(|| done = self.take(model, dt, 10).map(drop));
         done.map(|()| Some(count as f64 / 10.0))
     }
-}
-
-/// Seconds that some work takes: of this thread's CPU time, or on the wall where there are several.
-fn timed(several: bool, work: impl FnOnce()) -> f64 {
-    let (wall, cpu) = (Instant::now(), thread_cpu_time());
-    work();
-    let spent: Duration = match several {
-        true => wall.elapsed(),
-        false => thread_cpu_time() - cpu,
-    };
-    spent.as_secs_f64()
 }

@@ -1,5 +1,6 @@
 //! Steps of programs on every machine, beside plain loops and beside what the memory can do.
 
+use sinew_verify::LabError;
 mod baseline;
 mod bodies;
 mod elements;
@@ -16,14 +17,13 @@ use std::path::PathBuf;
 
 use serde::Serialize;
 
-pub use bodies::KernelBenchError;
 pub use elements::{ElementMark, ElementRow};
 pub use guards::{Guard, Limit};
 pub use roofs::{OperationRate, ReadRate, Roofs};
 pub use row::KernelRow;
 
-use crate::bench::Progress;
-use crate::results::Machine;
+use sinew_verify::Machine;
+use sinew_verify::Progress;
 
 /// A bench of kernels: machines, precisions and threads on bodies of several sizes.
 #[derive(Clone, Debug)]
@@ -60,13 +60,13 @@ impl KernelBench {
     /// Measures everything.
     ///
     /// # Errors
-    /// [`KernelBenchError`] when a body cannot be read or built.
+    /// [`LabError`] when a body cannot be read or built.
     pub fn run(
         &self,
         revision: String,
         machine: Machine,
         mut progress: impl FnMut(Progress),
-    ) -> Result<KernelResults, KernelBenchError> {
+    ) -> Result<KernelResults, LabError> {
         let mut rows = Vec::new();
         let bodies = bodies::bodies(&self.meshes, self.generated.as_deref(), self.quick)?;
         let of = bodies.len() + 3;

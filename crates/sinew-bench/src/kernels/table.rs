@@ -6,8 +6,8 @@ use super::KernelResults;
 use super::elements::{ElementMark, ElementRow};
 use super::roofs::{OperationRate, Roofs};
 use super::row::KernelRow;
-use crate::report::ruled;
 use crate::report::three;
+use sinew_verify::ruled;
 
 pub(super) const HEAD: [&str; 12] = [
     "body",

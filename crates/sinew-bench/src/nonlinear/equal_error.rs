@@ -3,23 +3,24 @@
 use std::sync::Arc;
 
 use sinew_core::vectors::dot;
-use sinew_core::{Integrator, Run, SimulateError, StableStep, State, simulate};
+use sinew_core::{Integrator, Run, StableStep, State};
 use sinew_fem::hyperelastic::{Hyperelastic, Parameters};
-use sinew_fem::{Element, FemError, Law, LoadKind, Model, Problem};
+use sinew_fem::{Element, Law, LoadKind, Model, Problem};
 use sinew_integrators::Method;
 use sinew_integrators::explicit::CentralDifference;
-use sinew_measure::thread_cpu_time;
 use sinew_mesh::TetMesh;
 use sinew_mesh::structured::{Split, block};
 
 use crate::median::median;
 use crate::report::{percent, three};
-use crate::results::{Mark, MarkVerdict};
-use crate::verify::VerifyError;
-use crate::verify::bodies::{DENSITY, YOUNGS_MODULUS, body, equilibrium, held, load, loads};
-use crate::verify::modes::lowest_omega_lumped;
-use crate::verify::places::triangles_where;
-use crate::verify::reference::tet10::{Tet10, Tissue};
+use crate::results::Mark;
+use crate::timed::time_run;
+use sinew_verify::LabError;
+use sinew_verify::MarkVerdict;
+use sinew_verify::bodies::{DENSITY, YOUNGS_MODULUS, body, equilibrium, held, load, loads};
+use sinew_verify::modes::lowest_omega_lumped;
+use sinew_verify::places::triangles_where;
+use sinew_verify::{Tet10, Tissue};
 
 /// Largest CPU time over that of plain tetrahedra that passes.
 const LIMIT: f64 = 0.25;
@@ -75,23 +76,6 @@ struct Candidate {
     frequency: f64,
 }
 
-/// Why a comparison has no figure.
-#[derive(Debug, thiserror::Error)]
-enum EqualError {
-    #[error(transparent)]
-    Figure(#[from] VerifyError),
-    #[error(transparent)]
-    Model(#[from] FemError),
-    #[error(transparent)]
-    Setup(#[from] sinew_core::SetupError),
-    #[error(transparent)]
-    Run(#[from] SimulateError),
-    #[error("no mesh of plain tetrahedra is given")]
-    NoMesh,
-    #[error("no stable step is known")]
-    NoStableStep,
-}
-
 /// The comparisons as marks; a quick run makes the first one only.
 pub(super) fn marks(quick: bool, mut begins: impl FnMut(&str)) -> Vec<Mark> {
     let pairs = COMPARISONS
@@ -129,7 +113,7 @@ fn asked() -> Mark {
 }
 
 impl Comparison {
-    fn measure(&self, nu: f64, laps: usize, most_meshes: usize) -> Result<Mark, EqualError> {
+    fn measure(&self, nu: f64, laps: usize, most_meshes: usize) -> Result<Mark, LabError> {
         let reference = self.shape.tet10(self.reference, nu)?;
         let edge = Element::FbarEdge {
             edge_share: Element::EDGE_SHARE,
@@ -145,7 +129,8 @@ impl Comparison {
                 break;
             }
         }
-        let (plain, is_as_good) = plain.ok_or(EqualError::NoMesh)?;
+        let (plain, is_as_good) =
+            plain.ok_or_else(|| LabError::new("no mesh of plain tetrahedra is given"))?;
         let [mut first, mut second] = [
             Second::new(self.shape, &ours, nu)?,
             Second::new(self.shape, &plain, nu)?,
@@ -198,12 +183,12 @@ impl Shape {
         }
     }
 
-    fn mesh(self, cells: usize) -> Result<TetMesh, EqualError> {
+    fn mesh(self, cells: usize) -> Result<TetMesh, LabError> {
         let mesh = match self {
             Self::Cantilever => block([cells, cells, 10 * cells], [0.1, 0.1, 1.0], Split::Kuhn),
             Self::HeldCube => block([cells; 3], [0.1; 3], Split::Kuhn),
         };
-        Ok(mesh.map_err(VerifyError::from)?)
+        Ok(mesh.map_err(LabError::from)?)
     }
 
     /// Traction on the top (Pa): strains of a thousandth.
@@ -226,7 +211,7 @@ impl Shape {
     }
 
     /// Work (J) of the load on the equilibrium, and the first angular frequency (rad/s), of 10-node tetrahedra.
-    fn tet10(self, cells: usize, nu: f64) -> Result<(f64, f64), EqualError> {
+    fn tet10(self, cells: usize, nu: f64) -> Result<(f64, f64), LabError> {
         let mesh = self.mesh(cells)?;
         let tets = Tet10::new(&mesh);
         let top = triangles_where(&mesh, "top", |_| true)?;
@@ -254,7 +239,7 @@ impl Shape {
         element: Element,
         nu: f64,
         (work, omega): (f64, f64),
-    ) -> Result<Candidate, EqualError> {
+    ) -> Result<Candidate, LabError> {
         let model = Model::build(&self.mesh(cells)?, &self.problem(element, nu))?;
         Ok(Candidate {
             cells,
@@ -273,7 +258,7 @@ struct Second {
 }
 
 impl Second {
-    fn new(shape: Shape, candidate: &Candidate, nu: f64) -> Result<Self, EqualError> {
+    fn new(shape: Shape, candidate: &Candidate, nu: f64) -> Result<Self, LabError> {
         let mut problem = shape.problem(candidate.element, nu);
         for region in &mut problem.regions {
             region.law = Law::Hyperelastic {
@@ -284,7 +269,7 @@ impl Second {
         let model = Model::build_on(Arc::new(shape.mesh(candidate.cells)?), &problem)?;
         let mut integrator: Box<dyn Integrator> = CentralDifference.integrator();
         let StableStep::UpTo(stable) = integrator.stable_step(&model)? else {
-            return Err(EqualError::NoStableStep);
+            return Err(LabError::new("no stable step is known"));
         };
         let steps = (1.0 / (SHARE * stable)).ceil();
         let run = Run::covering(1.0, 1.0 / steps);
@@ -297,16 +282,9 @@ impl Second {
     }
 
     /// CPU time (s) of the second.
-    fn simulate(&mut self) -> Result<f64, EqualError> {
+    fn simulate(&mut self) -> Result<f64, LabError> {
         let mut state = State::at_rest(sinew_core::System::dofs(&self.model));
-        let before = thread_cpu_time();
-        simulate(
-            &self.model,
-            &mut *self.integrator,
-            &mut state,
-            &self.run,
-            &mut (),
-        )?;
-        Ok((thread_cpu_time() - before).as_secs_f64())
+        let spent = time_run(&self.model, &mut *self.integrator, &mut state, &self.run)?;
+        Ok(spent.cpu)
     }
 }

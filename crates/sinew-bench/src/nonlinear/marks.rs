@@ -5,7 +5,8 @@ use sinew_measure::{MethodChoice, Row};
 use super::{equal_error, methods};
 use crate::planned::{energy, is_yardstick};
 use crate::report::{number, percent};
-use crate::results::{Mark, MarkVerdict};
+use crate::results::Mark;
+use sinew_verify::MarkVerdict;
 
 /// Largest rise of the energy, over all that was brought in, by which rounding is not exceeded.
 const ROUNDING: f64 = 1e-11;

@@ -11,11 +11,12 @@ mod picture;
 
 use std::path::PathBuf;
 
-pub use self::picture::{PictureError, picture};
+pub use self::picture::picture;
 
+use crate::BenchError;
 use crate::planned::Plan;
-use crate::results::{BenchResults, Machine};
-use crate::{BenchError, Progress};
+use crate::results::BenchResults;
+use sinew_verify::{Machine, Progress};
 
 /// The bench of large deformations.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,11 +1,11 @@
 //! A picture of a large deformation with its error.
 
+use sinew_verify::LabError;
 use std::path::Path;
 
 use sinew_core::vectors::norm;
 use sinew_core::{Moment, Recorder, Verdict, simulate};
 use sinew_draw::Surface;
-use sinew_fem::FieldError;
 use sinew_measure::{Case, CaseError, Effort, MeasureError, measure};
 use sinew_mesh::GroupMembers;
 use sinew_scene::Scene;
@@ -17,36 +17,21 @@ use crate::report::{number, percent};
 const SCENE: &str = "nonlinear/twist.toml";
 const STEP: f64 = 5e-3;
 
-/// Why there is no picture.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum PictureError {
-    /// The scene or its reference.
-    #[error(transparent)]
-    Case(#[from] CaseError),
-    /// The run.
-    #[error(transparent)]
-    Run(#[from] MeasureError),
-    /// The displacement of a node.
-    #[error(transparent)]
-    Field(#[from] FieldError),
-    /// The scene has no body, or does not move.
-    #[error("the scene has no body that moves")]
-    Still,
-}
-
 /// The column of the twist when it stores most energy, coloured by displacement, with the error of the run in its title.
 ///
 /// # Errors
-/// [`PictureError`].
-pub fn picture(scenes: &Path) -> Result<String, PictureError> {
+/// [`LabError`].
+pub fn picture(scenes: &Path) -> Result<String, LabError> {
     let simulation = Scene::load(scenes.join(SCENE)).and_then(Scene::build);
     let mut case = Case::new("twist", simulation.map_err(CaseError::from)?)?;
     let method = yardstick();
     let row = measure(&mut case, &method, STEP, Effort::UNTIMED)?;
 
     let simulation = case.simulation();
-    let body = simulation.model().body().ok_or(PictureError::Still)?;
+    let body = simulation
+        .model()
+        .body()
+        .ok_or_else(|| LabError::new("the scene has no body that moves"))?;
     let mut tightest: Option<(f64, f64, Vec<f64>)> = None;
     let mut look = |moment: &Moment<'_>| {
         let (t, u) = (moment.state.t(), &moment.state.u);
@@ -68,7 +53,7 @@ pub fn picture(scenes: &Path) -> Result<String, PictureError> {
         recorder,
     )
     .map_err(MeasureError::from)?;
-    let (_, t, u) = tightest.ok_or(PictureError::Still)?;
+    let (_, t, u) = tightest.ok_or_else(|| LabError::new("the scene has no body that moves"))?;
 
     let mesh = &body.mesh;
     let mut points = mesh.points.clone();

@@ -1,14 +1,15 @@
 //! The error of a mesh and its element, without any error in time.
 
+use sinew_verify::LabError;
 use std::collections::HashMap;
 use std::path::Path;
 
-use sinew_core::{Integrator, Moment, Run, SimulateError, Verdict, simulate};
+use sinew_core::{Integrator, Moment, Run, Verdict, simulate};
 use sinew_integrators::Method;
 use sinew_integrators::explicit::{CentralDifference, Rk4};
 use sinew_measure::Case;
 use sinew_measure::reference::ErrorNorm;
-use sinew_scene::{Scene, SceneError, Simulation};
+use sinew_scene::{Scene, Simulation};
 
 use super::case::FinerMeshes;
 
@@ -16,19 +17,6 @@ use super::case::FinerMeshes;
 /// are then far below those in space.
 const SHARE: f64 = 1.0 / 3.0;
 const SHARE_OF_ORDER_2: f64 = 0.6;
-
-/// Why a scene cannot be followed on a finer mesh.
-#[derive(Debug, thiserror::Error)]
-pub(super) enum MeshError {
-    #[error(transparent)]
-    Scene(#[from] SceneError),
-    #[error(transparent)]
-    Run(#[from] SimulateError),
-    #[error("the scene has no body")]
-    NoBody,
-    #[error("a finer mesh lacks a node of the scene's mesh")]
-    Nodes,
-}
 
 /// A scene's motion without errors of the mesh, at the nodes of its own mesh.
 pub(super) struct MeshReference {
@@ -48,7 +36,7 @@ impl MeshReference {
         values: &[String],
         own: &Case,
         finer: FinerMeshes,
-    ) -> Result<Self, MeshError> {
+    ) -> Result<Self, LabError> {
         let nodes = places(own.simulation())?;
         let motion = |mesh: &str| {
             let mut values = values.to_vec();
@@ -74,7 +62,7 @@ impl MeshReference {
     }
 
     /// The relative L2 error of a case's reference, which has no error in time, over all nodes and instants.
-    pub(super) fn error_of(&self, case: &Case) -> Result<f64, MeshError> {
+    pub(super) fn error_of(&self, case: &Case) -> Result<f64, LabError> {
         let seen = case.samples().displacements.iter();
         let seen: Result<Vec<_>, _> = seen
             .map(|u| at_nodes(case.simulation(), u, &self.nodes))
@@ -88,21 +76,23 @@ fn place(point: [f64; 3]) -> [i64; 3] {
     point.map(|x| (1e7 * x).round() as i64)
 }
 
-fn places(simulation: &Simulation) -> Result<Vec<[i64; 3]>, MeshError> {
-    let body = simulation.model().body().ok_or(MeshError::NoBody)?;
+fn places(simulation: &Simulation) -> Result<Vec<[i64; 3]>, LabError> {
+    let body = simulation.model().body().ok_or_else(LabError::no_body)?;
     Ok(body.mesh.points.iter().copied().map(place).collect())
 }
 
 /// Displacements (m) of nodes at these places; those that are held stay, or move as their support does.
-fn at_nodes(simulation: &Simulation, u: &[f64], nodes: &[[i64; 3]]) -> Result<Vec<f64>, MeshError> {
-    let body = simulation.model().body().ok_or(MeshError::NoBody)?;
+fn at_nodes(simulation: &Simulation, u: &[f64], nodes: &[[i64; 3]]) -> Result<Vec<f64>, LabError> {
+    let body = simulation.model().body().ok_or_else(LabError::no_body)?;
     let found: HashMap<[i64; 3], u32> = (0..)
         .zip(&body.mesh.points)
         .map(|(node, point)| (place(*point), node))
         .collect();
     let mut out = Vec::with_capacity(3 * nodes.len());
     for at in nodes {
-        let node = *found.get(at).ok_or(MeshError::Nodes)?;
+        let node = *found
+            .get(at)
+            .ok_or_else(|| LabError::new("a finer mesh lacks a node of the scene's mesh"))?;
         match body.model.cell_of_node(node) {
             Some(cell) => out.extend_from_slice(&u[3 * cell as usize..][..3]),
             None => out.extend([0.0; 3]),
@@ -117,7 +107,7 @@ fn follow(
     samples: usize,
     nodes: &[[i64; 3]],
     is_violent: bool,
-) -> Result<Vec<Vec<f64>>, MeshError> {
+) -> Result<Vec<Vec<f64>>, LabError> {
     let (mut integrator, share): (Box<dyn Integrator>, f64) = match is_violent {
         true => (Rk4.integrator(), SHARE),
         false => (CentralDifference.integrator(), SHARE_OF_ORDER_2),

@@ -6,10 +6,11 @@ use sinew_measure::{Effort, mark_pareto, on_one_thread};
 
 use super::case::PlannedCase;
 use super::running::Running;
+use crate::BenchError;
 use crate::bench::scene_files;
 use crate::report::file_names;
 use crate::results::{BenchResults, Mark, Missing};
-use crate::{BenchError, Progress};
+use sinew_verify::Progress;
 
 /// Runs of a bench.
 pub(crate) struct Plan {

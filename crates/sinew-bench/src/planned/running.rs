@@ -10,8 +10,8 @@ use sinew_scene::Scene;
 use super::case::PlannedCase;
 use super::mesh_error::MeshReference;
 use super::methods::yardstick;
-use crate::Progress;
 use crate::results::{BenchResults, Skipped};
+use sinew_verify::Progress;
 
 /// A body of a case: its law and element where the case has several, and what its scene changes to have them.
 struct Body {

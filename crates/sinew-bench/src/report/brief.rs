@@ -2,10 +2,10 @@
 
 use sinew_measure::Row;
 
-use super::ruled;
 use super::summary::{GOOD_ENOUGH, cheapest};
 use super::{marks, number, verdict};
 use crate::results::{BenchResults, Skipped};
+use sinew_verify::ruled;
 
 /// Most rows of a table.
 const MOST_ROWS: usize = 18;
@@ -158,8 +158,9 @@ fn list(head: &str, things: Vec<String>) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::results::{Machine, Mark, MarkVerdict, Missing};
+    use crate::results::{Mark, Missing};
     use sinew_measure::CaseInfo;
+    use sinew_verify::{Machine, MarkVerdict};
 
     fn row(case: usize, integrator: &str, cpu_s_per_s: f64, error: f64) -> Row {
         Row {

@@ -232,7 +232,7 @@ mod tests {
     use sinew_measure::mark_pareto;
 
     use super::*;
-    use crate::results::Machine;
+    use sinew_verify::Machine;
 
     fn row(integrator: &str, dt: f64, cpu_s_per_s: f64, error: f64) -> Row {
         Row {

@@ -209,8 +209,9 @@ fn runs(results: &BenchResults, missing: usize) -> String {
 mod tests {
     use super::*;
     use crate::peers;
-    use crate::results::{Machine, MapPanel, MapRun, Mark};
+    use crate::results::{MapPanel, MapRun, Mark};
     use sinew_measure::{CaseInfo, Row, RowOutcome};
+    use sinew_verify::Machine;
 
     #[test]
     fn nothing_from_the_results_escapes_into_markup() {

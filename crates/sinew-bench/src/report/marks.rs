@@ -5,9 +5,10 @@ use sinew_draw::page::{Cell, Column, Table, TableRow};
 use sinew_draw::{Colour, Page};
 use sinew_measure::RowVerdict;
 
-use super::ruled::{self, RULED_HEAD};
 use super::verdict::tint;
-use crate::results::{Mark, MarkVerdict};
+use crate::results::Mark;
+use sinew_verify::MarkVerdict;
+use sinew_verify::ruled::{self, RULED_HEAD};
 
 const HEADS: [&str; 5] = ["case", "asked", "measured", "by", "verdict"];
 

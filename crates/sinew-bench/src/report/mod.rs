@@ -9,7 +9,6 @@ mod html;
 mod marks;
 mod missing;
 mod peers;
-pub(crate) mod ruled;
 mod strip;
 mod summary;
 mod table;

@@ -63,8 +63,9 @@ mod tests {
     use super::*;
     use crate::peers::CASE;
     use crate::report::html;
-    use crate::results::{BenchResults, Machine};
+    use crate::results::BenchResults;
     use sinew_measure::CaseInfo;
+    use sinew_verify::Machine;
 
     fn table() -> String {
         let mut page = Page::new("");

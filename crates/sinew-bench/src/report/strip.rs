@@ -274,7 +274,7 @@ fn flow(entries: &[Entry], width: f64) -> Vec<Vec<&Entry>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::results::Machine;
+    use sinew_verify::Machine;
 
     #[test]
     fn the_critical_step_parts_the_columns() {

@@ -8,10 +8,11 @@ use super::{
     marks::{markdown_marks, terminal_marks},
     missing::{self, shown},
     number,
-    ruled::{self, RULED_HEAD},
 };
+
 use crate::results::{BenchResults, Mark};
 use sinew_measure::Row;
+use sinew_verify::ruled::{self, RULED_HEAD};
 
 /// The rows by case, the runs that were skipped and the missing things, for a terminal.
 #[must_use]
@@ -140,8 +141,9 @@ fn align_right(table: &str, columns: &[&Column]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::results::{Machine, Missing, Skipped};
+    use crate::results::{Missing, Skipped};
     use sinew_measure::RowOutcome;
+    use sinew_verify::Machine;
 
     fn results() -> BenchResults {
         let mut results = BenchResults::new("r", Machine::default());

@@ -128,7 +128,7 @@ fn staircase(front: &[&Row]) -> Series {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::results::Machine;
+    use sinew_verify::Machine;
 
     fn row(case: &str, integrator: &str, dt: f64, error: f64) -> Row {
         Row {

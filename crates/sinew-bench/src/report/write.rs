@@ -108,8 +108,8 @@ mod tests {
     use std::fs;
 
     use super::*;
-    use crate::results::Machine;
     use sinew_measure::{CaseInfo, Row};
+    use sinew_verify::Machine;
 
     fn results() -> BenchResults {
         let mut results = BenchResults::new("r", Machine::default());

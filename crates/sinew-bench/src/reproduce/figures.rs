@@ -2,11 +2,11 @@
 
 use sinew_mesh::GroupMembers;
 
-use super::error::ReproduceError;
-use super::runs::{History, LARGE, Runs, SMALL, Snapshot, VOLTAGES};
+use super::runs::{History, LARGE, Runs, SMALL, Snapshot, VOLTAGES, wrong};
 use crate::report::three;
 use sinew_draw::{Axis, Plot, Series, Style, Surface};
 use sinew_measure::Row;
+use sinew_verify::LabError;
 
 /// A figure of the paper.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,7 +25,7 @@ pub(super) const NUMBERS: [&str; 8] = ["1b", "2a", "2b", "3a", "3b", "4b", "4c",
 /// Range (m) of the paper's vertical axes, a little widened.
 const FRAME: f64 = 0.3;
 
-pub(super) fn figures(runs: &Runs<'_>) -> Result<Vec<Figure>, ReproduceError> {
+pub(super) fn figures(runs: &Runs<'_>) -> Result<Vec<Figure>, LabError> {
     let [small, middle, large] = &runs.euler;
     let at_q4 = &runs.network[0];
     let mut figures = vec![
@@ -154,22 +154,16 @@ fn cube(
     number: &'static str,
     title: String,
     snapshot: &Snapshot,
-) -> Result<Figure, ReproduceError> {
+) -> Result<Figure, LabError> {
     let Some(body) = runs.cube.simulation().model().body() else {
-        return Err(ReproduceError::Case {
-            case: runs.cube.id().to_owned(),
-            expected: "a body",
-        });
+        return Err(wrong(runs.cube, "a body"));
     };
     let mesh = &body.mesh;
     let mut points = mesh.points.clone();
     let mut values = vec![0.0; points.len()];
     for (node, point) in (0..).zip(&mut points) {
         let u = body.model.node_displacement(snapshot.t, &snapshot.u, node);
-        let u = u.map_err(|_| ReproduceError::Case {
-            case: runs.cube.id().to_owned(),
-            expected: "a snapshot of its own",
-        })?;
+        let u = u.map_err(|_| wrong(runs.cube, "a snapshot of its own"))?;
         values[node as usize] = u.iter().map(|u| u * u).sum::<f64>().sqrt() * 1e3;
         for (coordinate, u) in point.iter_mut().zip(u) {
             *coordinate += u;

@@ -3,15 +3,14 @@
 //! Zhang, Zhong, Smith and Gu, Cellular neural network modelling of soft tissue dynamics for
 //! surgical simulation, Technology and Health Care 25 (2017) S337-S344, sections 4.1 and 4.2.
 
+use sinew_verify::LabError;
 mod claims;
-mod error;
 mod figures;
 mod page;
 mod reproduction;
 mod runs;
 
 pub use claims::{Claim, Holds};
-pub use error::ReproduceError;
 pub use figures::Figure;
 pub use page::WrittenReproduction;
 pub use reproduction::Reproduction;
@@ -21,8 +20,8 @@ use sinew_measure::Case;
 /// Runs everything the paper shows, on its oscillator (section 4.1) and its cube (section 4.2).
 ///
 /// # Errors
-/// [`ReproduceError`] when a run fails or a case is not what the paper describes.
-pub fn reproduce(oscillator: &mut Case, cube: &mut Case) -> Result<Reproduction, ReproduceError> {
+/// [`LabError`] when a run fails or a case is not what the paper describes.
+pub fn reproduce(oscillator: &mut Case, cube: &mut Case) -> Result<Reproduction, LabError> {
     let runs = runs::Runs::of(oscillator, cube)?;
     Ok(Reproduction {
         figures: figures::figures(&runs)?,

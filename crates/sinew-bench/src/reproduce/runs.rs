@@ -2,11 +2,11 @@
 
 use sinew_core::{Options, Run, State, simulate};
 
-use super::error::ReproduceError;
 use sinew_core::vectors::largest;
 use sinew_measure::Case;
 use sinew_measure::reference::ErrorNorm;
 use sinew_measure::{Effort, MeasureError, MethodChoice, Row, finite, measure};
+use sinew_verify::LabError;
 
 /// The paper's steps (s).
 pub(super) const SMALL: f64 = 0.001;
@@ -51,7 +51,7 @@ pub(super) struct Runs<'a> {
 }
 
 impl<'a> Runs<'a> {
-    pub(super) fn of(oscillator: &mut Case, cube: &'a mut Case) -> Result<Self, ReproduceError> {
+    pub(super) fn of(oscillator: &mut Case, cube: &'a mut Case) -> Result<Self, LabError> {
         if oscillator.simulation().system().dofs() != 1 {
             return Err(wrong(
                 oscillator,
@@ -107,11 +107,9 @@ fn network(voltage: f64) -> MethodChoice {
     }
 }
 
-fn wrong(case: &Case, expected: &'static str) -> ReproduceError {
-    ReproduceError::Case {
-        case: case.id().to_owned(),
-        expected,
-    }
+/// A case of the wrong kind.
+pub(super) fn wrong(case: &Case, expected: &str) -> LabError {
+    LabError::new(format!("{}: expected {expected}", case.id()))
 }
 
 fn failed(
@@ -119,15 +117,13 @@ fn failed(
     method: &MethodChoice,
     dt: f64,
     source: impl Into<MeasureError>,
-) -> ReproduceError {
-    ReproduceError::Run {
-        run: format!("{}: {} at {dt} s", case.id(), method.integrator),
-        source: source.into(),
-    }
+) -> LabError {
+    let (case, method, source) = (case.id(), &method.integrator, source.into());
+    LabError::new(format!("{case}: {method} at {dt} s: {source}"))
 }
 
 /// The solution that the oscillator's errors are measured against, finely enough for a curve.
-fn reference(oscillator: &mut Case) -> Result<Vec<(f64, f64)>, ReproduceError> {
+fn reference(oscillator: &mut Case) -> Result<Vec<(f64, f64)>, LabError> {
     let track = oscillator
         .reference_at_every_step(SMALL)
         .map_err(|error| failed(oscillator, &euler(), SMALL, error))?;
@@ -135,7 +131,7 @@ fn reference(oscillator: &mut Case) -> Result<Vec<(f64, f64)>, ReproduceError> {
     Ok(points.map(|(t, u)| (*t, u[0])).collect())
 }
 
-fn histories(case: &mut Case, method: &MethodChoice) -> Result<[History; 3], ReproduceError> {
+fn histories(case: &mut Case, method: &MethodChoice) -> Result<[History; 3], LabError> {
     let duration = case.simulation().settings().duration;
     let mut history = |dt: f64| {
         let mut row = measure(case, method, dt, Effort::QUICK)
@@ -151,7 +147,7 @@ fn histories(case: &mut Case, method: &MethodChoice) -> Result<[History; 3], Rep
             }
             row.error = finite(norm.relative());
         }
-        Ok(History { points, row })
+        Ok::<_, LabError>(History { points, row })
     };
     Ok([history(SMALL)?, history(LARGE[0])?, history(LARGE[1])?])
 }
@@ -162,7 +158,7 @@ fn follow(
     method: &MethodChoice,
     dt: f64,
     duration: f64,
-) -> Result<Vec<(f64, f64)>, ReproduceError> {
+) -> Result<Vec<(f64, f64)>, LabError> {
     let mut points = Vec::new();
     let mut keep = |moment: &sinew_core::Moment<'_>| {
         let state = moment.state;
@@ -178,7 +174,7 @@ fn snapshot(
     method: &MethodChoice,
     dt: f64,
     limit: f64,
-) -> Result<Snapshot, ReproduceError> {
+) -> Result<Snapshot, LabError> {
     let row = measure(case, method, dt, Effort::QUICK)
         .map_err(|error| failed(case, method, dt, error))?;
     let duration = case.simulation().settings().duration;
@@ -200,7 +196,7 @@ fn state_after(
     dt: f64,
     duration: f64,
     limit: f64,
-) -> Result<State, ReproduceError> {
+) -> Result<State, LabError> {
     let run_settings = Run::covering(duration, dt).with_divergence_limit(limit);
     run(case, method, &run_settings, &mut ())
 }
@@ -210,7 +206,7 @@ fn run(
     method: &MethodChoice,
     settings: &Run,
     recorder: &mut dyn sinew_core::Recorder,
-) -> Result<State, ReproduceError> {
+) -> Result<State, LabError> {
     let fail = |error: MeasureError| failed(case, method, settings.dt, error);
     let mut integrator = method.build().map_err(|error| fail(error.into()))?;
     let mut state = case.simulation().initial_state().clone();

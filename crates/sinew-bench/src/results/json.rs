@@ -59,8 +59,9 @@ mod tests {
     use serde_json::{Value, json};
 
     use super::*;
-    use crate::results::{Machine, Skipped};
+    use crate::results::Skipped;
     use sinew_measure::{CaseInfo, Row, RowOutcome, RowVerdict, Work, finite};
+    use sinew_verify::Machine;
 
     fn row() -> Row {
         Row {

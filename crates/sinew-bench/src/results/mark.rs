@@ -1,6 +1,7 @@
 //! A pass mark of a hard case: the question, the measured figure and the verdict.
 
 use serde::{Deserialize, Serialize};
+use sinew_verify::MarkVerdict;
 
 /// A pass mark and the figure measured for it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -24,35 +25,4 @@ pub struct Mark {
     /// A remark.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub note: String,
-}
-
-/// Verdict on a mark.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum MarkVerdict {
-    /// The figure is within the limit.
-    Pass,
-    /// The figure is beyond the limit, or could not be measured.
-    #[default]
-    Fail,
-}
-
-impl MarkVerdict {
-    /// The verdict for a condition that holds or does not.
-    #[must_use]
-    pub fn of(holds: bool) -> Self {
-        match holds {
-            true => Self::Pass,
-            false => Self::Fail,
-        }
-    }
-
-    /// The word that tables show.
-    #[must_use]
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::Pass => "pass",
-            Self::Fail => "FAIL",
-        }
-    }
 }

@@ -8,8 +8,8 @@ use sinew_core::{LinearSystem, System};
 use sinew_measure::{Case, Span};
 use sinew_scene::{Scene, SceneSource};
 
-use super::error::ScaleError;
 use super::row::ScaleBody;
+use sinew_verify::LabError;
 
 /// Simulated time (s), about: a pressure wave crosses the cube three times.
 const DURATION: f64 = 0.1;
@@ -49,7 +49,7 @@ fn scene(cells: usize) -> String {
 
 impl Cube {
     /// Builds the cube and solves its reference.
-    pub(super) fn new(cells: usize) -> Result<Self, ScaleError> {
+    pub(super) fn new(cells: usize) -> Result<Self, LabError> {
         let before = CountingAllocator::live_bytes();
         let begun = Instant::now();
         let source = SceneSource::new(format!("{}.toml", name(cells)), scene(cells));

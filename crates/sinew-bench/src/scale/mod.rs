@@ -1,7 +1,7 @@
 //! Methods over the size of a body: error, time, set-up and memory, and the largest body in real time.
 
+use sinew_verify::LabError;
 mod cube;
-mod error;
 mod fit;
 mod methods;
 mod newmark;
@@ -12,14 +12,13 @@ mod table;
 
 use serde::Serialize;
 
-pub use error::ScaleError;
 pub use fit::{Exponents, ScaleFit};
 pub use row::{ScaleBody, ScaleRow, ScaleSkipped};
 
-use crate::bench::Progress;
-use crate::results::Machine;
 use cube::Cube;
 use methods::{Threads, variants};
+use sinew_verify::Machine;
+use sinew_verify::Progress;
 
 /// Version of the format of the results.
 const SCHEMA: u32 = 1;
@@ -62,13 +61,13 @@ impl ScaleBench {
     /// Measures everything.
     ///
     /// # Errors
-    /// [`ScaleError`] when a cube cannot be built or a method cannot run.
+    /// [`LabError`] when a cube cannot be built or a method cannot run.
     pub fn run(
         &self,
         revision: String,
         machine: Machine,
         mut progress: impl FnMut(Progress),
-    ) -> Result<ScaleResults, ScaleError> {
+    ) -> Result<ScaleResults, LabError> {
         let mut results = ScaleResults {
             schema: SCHEMA,
             revision,

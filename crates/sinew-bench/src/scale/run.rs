@@ -3,28 +3,27 @@
 use std::time::Instant;
 
 use sinew_core::CountingAllocator;
-use sinew_core::{
-    Equations, FreePart, Layers, LinearOperators, LinearSystem, Revision, System, simulate,
-};
+use sinew_core::{Equations, FreePart, Layers, LinearOperators, LinearSystem, Revision, System};
 use sinew_measure::{Effort, MeasureError, measure, on_one_thread, process_cpu_time};
 
 use super::cube::Cube;
-use super::error::ScaleError;
 use super::methods::Variant;
 use super::row::ScaleRow;
 use crate::median::median;
+use crate::timed::time_run;
+use sinew_verify::LabError;
 
 /// Most laps, and the time (s) after which no further one is begun.
 const LAPS: usize = 5;
 const BUDGET: f64 = 2.0;
 
 /// Measures a method on a cube.
-pub(super) fn row(cube: &mut Cube, variant: &Variant) -> Result<ScaleRow, ScaleError> {
+pub(super) fn row(cube: &mut Cube, variant: &Variant) -> Result<ScaleRow, LabError> {
     // Products that are no program's share a pool of threads.
     on_one_thread(|| row_here(cube, variant))?
 }
 
-fn row_here(cube: &mut Cube, variant: &Variant) -> Result<ScaleRow, ScaleError> {
+fn row_here(cube: &mut Cube, variant: &Variant) -> Result<ScaleRow, LabError> {
     let dt = variant.step(cube.critical_step, cube.case.span().interval());
     let method = variant.method();
     let compared = measure(&mut cube.case, &method, dt, Effort::UNTIMED)?;
@@ -46,8 +45,7 @@ fn row_here(cube: &mut Cube, variant: &Variant) -> Result<ScaleRow, ScaleError> 
     while wall_times.is_empty() || wall_times.len() < LAPS && spent < BUDGET {
         state.clone_from(start);
         let (cpu, wall) = (process_cpu_time(), Instant::now());
-        simulate(system, &mut *integrator, &mut state, &run, &mut ())
-            .map_err(MeasureError::from)?;
+        time_run(system, &mut *integrator, &mut state, &run)?;
         cpu_times.push((process_cpu_time() - cpu).as_secs_f64());
         let wall = wall.elapsed().as_secs_f64();
         wall_times.push(wall);
@@ -89,7 +87,7 @@ struct Fresh<'a> {
 
 impl<'a> Fresh<'a> {
     /// `None` for a body without matrices.
-    fn of(body: &'a dyn System) -> Result<Option<Self>, ScaleError> {
+    fn of(body: &'a dyn System) -> Result<Option<Self>, LabError> {
         let Some(linear) = body.as_linear() else {
             return Ok(None);
         };

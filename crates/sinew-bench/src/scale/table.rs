@@ -4,7 +4,9 @@ use std::fmt;
 
 use super::row::{ScaleBody, ScaleRow};
 use super::{ScaleFit, ScaleResults};
-use crate::report::{milliseconds, percent, ruled, three, two};
+use sinew_verify::ruled;
+
+use crate::report::{milliseconds, percent, three, two};
 
 const BODIES: [&str; 8] = [
     "body",

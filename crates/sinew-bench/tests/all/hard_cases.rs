@@ -1,7 +1,8 @@
 //! The bench of hard cases without its scenes.
 
+use sinew_bench::BenchError;
 use sinew_bench::hard::HardBench;
-use sinew_bench::{BenchError, machine};
+use sinew_verify::machine;
 
 #[test]
 fn without_any_hard_scene_there_are_no_results() {

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use sinew_bench::kernels::KernelBench;
-use sinew_bench::machine;
+use sinew_verify::machine;
 
 #[test]
 fn every_machine_takes_the_same_steps_and_allocates_nothing() {

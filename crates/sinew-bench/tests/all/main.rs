@@ -1,4 +1,4 @@
-//! The benches, the verification and the reproduction, as the commands call them.
+//! The benches and the reproduction, as the commands call them.
 
 #![cfg(test)]
 #![allow(
@@ -14,7 +14,6 @@ mod one_list_of_integrators;
 mod paper_rows;
 mod reproduction;
 mod synthetic_report;
-mod verification;
 
 #[global_allocator]
 static ALLOCATOR: sinew_core::CountingAllocator = sinew_core::CountingAllocator;

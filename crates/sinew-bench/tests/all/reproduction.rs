@@ -2,9 +2,9 @@
 
 use std::path::PathBuf;
 
-use sinew_bench::output::OutputFolder;
 use sinew_bench::reproduce::{Holds, Reproduction, reproduce};
 use sinew_measure::Case;
+use sinew_scene::output::OutputFolder;
 
 fn case(name: &str) -> Case {
     let scenes = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../scenes");

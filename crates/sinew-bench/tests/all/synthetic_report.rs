@@ -5,12 +5,13 @@ use std::{collections::BTreeMap, fs, path::Path};
 
 use serde_json::{Value, json};
 use sinew_bench::{
-    output::OutputFolder,
     report::{markdown, terminal, write_all},
-    results::{BenchResults, Machine, Skipped},
+    results::{BenchResults, Skipped},
 };
 use sinew_draw::{Axis, Plot, Series, Style, Surface};
 use sinew_measure::{CaseInfo, Row, RowOutcome, RowVerdict, Work, mark_pareto};
+use sinew_scene::output::OutputFolder;
+use sinew_verify::Machine;
 
 const DOFS: usize = 2673;
 /// CPU seconds of a sweep over the cube, and of a solve with its factorised matrix.

@@ -87,7 +87,7 @@ fn every_mesh_is_used_by_a_scene_or_the_verification() {
             unused.remove(&fs::canonicalize(input).unwrap());
         }
     }
-    let subjects = fs::read_dir(repository("crates/sinew-bench/src/verify/subjects")).unwrap();
+    let subjects = fs::read_dir(repository("crates/sinew-verify/src/subjects")).unwrap();
     let subjects = subjects.map(|file| fs::read_to_string(file.unwrap().path()).unwrap());
     let verified: String = subjects.collect();
     let stem = |mesh: &PathBuf| mesh.file_stem().unwrap().to_string_lossy().into_owned();

@@ -2,9 +2,7 @@
 
 use crate::common::pressed;
 
-use std::f64::consts::PI;
-
-use pressed::{Block, Pressed, staggered_energy, through, tool};
+use pressed::{Block, Pressed, through, tool};
 use sinew_core::{Inputs, OptionValue, Options, State};
 use sinew_tools::{Convex, Grasp, Motion, Pose, Row, Table, Tool, ToolBody};
 
@@ -34,59 +32,6 @@ fn turning(rows: &[(f64, [f64; 3])]) -> Motion {
 
 fn pose(pressed: &Pressed, state: &State, tool: usize) -> Pose {
     pressed.tools.pose(state, Inputs::none(), tool)
-}
-
-/// Deviation of a tool of 50 g on its coupling from `v/w e^(-z q t) sin(w t)`, after its path stopped at the speed v,
-/// relative to the largest offset; along and about, by a method in steps of `dt` (s).
-fn off_the_closed_form((id, options): (&str, &Options), dt: f64) -> [f64; 2] {
-    let (stop, end, damping) = (0.05, 0.1, 0.1);
-    let body = ToolBody { damping, ..BODY };
-    let cube = Block::of([0.02; 3], [1; 3]);
-    let [speed, spin] = [0.06, 0.4];
-    let way = [(0.0, [0.0, 0.0, 1.0]), (stop, [speed * stop, 0.0, 1.0])];
-    let along = cube.with(vec![ball(through(&way, [0.0; 3]), body)]);
-    let turn = turning(&[(0.0, [0.0; 3]), (stop, [0.0, spin * stop, 0.0])]);
-    let about = cube.with(vec![ball(turn, body)]);
-    let worst = |pressed: &Pressed, rate: f64, (of, start): (&dyn Fn(&Pose) -> f64, f64)| {
-        let mut state = pressed.at_rest();
-        // The body of tissue is far away and at rest.
-        let before = (stop / dt).round() as usize;
-        pressed.run_with(&mut state, (id, options.clone()), dt, before);
-        let swings = rate * (1.0 - damping * damping).sqrt();
-        let mut worst: f64 = 0.0;
-        for n in 1..=((end - stop) / dt).round() as usize {
-            pressed.run_with(&mut state, (id, options.clone()), dt, 1);
-            let t = dt * n as f64;
-            let expected = start / swings * (-damping * rate * t).exp() * (swings * t).sin();
-            let offset = of(&pose(pressed, &state, 0)) - start * stop;
-            worst = worst.max((offset - expected).abs());
-        }
-        worst / (start / swings)
-    };
-    let x = |pose: &Pose| pose.position()[0];
-    let turn = |pose: &Pose| pose.rotation_vector()[1];
-    [
-        worst(&along, (400.0_f64 / 0.05).sqrt(), (&x, speed)),
-        worst(&about, (0.5_f64 / 3e-6).sqrt(), (&turn, spin)),
-    ]
-}
-
-#[test]
-fn a_tool_on_its_coupling_swings_as_its_spring_and_damper_say() {
-    let euler = Options::new().with("kind", OptionValue::Text("ie".into()));
-    for (id, options, order) in [
-        ("cnn-stabilised", Options::new(), 2.0),
-        ("cnn-energy", euler, 1.0),
-    ] {
-        let errors = [1e-4, 5e-5].map(|dt| off_the_closed_form((id, &options), dt));
-        for (coarse, fine) in errors[0].into_iter().zip(errors[1]) {
-            let found = (coarse / fine).log2();
-            assert!((found - order).abs() < 0.1, "{id}: {errors:?}");
-        }
-        if order == 2.0 {
-            assert!(errors[1][0] < 1e-5, "{errors:?}");
-        }
-    }
 }
 
 /// A rule that keeps the energy of what it does not resolve would turn such a body about in every step, for ever.
@@ -159,122 +104,6 @@ fn a_free_top_keeps_its_energy_and_turns_as_euler_says() {
     for pair in errors.windows(2) {
         let order = (pair[0] / pair[1]).log2();
         assert!((order - 2.0).abs() < 0.05, "{errors:?}");
-    }
-}
-
-#[test]
-fn a_tool_that_flies_into_a_free_body_gives_it_what_it_loses() {
-    let mut cube = Block::of([0.04; 3], [4; 3]);
-    cube.is_held = false;
-    cube.nu = 0.3;
-    let body = ToolBody {
-        coupling: 0.0,
-        rotational_coupling: 0.0,
-        ..BODY
-    };
-    let start = Pose::new([0.023, 0.018, 0.055], [0.0; 3]);
-    let velocity = [0.02, 0.0, -0.6];
-    let mut tool = ball(Motion::Steady { start, velocity }, body);
-    tool.friction = 0.3;
-    let pressed = cube.with(vec![tool]);
-    let mut state = pressed.at_rest();
-    let momentum = |state: &State, axis: usize| {
-        let (mean, mass) = pressed.mean_velocity(state, axis);
-        let body = pressed.tools.report(state, 0).body;
-        mean * mass + 0.05 * body.map_or(velocity, |body| body.velocity)[axis]
-    };
-    let before = [0, 1, 2].map(|axis| momentum(&state, axis));
-    let dt = 0.5 * pressed.stable_step();
-    let mut touched = 0;
-    for _ in 0..(0.1 / dt) as usize {
-        pressed.run(&mut state, "central-difference", dt, 1);
-        touched += pressed.tools.report(&state, 0).contacts;
-        for axis in 0..3 {
-            let off = momentum(&state, axis) - before[axis];
-            assert!(off.abs() < 1e-13 * before[2].abs(), "{axis}: {off}");
-        }
-    }
-    let after = pressed.tools.report(&state, 0);
-    assert!(touched > 100 && after.body.unwrap().velocity[2] > -0.5);
-    assert!(after.largest_residual < 1e-12, "{}", after.largest_residual);
-    assert_eq!(after.body.unwrap().hand_work, 0.0);
-}
-
-#[test]
-fn at_rest_the_coupling_bears_what_the_tissue_gives() {
-    let mut cube = Block::of([0.06; 3], [5; 3]).with_mass_damping(40.0);
-    cube.nu = 0.45;
-    let down = [(0.0, [0.03, 0.03, 0.0725]), (0.2, [0.031, 0.029, 0.067])];
-    let pressed = cube.with(vec![ball(through(&down, [0.0; 3]), BODY)]);
-    let mut state = pressed.at_rest();
-    pressed.run(&mut state, "central-difference", 1e-3, 2500);
-    let report = pressed.tools.report(&state, 0);
-    let there = pose(&pressed, &state, 0);
-    for axis in 0..3 {
-        let pulled = BODY.coupling * (there.position()[axis] - down[1].1[axis]);
-        let force = report.force[axis];
-        assert!((pulled - force).abs() < 1e-9, "{axis}: {pulled} {force}");
-        let turned = BODY.rotational_coupling * there.rotation_vector()[axis];
-        assert!((turned - report.torque[axis]).abs() < 1e-9, "{axis}");
-    }
-    assert!(report.force[2] > 0.01);
-    // A tool that is led to the same pose feels the same.
-    let [x, y, _] = there.position();
-    let end = (0.2, there.position(), there.rotation_vector());
-    let rows = [(0.0, [x, y, 0.0725], [0.0; 3]), end];
-    let rows = rows.map(|(t, position, rotation_vector)| Row {
-        t,
-        position,
-        rotation_vector,
-    });
-    let led = Motion::Table(Table::new(rows.to_vec()).unwrap());
-    let led = cube.with(vec![tool(Convex::sphere(0.012).unwrap(), led)]);
-    let mut other = led.at_rest();
-    led.run(&mut other, "central-difference", 1e-3, 2500);
-    let expected = led.force(&other)[2];
-    assert!((report.force[2] / expected - 1.0).abs() < 1e-6);
-}
-
-#[test]
-fn energy_never_rises_by_more_than_the_work_of_the_hand() {
-    let cube = Block::of([0.06; 3], [4; 3]);
-    let centre = |z: f64| [0.03, 0.03, z];
-    let rows = [
-        (0.0, centre(0.0601)),
-        (0.05, centre(0.05)),
-        (0.1, centre(0.05)),
-        (0.15, centre(0.0601)),
-    ];
-    // It may not turn, so that normals do not.
-    let stiff = ToolBody {
-        inertia: [1e3; 3],
-        damping: 0.0,
-        ..BODY
-    };
-    for (share, coupling) in [(0.05, 400.0), (0.5, 400.0), (0.95, 400.0), (0.95, 1e6)] {
-        let plate = Tool {
-            body: Some(ToolBody { coupling, ..stiff }),
-            ..tool(Convex::Plane, through(&rows, [PI, 0.0, 0.0]))
-        };
-        let pressed = cube.with(vec![plate]);
-        let dt = share * pressed.stable_step();
-        let mut state = pressed.at_rest();
-        let (mut last, mut largest, mut rise): (Option<f64>, f64, f64) = (None, 0.0, 0.0);
-        for _ in 0..(0.3 / dt) as usize {
-            let before = state.clone();
-            pressed.run(&mut state, "central-difference", dt, 1);
-            let body = pressed.tools.report(&state, 0).body.unwrap();
-            let energy = staggered_energy(&pressed.model, &before, &state, dt) + body.energy;
-            let left = energy - body.hand_work;
-            rise = rise.max(last.map_or(0.0, |last| left - last));
-            last = Some(left);
-            largest = largest.max(energy);
-        }
-        assert!(largest > 1e-4, "the plate presses: {largest}");
-        assert!(
-            rise <= 1e-12 * largest,
-            "{share} {coupling}: {rise} of {largest}"
-        );
     }
 }
 

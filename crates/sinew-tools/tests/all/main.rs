@@ -9,7 +9,6 @@ mod common;
 mod energy_sweeps;
 mod first_contact;
 mod free_motion;
-mod light_bodies;
 mod lips;
 mod nearest;
 mod poses;

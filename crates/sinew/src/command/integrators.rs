@@ -57,7 +57,10 @@ fn describe(entry: &Entry) -> Result<(), Failure> {
         }
     }
     say("options, keys of [run]:")?;
-    for option in entry.all_options() {
+    for (number, option) in entry.all_options().into_iter().enumerate() {
+        if number == entry.options.len() {
+            say("the same for many methods, and rarely needed:")?;
+        }
         let OptionHelp {
             key,
             help,

@@ -1,11 +1,12 @@
 //! The matrix that Newmark's method factorises for a cube.
 
+use sinew_verify::LabError;
 use std::path::Path;
 
 use sinew_core::LinearSystem;
-use sinew_fem::{FemError, Model};
+use sinew_fem::Model;
 use sinew_integrators::Combination;
-use sinew_mesh::structured::{Split, StructuredError, cube};
+use sinew_mesh::structured::{Split, cube};
 use sinew_scene::output::{OutputError, OutputFolder};
 
 use crate::pressed::problem;
@@ -29,24 +30,12 @@ pub struct EffectiveMatrix {
     values: Vec<f64>,
 }
 
-/// Reasons for which there is no matrix.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum EffectiveMatrixError {
-    /// A cube that cannot be made.
-    #[error(transparent)]
-    Cube(#[from] StructuredError),
-    /// A body that cannot be built.
-    #[error(transparent)]
-    Body(#[from] FemError),
-}
-
 impl EffectiveMatrix {
     /// The matrix of a cube with `side` nodes along an edge.
     ///
     /// # Errors
-    /// [`EffectiveMatrixError`].
-    pub fn of_cube(side: usize) -> Result<Self, EffectiveMatrixError> {
+    /// [`LabError`].
+    pub fn of_cube(side: usize) -> Result<Self, LabError> {
         let mesh = cube(side - 1, 0.1, Split::Kuhn)?;
         let model = Model::build(&mesh, &problem("sides", "top"))?;
         let mut matrix = Self {

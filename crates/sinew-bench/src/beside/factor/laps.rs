@@ -1,8 +1,9 @@
 //! Laps in turn: they factorise, we factorise, they solve, we solve.
 
 use sinew_core::LinearSystem;
-use sinew_integrators::{Factor, FactorError};
-use sinew_measure::{ThreadError, on_one_thread, thread_cpu_time};
+use sinew_integrators::Factor;
+use sinew_measure::{on_one_thread, thread_cpu_time};
+use sinew_verify::LabError;
 
 use super::super::laps::{RivalError, Rounds};
 use super::effective::EffectiveMatrix;
@@ -32,21 +33,6 @@ pub trait FactorLibrary {
     fn name(&self) -> String;
 }
 
-/// Reasons for which there are no ratios.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum FactorLapError {
-    /// The other library failed.
-    #[error(transparent)]
-    Library(RivalError),
-    /// Our factor failed.
-    #[error("the matrix could not be factorised: {0}")]
-    Ours(#[from] FactorError),
-    /// There is no thread to measure on.
-    #[error(transparent)]
-    Thread(#[from] ThreadError),
-}
-
 /// Our factor of one matrix beside the other one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FactorPair {
@@ -71,12 +57,12 @@ pub struct FactorTable(pub Vec<FactorPair>);
 /// Factorises and solves in turn with another library, on one thread.
 ///
 /// # Errors
-/// [`FactorLapError`].
+/// [`LabError`].
 pub fn run_factor_laps(
     matrix: &EffectiveMatrix,
     library: &mut (dyn FactorLibrary + Send),
     rounds: Rounds,
-) -> Result<FactorPair, FactorLapError> {
+) -> Result<FactorPair, LabError> {
     on_one_thread(|| run_here(matrix, library, rounds))?
 }
 
@@ -84,14 +70,14 @@ fn run_here(
     matrix: &EffectiveMatrix,
     library: &mut dyn FactorLibrary,
     Rounds(rounds): Rounds,
-) -> Result<FactorPair, FactorLapError> {
+) -> Result<FactorPair, LabError> {
     let (operators, combination) = (matrix.model.operators(), matrix.combination());
     let mut factor = Factor::analyse(operators)?;
     let mut solution = matrix.force.clone();
     let (mut factorise, mut solve) = (Vec::new(), Vec::new());
     // The first round brings memory and clocks up to speed and counts for nothing.
     for round in 0..=rounds {
-        let theirs = library.factorise().map_err(FactorLapError::Library)?;
+        let theirs = library.factorise().map_err(LabError::boxed)?;
         let before = thread_cpu_time();
         factor.factorise(operators, combination)?;
         let ours = thread_cpu_time() - before;
@@ -99,7 +85,7 @@ fn run_here(
             factorise.push(ours.as_secs_f64() / theirs);
         }
         for _ in 0..SOLUTIONS {
-            let theirs = library.solve().map_err(FactorLapError::Library)?;
+            let theirs = library.solve().map_err(LabError::boxed)?;
             solution.copy_from_slice(&matrix.force);
             let before = thread_cpu_time();
             factor.solve(&mut solution);
@@ -111,7 +97,7 @@ fn run_here(
     }
     factorise.sort_by(f64::total_cmp);
     solve.sort_by(f64::total_cmp);
-    let theirs = library.solution().map_err(FactorLapError::Library)?;
+    let theirs = library.solution().map_err(LabError::boxed)?;
     Ok(FactorPair {
         side: matrix.side,
         unknowns: matrix.force.len(),

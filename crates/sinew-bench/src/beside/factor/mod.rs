@@ -4,5 +4,5 @@ mod effective;
 mod laps;
 mod table;
 
-pub use effective::{EffectiveMatrix, EffectiveMatrixError};
-pub use laps::{FactorLapError, FactorLibrary, FactorPair, FactorTable, run_factor_laps};
+pub use effective::EffectiveMatrix;
+pub use laps::{FactorLibrary, FactorPair, FactorTable, run_factor_laps};

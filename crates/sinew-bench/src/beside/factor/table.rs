@@ -3,7 +3,9 @@
 use std::fmt;
 
 use super::laps::{FactorPair, FactorTable};
-use crate::report::{ruled, three};
+use sinew_verify::ruled;
+
+use crate::report::three;
 
 const HEAD: [&str; 7] = [
     "cube",

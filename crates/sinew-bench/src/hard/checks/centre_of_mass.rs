@@ -4,18 +4,18 @@ use sinew_core::{Ramp, System};
 use sinew_measure::{Case, MethodChoice};
 
 use super::{at, trajectory};
-use crate::hard::error::HardError;
 use crate::hard::mark::Asked;
 use crate::hard::methods::{block, chebyshev, cut};
 use crate::report::{milliseconds, percent};
 use crate::results::Mark;
+use sinew_verify::LabError;
 
 /// The axis along which the body is free.
 const Z: usize = 2;
 
 /// The largest distance of the centre of mass from its place, over its largest displacement: by the
 /// method and step that come nearest.
-pub(crate) fn check(asked: Asked, case: &Case, steps: &[f64]) -> Result<Mark, HardError> {
+pub(crate) fn check(asked: Asked, case: &Case, steps: &[f64]) -> Result<Mark, LabError> {
     let mut found = Vec::new();
     let methods = [
         block(),
@@ -32,7 +32,7 @@ pub(crate) fn check(asked: Asked, case: &Case, steps: &[f64]) -> Result<Mark, Ha
     let best = found
         .iter()
         .min_by(|a, b| a.2.total_cmp(&b.2))
-        .ok_or(HardError::NoRun)?;
+        .ok_or_else(|| LabError::new("no method or no step was given"))?;
     let shown = |figure: f64| format!("{} %", percent(figure));
     let others = found.iter().filter(|other| *other != best);
     let others: Vec<String> = others
@@ -45,7 +45,7 @@ pub(crate) fn check(asked: Asked, case: &Case, steps: &[f64]) -> Result<Mark, Ha
         .noting(others.join(", ")))
 }
 
-fn deviation(case: &Case, method: &MethodChoice, dt: f64) -> Result<f64, HardError> {
+fn deviation(case: &Case, method: &MethodChoice, dt: f64) -> Result<f64, LabError> {
     let simulation = case.simulation();
     let system = simulation.system();
     let path = trajectory(
@@ -84,13 +84,15 @@ fn centre(system: &dyn System, u: &[f64]) -> f64 {
 
 /// The place (m) to which a pulse F has brought a mass m by time t, from rest: `F/m` times the integral of the
 /// pulse, taken twice.
-fn place(system: &dyn System, t: f64) -> Result<f64, HardError> {
-    let linear = system.as_linear().ok_or(HardError::NotLinear)?;
+fn place(system: &dyn System, t: f64) -> Result<f64, LabError> {
+    let linear = system
+        .as_linear()
+        .ok_or_else(|| LabError::new("needs the matrices of a linear system"))?;
     let [load] = linear.operators().loads() else {
-        return Err(HardError::NotOnePulse);
+        return Err(LabError::new("needs one load, a pulse"));
     };
     let Ramp::Pulse { from, to } = load.ramp else {
-        return Err(HardError::NotOnePulse);
+        return Err(LabError::new("needs one load, a pulse"));
     };
     let along_z = load
         .entries

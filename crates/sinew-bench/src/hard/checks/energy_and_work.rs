@@ -3,18 +3,20 @@
 use sinew_measure::{Case, MethodChoice};
 
 use super::at;
-use crate::hard::error::HardError;
 use crate::hard::hard_run::run_with_energies;
 use crate::hard::mark::{Asked, Worst};
 use crate::hard::methods::{block, chebyshev, cnn, energy, gauss_seidel};
 use crate::report::three;
 use crate::results::Mark;
+use sinew_verify::LabError;
 
-/// The largest excess of the energy over E0 and the work so far, as a share of them, among the methods that promise no
-/// excess.
-pub(crate) fn check(asked: Asked, case: &Case) -> Result<Mark, HardError> {
+/// The largest excess of the energy over E0 and the work so far, as a share of them, among the
+/// methods that promise there is none.
+pub(crate) fn check(asked: Asked, case: &Case) -> Result<Mark, LabError> {
     let dt = case.simulation().dt();
-    let critical = case.critical_step().ok_or(HardError::NothingVibrates)?;
+    let critical = case
+        .critical_step()
+        .ok_or_else(|| LabError::new("nothing vibrates"))?;
     let promising = [
         (block(), dt),
         (chebyshev(4), dt),
@@ -50,7 +52,7 @@ fn without_bound_or(excess: f64) -> String {
     }
 }
 
-fn excess(case: &Case, method: &MethodChoice, dt: f64) -> Result<f64, HardError> {
+fn excess(case: &Case, method: &MethodChoice, dt: f64) -> Result<f64, LabError> {
     let (_, energies) = run_with_energies(case, method, dt, case.run(dt).steps)?;
     Ok(energies.excess)
 }

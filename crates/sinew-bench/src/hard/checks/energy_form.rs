@@ -3,21 +3,23 @@
 use sinew_measure::{Case, MethodChoice};
 
 use super::trajectory;
-use crate::hard::error::HardError;
 use crate::hard::hard_run::run_with_energies;
 use crate::hard::mark::{Asked, Worst};
 use crate::hard::methods::{block, chebyshev, gauss_seidel};
 use crate::report::{short, three};
 use crate::results::Mark;
 use sinew_core::vectors::largest;
+use sinew_verify::LabError;
 
 /// Steps over the critical step.
 const STEPS: [f64; 3] = [5.0, 25.0, 250.0];
 
 /// The largest relative change of the energy form over `steps` steps, among several inner
 /// iterations and steps; the displacement must stay within ten times the reference's.
-pub(crate) fn check(asked: Asked, case: &Case, steps: usize) -> Result<Mark, HardError> {
-    let critical = case.critical_step().ok_or(HardError::NothingVibrates)?;
+pub(crate) fn check(asked: Asked, case: &Case, steps: usize) -> Result<Mark, LabError> {
+    let critical = case
+        .critical_step()
+        .ok_or_else(|| LabError::new("nothing vibrates"))?;
     let mut worst = Worst::default();
     let mut bounded = true;
     let mut largest_u = 0.0_f64;
@@ -48,7 +50,7 @@ fn follow(
     method: &MethodChoice,
     dt: f64,
     steps: usize,
-) -> Result<(f64, f64), HardError> {
+) -> Result<(f64, f64), LabError> {
     let (_, energies) = run_with_energies(case, method, dt, steps)?;
     let simulation = case.simulation();
     let (system, start) = (simulation.system(), simulation.initial_state());

@@ -4,12 +4,12 @@ use sinew_core::{Outcome, Run, simulate};
 use sinew_measure::{Case, MethodChoice};
 
 use super::{at, set_up};
-use crate::hard::error::HardError;
 use crate::hard::hard_run::{equilibrium, relative_distance};
 use crate::hard::mark::{Asked, Worst};
 use crate::hard::methods::{block, chebyshev, cut};
 use crate::report::{short, three};
 use crate::results::Mark;
+use sinew_verify::LabError;
 
 /// Steps between two checks of the distance, and most of these.
 const ROUND: usize = 1000;
@@ -17,8 +17,9 @@ const MOST_ROUNDS: usize = 200;
 
 /// The largest relative distance from the solution of K u = F, among several methods that are given
 /// the time they need.
-pub(crate) fn check(asked: Asked, case: &Case) -> Result<Mark, HardError> {
-    let rest = equilibrium(case).ok_or(HardError::NeverAtRest)?;
+pub(crate) fn check(asked: Asked, case: &Case) -> Result<Mark, LabError> {
+    let rest =
+        equilibrium(case).ok_or_else(|| LabError::new("the reference does not come to rest"))?;
     let dt = case.simulation().dt();
     let mut worst = Worst::default();
     let mut notes = Vec::new();
@@ -57,7 +58,7 @@ fn settle(
     dt: f64,
     rest: &[f64],
     limit: f64,
-) -> Result<Settled, HardError> {
+) -> Result<Settled, LabError> {
     let system = case.simulation().system();
     let mut integrator = set_up(method, system, dt)?;
     let mut state = case.simulation().initial_state().clone();

@@ -3,11 +3,11 @@
 use sinew_core::Options;
 use sinew_measure::{Case, MethodChoice};
 
-use crate::hard::error::HardError;
 use crate::hard::hard_run::run_with_energies;
 use crate::hard::mark::Asked;
 use crate::report::{short, three};
 use crate::results::Mark;
+use sinew_verify::LabError;
 
 /// Share of the critical step.
 const SHARE: f64 = 0.95;
@@ -18,8 +18,10 @@ pub(crate) fn check(
     case: &Case,
     steps: usize,
     precision: &str,
-) -> Result<Mark, HardError> {
-    let critical = case.critical_step().ok_or(HardError::NothingVibrates)?;
+) -> Result<Mark, LabError> {
+    let critical = case
+        .critical_step()
+        .ok_or_else(|| LabError::new("nothing vibrates"))?;
     let options = Options::new().with_text("precision", precision);
     let method = MethodChoice::new("central-difference").with_options(&options);
     let (_, energies) = run_with_energies(case, &method, SHARE * critical, steps)?;

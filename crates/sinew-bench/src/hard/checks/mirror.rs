@@ -3,16 +3,16 @@
 use sinew_measure::{Case, MethodChoice};
 
 use super::{at, trajectory};
-use crate::hard::error::HardError;
 use crate::hard::mark::{Asked, Worst};
 use crate::hard::methods::{block, chebyshev, cnn, cut};
 use crate::hard::pairs::body;
 use crate::report::three;
 use crate::results::Mark;
+use sinew_verify::LabError;
 
 /// The largest `|u_x(mirror image) + u_x|`, and the same in y, over the largest displacement, among
 /// several methods.
-pub(crate) fn check(asked: Asked, case: &Case) -> Result<Mark, HardError> {
+pub(crate) fn check(asked: Asked, case: &Case) -> Result<Mark, LabError> {
     let simulation = case.simulation();
     let (system, start, dt) = (
         simulation.system(),
@@ -27,7 +27,7 @@ pub(crate) fn check(asked: Asked, case: &Case) -> Result<Mark, HardError> {
         MethodChoice::new("newmark"),
         cut("central-difference"),
     ];
-    let drift_of = |method: &MethodChoice| -> Result<f64, HardError> {
+    let drift_of = |method: &MethodChoice| -> Result<f64, LabError> {
         let path = trajectory(system, start, method, dt, case.run(dt).steps)?;
         Ok(drift(&path, &images))
     };
@@ -66,8 +66,9 @@ fn drift(path: &[Vec<f64>], images: &[Vec<usize>; 2]) -> f64 {
 }
 
 /// The mirror image of each cell in the middle plane across an axis.
-fn images(case: &Case, axis: usize) -> Result<Vec<usize>, HardError> {
-    let (built, _) = body(case.simulation()).ok_or(HardError::NoBody)?;
+fn images(case: &Case, axis: usize) -> Result<Vec<usize>, LabError> {
+    let (built, _) = body(case.simulation())
+        .ok_or_else(|| LabError::new("an oscillator has no direction and no mirror image"))?;
     let (low, high) = built.mesh.bounding_box();
     let tolerance = 1e-6 * (high[axis] - low[axis]);
     let points: Vec<[f64; 3]> = built
@@ -80,7 +81,10 @@ fn images(case: &Case, axis: usize) -> Result<Vec<usize>, HardError> {
         let mut mirrored = *point;
         mirrored[axis] = low[axis] + high[axis] - point[axis];
         let near = |other: &[f64; 3]| (0..3).all(|i| (other[i] - mirrored[i]).abs() <= tolerance);
-        points.iter().position(near).ok_or(HardError::NotSymmetric)
+        points
+            .iter()
+            .position(near)
+            .ok_or_else(|| LabError::new("the mesh is not its own mirror image"))
     };
     points.iter().map(image).collect()
 }

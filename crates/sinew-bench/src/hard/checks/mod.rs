@@ -15,8 +15,8 @@ pub(crate) mod within_work;
 use sinew_core::{Integrator, State, System};
 use sinew_measure::MethodChoice;
 
-use crate::hard::error::HardError;
 use crate::report::milliseconds;
+use sinew_verify::LabError;
 
 /// Description of a method at a step.
 pub(crate) fn at(method: &str, dt: f64) -> String {
@@ -28,7 +28,7 @@ pub(crate) fn set_up(
     method: &MethodChoice,
     system: &dyn System,
     dt: f64,
-) -> Result<Box<dyn Integrator>, HardError> {
+) -> Result<Box<dyn Integrator>, LabError> {
     let mut integrator = method.build()?;
     integrator.prepare(system, dt)?;
     Ok(integrator)
@@ -41,7 +41,7 @@ pub(crate) fn trajectory(
     method: &MethodChoice,
     dt: f64,
     steps: usize,
-) -> Result<Vec<Vec<f64>>, HardError> {
+) -> Result<Vec<Vec<f64>>, LabError> {
     let mut integrator = set_up(method, system, dt)?;
     let mut state = start.clone();
     let step = |_| {

@@ -6,11 +6,11 @@ use sinew_integrators::implicit::Modal;
 use sinew_measure::{Case, MethodChoice};
 
 use super::{at, trajectory};
-use crate::hard::error::HardError;
 use crate::hard::mark::Asked;
 use crate::hard::methods::{block, chebyshev};
 use crate::report::percent;
 use crate::results::Mark;
+use sinew_verify::LabError;
 
 /// Frequency and amplitude of the first mode as relative distances from the modal solution's: by the
 /// method nearest to both.
@@ -19,13 +19,18 @@ pub(crate) fn check(
     amplitude: Asked,
     case: &Case,
     dt: f64,
-) -> Result<[Mark; 2], HardError> {
+) -> Result<[Mark; 2], LabError> {
     let system = case.simulation().system();
     let start = case.simulation().initial_state();
     let mut modal = Frame::new(Modal::with_modes(1));
     modal.prepare(system, dt)?;
-    let omega = *modal.frequencies().first().ok_or(HardError::NoMode)?;
-    let shape = modal.shape(0).ok_or(HardError::NoMode)?;
+    let omega = *modal
+        .frequencies()
+        .first()
+        .ok_or_else(|| LabError::new("no mode was found"))?;
+    let shape = modal
+        .shape(0)
+        .ok_or_else(|| LabError::new("no mode was found"))?;
     let share = |u: &[f64]| -> f64 {
         let terms = u.iter().zip(shape).zip(system.mass());
         terms.map(|((u, phi), mass)| phi * mass * u).sum()
@@ -56,7 +61,8 @@ pub(crate) fn check(
     let nearest = found
         .iter()
         .min_by(|a, b| a.1.max(a.2).total_cmp(&b.1.max(b.2)));
-    let (by, off_omega, off_amplitude) = nearest.ok_or(HardError::NoRun)?;
+    let (by, off_omega, off_amplitude) =
+        nearest.ok_or_else(|| LabError::new("no method or no step was given"))?;
     let shown = |figure: f64| format!("{} %", percent(figure));
     let others: Vec<String> = found
         .iter()

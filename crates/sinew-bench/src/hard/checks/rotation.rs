@@ -3,20 +3,22 @@
 use sinew_measure::{Case, MethodChoice};
 
 use super::{at, largest_difference, trajectory};
-use crate::hard::error::HardError;
 use crate::hard::mark::{Asked, Worst};
 use crate::hard::methods::{block, chebyshev, cnn};
 use crate::hard::pairs::{QuarterTurn, turned};
 use crate::report::three;
 use crate::results::Mark;
+use sinew_verify::LabError;
 
 /// The largest difference between a scene's motion, turned, and the motion of the turned scene,
 /// over the largest displacement: for quarter turns about x, y and z and several methods.
-pub(crate) fn check(asked: Asked, case: &Case) -> Result<Mark, HardError> {
+pub(crate) fn check(asked: Asked, case: &Case) -> Result<Mark, LabError> {
     let simulation = case.simulation();
     let (system, start) = (simulation.system(), simulation.initial_state());
     let dt = simulation.dt();
-    let critical = case.critical_step().ok_or(HardError::NothingVibrates)?;
+    let critical = case
+        .critical_step()
+        .ok_or_else(|| LabError::new("nothing vibrates"))?;
     let methods = [
         (block(), dt),
         (chebyshev(4), dt),

@@ -8,12 +8,12 @@ use sinew_measure::MethodChoice;
 use sinew_scene::{Scene, Simulation};
 
 use super::{at, largest_difference, trajectory};
-use crate::hard::error::HardError;
 use crate::hard::mark::{Asked, Worst};
 use crate::hard::methods::block;
 use crate::hard::pairs::in_units;
 use crate::report::three;
 use crate::results::Mark;
+use sinew_verify::LabError;
 
 /// Number of millimetres and of micrometres in a metre.
 const UNITS: [f64; 2] = [1e3, 1e6];
@@ -24,7 +24,7 @@ const MOST_STEPS: usize = 200;
 /// The largest difference between the motion of a scene in metres and in other units, over the
 /// largest displacement: of every scene in these folders by its own method at its own step. A method
 /// that saturates lets rounding grow, so that its scenes are moved by the stabilised network.
-pub(crate) fn check(asked: Asked, folders: &[PathBuf]) -> Result<Mark, HardError> {
+pub(crate) fn check(asked: Asked, folders: &[PathBuf]) -> Result<Mark, LabError> {
     let mut worst = Worst::default();
     let mut names = Vec::new();
     let mut saturating = Vec::new();
@@ -64,13 +64,10 @@ pub(crate) fn check(asked: Asked, folders: &[PathBuf]) -> Result<Mark, HardError
 }
 
 /// The scenes in the folders, sorted.
-fn scenes(folders: &[PathBuf]) -> Result<Vec<PathBuf>, HardError> {
+fn scenes(folders: &[PathBuf]) -> Result<Vec<PathBuf>, LabError> {
     let mut paths = Vec::new();
     for folder in folders {
-        let unreadable = |source| HardError::Folder {
-            folder: folder.clone(),
-            source,
-        };
+        let unreadable = |source| LabError::new(format!("{}: {source}", folder.display()));
         for entry in std::fs::read_dir(folder).map_err(unreadable)? {
             let path = entry.map_err(unreadable)?.path();
             if path
@@ -90,7 +87,7 @@ fn difference(
     method: &MethodChoice,
     dt: f64,
     per_metre: f64,
-) -> Result<f64, HardError> {
+) -> Result<f64, LabError> {
     let duration = simulation.settings().duration;
     let steps = Run::covering(duration, dt).steps.min(MOST_STEPS);
     let (system, start) = (simulation.system(), simulation.initial_state());

@@ -6,9 +6,9 @@ use sinew_core::{
 };
 use sinew_measure::MethodChoice;
 
-use crate::hard::error::HardError;
 use crate::report::milliseconds;
-use crate::tissue::{Specimen, relative_error};
+use sinew_verify::LabError;
+use sinew_verify::tissue::{Specimen, relative_error};
 
 /// Sizes of the body that a displacement may have before the run counts as diverged.
 const SIZES: f64 = 20.0;
@@ -171,13 +171,13 @@ fn elastic(system: &dyn System, u: &[f64], work: &mut [f64]) -> Option<(f64, usi
 /// The motion by central difference in steps of `dt` (s) or a little less, so short that its error does not count, at equal instants.
 ///
 /// # Errors
-/// [`HardError`] where the body refuses it.
+/// [`LabError`] where the body refuses it.
 pub(crate) fn reference(
     specimen: &Specimen,
     dt: f64,
     duration: f64,
     instants: usize,
-) -> Result<Vec<Vec<f64>>, HardError> {
+) -> Result<Vec<Vec<f64>>, LabError> {
     let steps = (duration / dt / instants as f64).ceil();
     let dt = duration / (steps * instants as f64);
     Ok(specimen.by_central_difference(dt, steps as usize, instants)?)
@@ -186,13 +186,13 @@ pub(crate) fn reference(
 /// Follows a method over `duration` (s), with displacements at `instants` equal instants.
 ///
 /// # Errors
-/// [`HardError`] where there is no such method; that it refuses the body or a state is no error.
+/// [`LabError`] where there is no such method; that it refuses the body or a state is no error.
 pub(crate) fn follow(
     specimen: &Specimen,
     planned: &Planned,
     duration: f64,
     instants: usize,
-) -> Result<Followed, HardError> {
+) -> Result<Followed, LabError> {
     let system: &dyn System = &specimen.model;
     let mut integrator = planned.method.build()?;
     let mut state = specimen.start.clone();

@@ -7,13 +7,13 @@ use sinew_measure::MethodChoice;
 use super::follow::{Planned, follow, reference};
 use super::tally::ROUNDING;
 use super::tally::{Demand, Tally};
-use crate::hard::error::HardError;
 use crate::hard::hard_run::relative_distance;
 use crate::hard::mark::Asked;
 use crate::hard::meshes::inclusion_cube;
 use crate::hard::methods::{cut, energy_of};
 use crate::results::Mark;
-use crate::tissue::{self, EDGE, Specimen, YOUNGS_MODULUS};
+use sinew_verify::LabError;
+use sinew_verify::tissue::{self, EDGE, Specimen, YOUNGS_MODULUS};
 
 const CELLS: usize = 4;
 
@@ -33,7 +33,7 @@ const DURATION: f64 = 0.3;
 const INSTANTS: usize = 30;
 const FINE: f64 = 5e-5;
 
-fn specimen(core: &'static str, element: Element, ramp: Ramp) -> Result<Specimen, HardError> {
+fn specimen(core: &'static str, element: Element, ramp: Ramp) -> Result<Specimen, LabError> {
     let region = |group: &str, law| Region {
         group: Some(group.into()),
         density: tissue::DENSITY,
@@ -62,7 +62,7 @@ fn specimen(core: &'static str, element: Element, ramp: Ramp) -> Result<Specimen
 }
 
 /// So stiff a core hardly strains: whatever its law, equilibria and motions are those with a core of the tissue's own law.
-pub(crate) fn check(asked: Asked) -> Result<Mark, HardError> {
+pub(crate) fn check(asked: Asked) -> Result<Mark, LabError> {
     let mut tally = Tally::default();
     let rise = Ramp::Sin2 { rise: 0.1 };
     let alike = specimen("neo-hookean", Element::P1, rise.clone())?;

@@ -7,12 +7,12 @@ use sinew_measure::MethodChoice;
 use super::follow::{Planned, follow, reference};
 use super::tally::ROUNDING;
 use super::tally::{Demand, Tally};
-use crate::hard::error::HardError;
 use crate::hard::hard_run::relative_distance;
 use crate::hard::mark::Asked;
 use crate::hard::methods::{cut, energy_of};
 use crate::results::Mark;
-use crate::tissue::{self, Specimen, YOUNGS_MODULUS};
+use sinew_verify::LabError;
+use sinew_verify::tissue::{self, Specimen, YOUNGS_MODULUS};
 
 const CELLS: usize = 4;
 
@@ -26,13 +26,13 @@ const EDGES: Element = Element::FbarEdge {
     patch: None,
 };
 
-fn specimen(nu: f64, element: Element, ramp: Ramp) -> Result<Specimen, HardError> {
+fn specimen(nu: f64, element: Element, ramp: Ramp) -> Result<Specimen, LabError> {
     let law = tissue::law("neo-hookean", YOUNGS_MODULUS, nu);
     Ok(tissue::pressed(CELLS, law, element, 10.0, ramp)?)
 }
 
 /// A cube under 12 N is pressed as one with nu = .499, and moves as by short steps.
-pub(crate) fn check(asked: Asked) -> Result<Mark, HardError> {
+pub(crate) fn check(asked: Asked) -> Result<Mark, LabError> {
     let mut tally = Tally::default();
     let rise = Ramp::Sin2 { rise: 0.2 };
     for element in [Element::Fbar { patch: None }, EDGES] {

@@ -7,11 +7,11 @@ use sinew_mesh::structured::{Split, cube};
 use super::follow::{Planned, follow};
 use super::tally::{Demand, Tally};
 use super::tally::{LITTLE, ROUNDING};
-use crate::hard::error::HardError;
 use crate::hard::mark::Asked;
 use crate::hard::methods::{cut, energy_of};
 use crate::results::Mark;
-use crate::tissue::{self, EDGE, Specimen, YOUNGS_MODULUS};
+use sinew_verify::LabError;
+use sinew_verify::tissue::{self, EDGE, Specimen, YOUNGS_MODULUS};
 
 /// Laws whose stress pushes elements back that are inside out.
 const LAWS: [&str; 2] = ["stable-neo-hookean", "stable-neo-hookean-log"];
@@ -30,7 +30,7 @@ pub(crate) enum Start {
     Mirrored,
 }
 
-fn specimen(law: &'static str, start: Start) -> Result<Specimen, HardError> {
+fn specimen(law: &'static str, start: Start) -> Result<Specimen, LabError> {
     let mut problem = tissue::standing(tissue::law(law, YOUNGS_MODULUS, 0.45), Element::P1);
     problem.damping = tissue::of_mass(10.0);
     let specimen = Specimen::new(&cube(CELLS, EDGE, Split::Mirrored)?, &problem)?;
@@ -42,7 +42,7 @@ fn specimen(law: &'static str, start: Start) -> Result<Specimen, HardError> {
 
 /// Methods whose energy falls let it rise in no step, and others never above that at the start. Central difference has to bring
 /// the crushed cube back to where no element is inside out; what dissipates may settle in a fold, and does.
-pub(crate) fn check(asked: Asked, start: Start) -> Result<Mark, HardError> {
+pub(crate) fn check(asked: Asked, start: Start) -> Result<Mark, LabError> {
     let mut tally = Tally::default();
     for law in LAWS {
         let specimen = specimen(law, start)?;

@@ -7,11 +7,11 @@ use sinew_measure::MethodChoice;
 use super::follow::{Planned, follow};
 use super::tally::{Demand, Tally};
 use super::tally::{LITTLE, ROUNDING};
-use crate::hard::error::HardError;
 use crate::hard::mark::Asked;
 use crate::hard::methods::{cut, energy_of};
 use crate::results::Mark;
-use crate::tissue::{self, COLUMN, Specimen, YOUNGS_MODULUS};
+use sinew_verify::LabError;
+use sinew_verify::tissue::{self, COLUMN, Specimen, YOUNGS_MODULUS};
 
 const CELLS: usize = 4;
 
@@ -31,7 +31,7 @@ const EXPLICIT: [&str; 6] = [
     "cnn-symplectic",
 ];
 
-fn specimens(law: &'static str) -> Result<[(&'static str, Specimen); 3], HardError> {
+fn specimens(law: &'static str) -> Result<[(&'static str, Specimen); 3], LabError> {
     let tissue = tissue::law(law, YOUNGS_MODULUS, 0.45);
     let standing = tissue::standing(tissue.clone(), Element::P1);
     Ok([
@@ -51,13 +51,13 @@ fn specimens(law: &'static str) -> Result<[(&'static str, Specimen); 3], HardErr
 }
 
 /// No method makes energy in silence: it is refused by name, says so, or keeps what start and loads bring.
-pub(crate) fn check(asked: Asked) -> Result<Mark, HardError> {
+pub(crate) fn check(asked: Asked) -> Result<Mark, LabError> {
     let mut tally = Tally::default();
     for law in ["neo-hookean", "stable-neo-hookean", "corotational"] {
         for (name, body) in specimens(law)? {
             let plain = MethodChoice::new("central-difference");
             let StableStep::UpTo(stable) = plain.build()?.stable_step(&body.model)? else {
-                return Err(HardError::NothingVibrates);
+                return Err(LabError::new("nothing vibrates"));
             };
             let dt = TIMES * stable;
             let falling = [

@@ -13,16 +13,16 @@ mod tally;
 mod twisted;
 
 use self::inverted::Start;
-use super::error::HardError;
 use super::mark::Asked;
 use crate::results::Mark;
+use sinew_verify::LabError;
 
 /// A hard case of tissue.
 pub(crate) struct LargeCase {
     pub(crate) asked: Asked,
     /// True if a quick run leaves it out.
     pub(crate) slow: bool,
-    pub(crate) check: fn(Asked) -> Result<Mark, HardError>,
+    pub(crate) check: fn(Asked) -> Result<Mark, LabError>,
 }
 
 /// The cases, in the order of the report.

@@ -6,11 +6,11 @@ use sinew_measure::MethodChoice;
 
 use super::follow::{Planned, follow, reference};
 use super::tally::{Demand, Tally};
-use crate::hard::error::HardError;
 use crate::hard::mark::Asked;
 use crate::hard::methods::{cut, energy_of};
 use crate::results::Mark;
-use crate::tissue::{self, YOUNGS_MODULUS};
+use sinew_verify::LabError;
+use sinew_verify::tissue::{self, YOUNGS_MODULUS};
 
 const CELLS: usize = 4;
 
@@ -23,7 +23,7 @@ const INSTANTS: usize = 60;
 const FINE: f64 = 2.5e-4;
 
 /// A cube is pressed by 12 N, pulled by 12 N and let go, by a smooth load and by one that jumps to and fro.
-pub(crate) fn check(asked: Asked) -> Result<Mark, HardError> {
+pub(crate) fn check(asked: Asked) -> Result<Mark, LabError> {
     let mut tally = Tally::default();
     let smooth = Ramp::Table {
         times: vec![0.0, 0.1, 0.2, 0.3, 0.4],

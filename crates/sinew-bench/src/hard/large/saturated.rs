@@ -6,11 +6,11 @@ use sinew_measure::MethodChoice;
 
 use super::follow::{Planned, follow, reference};
 use super::tally::{Demand, Tally};
-use crate::hard::error::HardError;
 use crate::hard::mark::Asked;
 use crate::hard::methods::guarded;
 use crate::results::Mark;
-use crate::tissue::{self, YOUNGS_MODULUS};
+use sinew_verify::LabError;
+use sinew_verify::tissue::{self, YOUNGS_MODULUS};
 
 const CELLS: usize = 6;
 
@@ -31,7 +31,7 @@ fn bound(id: &str, limit: f64) -> MethodChoice {
 
 /// Below their stable steps networks with a wide bound follow a press; where the bound cuts speeds, it says so. Beyond, elements turn inside
 /// out, which a law refuses or the count of cut speeds shows. Bounds by energy follow from matrices and are refused.
-pub(crate) fn check(asked: Asked) -> Result<Mark, HardError> {
+pub(crate) fn check(asked: Asked) -> Result<Mark, LabError> {
     let mut tally = Tally::default();
     for law in ["neo-hookean", "stable-neo-hookean"] {
         // The paper's network is forward Euler, which damping alone makes stable.

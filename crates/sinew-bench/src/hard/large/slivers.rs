@@ -9,12 +9,12 @@ use sinew_mesh::structured::{Split, cube};
 
 use super::follow::{Planned, follow, reference};
 use super::tally::{Demand, Tally};
-use crate::hard::error::HardError;
 use crate::hard::mark::Asked;
 use crate::hard::meshes::sliver_cube;
 use crate::hard::methods::{cut, energy_of};
 use crate::results::Mark;
-use crate::tissue::{self, EDGE, Specimen, YOUNGS_MODULUS};
+use sinew_verify::LabError;
+use sinew_verify::tissue::{self, EDGE, Specimen, YOUNGS_MODULUS};
 
 const CELLS: usize = 4;
 
@@ -29,7 +29,7 @@ const FINE: f64 = 5e-4;
 /// The error that is allowed, a fraction: the reference is the motion of a mesh with one node and three elements less.
 const LARGEST: f64 = 0.05;
 
-fn specimen(mesh: &TetMesh, law: &'static str) -> Result<Specimen, HardError> {
+fn specimen(mesh: &TetMesh, law: &'static str) -> Result<Specimen, LabError> {
     let problem = Problem {
         damping: tissue::of_mass(10.0),
         loads: vec![LoadSpec {
@@ -43,7 +43,7 @@ fn specimen(mesh: &TetMesh, law: &'static str) -> Result<Specimen, HardError> {
 }
 
 /// The motion of a pressed cube with a thin element is that of the cube without, at the nodes that both have.
-pub(crate) fn check(asked: Asked) -> Result<Mark, HardError> {
+pub(crate) fn check(asked: Asked) -> Result<Mark, LabError> {
     let mut tally = Tally::default();
     let plain = cube(CELLS, EDGE, Split::Kuhn)?;
     let thin = sliver_cube(CELLS, EDGE, THINNESS)?;

@@ -6,11 +6,11 @@ use sinew_measure::MethodChoice;
 use super::follow::{Planned, follow, reference};
 use super::tally::{Demand, Tally};
 use super::tally::{LITTLE, ROUNDING};
-use crate::hard::error::HardError;
 use crate::hard::mark::Asked;
 use crate::hard::methods::{cut, energy_of};
 use crate::results::Mark;
-use crate::tissue::{self, COLUMN, Specimen, YOUNGS_MODULUS, rotation_of_top};
+use sinew_verify::LabError;
+use sinew_verify::tissue::{self, COLUMN, Specimen, YOUNGS_MODULUS, rotation_of_top};
 
 /// Angular speed of the top at the start (1/s), which takes it beyond a turn.
 const SPIN: f64 = 110.0;
@@ -39,7 +39,7 @@ fn farthest(specimen: &Specimen, track: &[Vec<f64>]) -> f64 {
 }
 
 /// The column turns beyond 360 degrees and back; methods follow it, or keep its energy.
-pub(crate) fn check(asked: Asked) -> Result<Mark, HardError> {
+pub(crate) fn check(asked: Asked) -> Result<Mark, LabError> {
     let mut tally = Tally::default();
     for law in LAWS {
         let problem = tissue::standing(tissue::law(law, YOUNGS_MODULUS, 0.45), Element::P1);

@@ -1,5 +1,6 @@
 //! Threads on processors that others use as well.
 
+use sinew_verify::LabError;
 use std::process::{Child, Command, Stdio};
 
 use sinew_core::{LinearSystem, State, System};
@@ -8,7 +9,7 @@ use sinew_machines::{FastMachine, Layout};
 
 use super::guard::{Guard, Limit};
 use super::runner::Runner;
-use crate::kernels::bodies::{KernelBenchError, cube_body};
+use crate::kernels::bodies::cube_body;
 use crate::kernels::laps::central_difference;
 use crate::median::median;
 
@@ -45,7 +46,7 @@ impl Drop for Crowd {
     }
 }
 
-pub(super) fn guards(quick: bool) -> Result<Vec<Guard>, KernelBenchError> {
+pub(super) fn guards(quick: bool) -> Result<Vec<Guard>, LabError> {
     let cores = sinew_machines::Threads::All.most();
     if cores < 2 {
         return Ok(Vec::new());
@@ -62,7 +63,7 @@ pub(super) fn guards(quick: bool) -> Result<Vec<Guard>, KernelBenchError> {
         for templates in [false, true] {
             guards.extend(guard(model, templates, threads, (&beside, cores), quick)?);
         }
-        Ok::<(), KernelBenchError>(())
+        Ok::<(), LabError>(())
     };
     measure(0, cores)?;
     measure(cores, cores)?;
@@ -77,7 +78,7 @@ fn guard(
     threads: usize,
     (beside, cores): (&str, usize),
     quick: bool,
-) -> Result<Option<Guard>, KernelBenchError> {
+) -> Result<Option<Guard>, LabError> {
     let Some((program, dt)) = central_difference(model)? else {
         return Ok(None);
     };
@@ -93,7 +94,7 @@ fn guard(
         let machine = FastMachine::new(layout.clone()).with_threads(threads);
         Runner::new(Box::new(machine), (model, &program, dt), &start)
     });
-    let of_step = runners[0].take(20)?.1 / 20.0;
+    let of_step = runners[0].take(20)?.cpu / 20.0;
     let (steps, laps) = match quick {
         true => (10, 3),
         false => ((LAP / of_step.max(1e-9)) as usize, 11),
@@ -101,7 +102,7 @@ fn guard(
     let mut ratios: Vec<f64> = Vec::with_capacity(laps);
     for _ in 0..laps {
         let [one, several] = &mut runners;
-        let (one, several) = (one.take(steps)?.0, several.take(steps)?.0);
+        let (one, several) = (one.take(steps)?.wall, several.take(steps)?.wall);
         ratios.push(several / one);
     }
     let kind = if templates { "templates" } else { "general" };

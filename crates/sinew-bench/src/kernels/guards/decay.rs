@@ -4,10 +4,11 @@ use sinew_cnn::{Machine, ReferenceMachine};
 use sinew_core::{LinearSystem, State, System};
 use sinew_fem::Model;
 use sinew_machines::{FastMachine, Layout};
+use sinew_verify::LabError;
 
 use super::guard::{Guard, Limit};
 use super::runner::Runner;
-use crate::kernels::bodies::{KernelBenchError, damped_cube};
+use crate::kernels::bodies::damped_cube;
 use crate::kernels::laps::central_difference;
 use crate::median::median;
 
@@ -20,7 +21,7 @@ const GONE: f64 = 1e-320;
 /// Batches of a stretch.
 const STRETCH: usize = 15;
 
-pub(super) fn guards(quick: bool) -> Result<Vec<Guard>, KernelBenchError> {
+pub(super) fn guards(quick: bool) -> Result<Vec<Guard>, LabError> {
     // Strong enough that the motion is gone after some thousand steps.
     let model = &damped_cube(6, 60.0)?;
     let in_f64 = || Box::new(FastMachine::new(Layout::<f64>::general(model.operators())));
@@ -49,7 +50,7 @@ fn slowest(
     model: &Model,
     limit: bool,
     quick: bool,
-) -> Result<Option<Guard>, KernelBenchError> {
+) -> Result<Option<Guard>, LabError> {
     let Some((program, dt)) = central_difference(model)? else {
         return Ok(None);
     };
@@ -66,8 +67,7 @@ fn slowest(
     // Some stretches beyond the end, and never for ever.
     for _ in 0..2000 {
         early.state.clone_from(&start);
-        let (_, before) = early.take(steps)?;
-        let (_, after) = late.take(steps)?;
+        let (before, after) = (early.take(steps)?.cpu, late.take(steps)?.cpu);
         stretch.push(after / before);
         if stretch.len() == STRETCH {
             slowest = slowest.max(median(&mut stretch));

@@ -5,17 +5,18 @@ use sinew_core::{LinearSystem, State, System};
 use sinew_fem::Model;
 use sinew_machines::{FastMachine, Layout};
 use sinew_sparse::simd::InstructionSet;
+use sinew_verify::LabError;
 
 use super::guard::{Guard, Limit};
 use super::runner::Runner;
-use crate::kernels::bodies::{KernelBenchError, cube_body};
+use crate::kernels::bodies::cube_body;
 use crate::kernels::laps::central_difference;
 use crate::median::median;
 
 /// Smallest speed-up by the best set; if it is less, a kernel was compiled without the set.
 const LEAST: f64 = 1.2;
 
-pub(super) fn guards(quick: bool) -> Result<Vec<Guard>, KernelBenchError> {
+pub(super) fn guards(quick: bool) -> Result<Vec<Guard>, LabError> {
     let body = cube_body(if quick { 6 } else { 10 })?;
     let mut guards = Vec::new();
     of::<f64>(&body.model, quick, &mut guards)?;
@@ -27,7 +28,7 @@ fn of<T: ElementPrecision>(
     model: &Model,
     quick: bool,
     guards: &mut Vec<Guard>,
-) -> Result<(), KernelBenchError> {
+) -> Result<(), LabError> {
     let best = InstructionSet::best();
     let Some((program, dt)) = central_difference(model)? else {
         return Ok(());
@@ -54,7 +55,7 @@ fn of<T: ElementPrecision>(
         let mut ratios: Vec<f64> = Vec::with_capacity(laps);
         for _ in 0..laps {
             let [portable, best] = &mut runners;
-            let (portable, best) = (portable.take(steps)?.1, best.take(steps)?.1);
+            let (portable, best) = (portable.take(steps)?.cpu, best.take(steps)?.cpu);
             ratios.push(portable / best);
         }
         guards.push(Guard {

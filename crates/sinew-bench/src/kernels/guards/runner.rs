@@ -1,12 +1,12 @@
 //! Machines whose laps are compared.
 
 use std::sync::Arc;
-use std::time::Instant;
 
 use sinew_cnn::{Machine, Program};
-use sinew_core::{Batch, Inputs, State, StepError};
+use sinew_core::{Batch, Inputs, State};
 use sinew_fem::Model;
-use sinew_measure::thread_cpu_time;
+
+use crate::timed::{Spent, TimedRunError, time_batch};
 
 /// A machine on a model, with a motion of its own.
 pub(super) struct Runner<'a> {
@@ -31,12 +31,9 @@ impl<'a> Runner<'a> {
         }
     }
 
-    /// Takes steps; their wall time and CPU time of this thread (s).
-    pub(super) fn take(&mut self, steps: usize) -> Result<(f64, f64), StepError> {
+    /// Takes steps; their time.
+    pub(super) fn take(&mut self, steps: usize) -> Result<Spent, TimedRunError> {
         let mut batch = Batch::new(self.model, Inputs::none(), self.dt, steps);
-        let (wall, cpu) = (Instant::now(), thread_cpu_time());
-        self.machine.run(&mut batch, &mut self.state)?;
-        let cpu = (thread_cpu_time() - cpu).as_secs_f64();
-        Ok((wall.elapsed().as_secs_f64(), cpu))
+        time_batch(&mut *self.machine, &mut batch, steps, &mut self.state)
     }
 }

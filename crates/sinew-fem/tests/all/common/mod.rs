@@ -165,34 +165,6 @@ pub(crate) fn equilibrium(model: &Model) -> Vec<f64> {
     solve(model, &force)
 }
 
-/// M u.
-fn mass_times(model: &Model, u: &[f64]) -> Vec<f64> {
-    model.mass().iter().zip(u).map(|(m, u)| m * u).collect()
-}
-
-/// sqrt(u'K u / u'M u) (rad/s).
-fn rayleigh_frequency(model: &Model, u: &[f64]) -> f64 {
-    (dot(u, &stiffness_times(model, u)) / dot(u, &mass_times(model, u))).sqrt()
-}
-
-/// The lowest angular frequency (rad/s) of the modes that `start` has a part of, to about six
-/// digits, by inverse iteration (Bathe, Finite Element Procedures, section 11.2.1).
-pub(crate) fn lowest_frequency(model: &Model, start: Vec<f64>) -> f64 {
-    let (mut shape, mut frequency) = (start, f64::INFINITY);
-    for _ in 0..40 {
-        let mut next = solve(model, &mass_times(model, &shape));
-        let size = max_abs(&next);
-        next.iter_mut().for_each(|value| *value /= size);
-        let better = rayleigh_frequency(model, &next);
-        let settled = (better / frequency - 1.0).abs() < 1e-6;
-        (shape, frequency) = (next, better);
-        if settled {
-            return frequency;
-        }
-    }
-    panic!("inverse iteration did not settle: {frequency} rad/s");
-}
-
 pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

@@ -1,10 +1,9 @@
 //! Elements that average strain over edges and patches: exact for uniform strain, symmetric, without locking.
 
 use crate::common::{
-    at_most, body, build, equilibrium, held, is_inside, jitter, linear, load, max_abs, on_cells,
+    at_most, body, build, equilibrium, held, jitter, linear, load, max_abs, on_cells,
     relative_difference, stiffness_times,
 };
-use nalgebra::{Matrix3, Vector3};
 use sinew_core::{ElementStiffness, Elements, LinearSystem, System};
 use sinew_fem::{Cause, Element, Law, LoadKind, Model, Problem, Region, SpringRule};
 use sinew_mesh::structured::{self, Split};
@@ -32,74 +31,6 @@ fn uneven_cube() -> TetMesh {
     let mut mesh = structured::cube(4, 0.1, Split::Kuhn).unwrap();
     jitter(&mut mesh, 0.006, 7);
     mesh
-}
-
-fn gradient() -> Matrix3<f64> {
-    Matrix3::new(1.0, 0.3, -0.7, 0.2, -0.4, 0.5, 0.9, -0.6, 0.8) * 1e-3
-}
-
-#[test]
-fn a_uniform_strain_is_in_balance_inside_and_has_its_stress_everywhere() {
-    let mesh = uneven_cube();
-    for element in ELEMENTS {
-        for nu in [0.3, 0.499] {
-            let model = build(&mesh, &of(element, linear(3500.0, nu)));
-            let u = on_cells(&model, |node| {
-                (gradient() * Vector3::from(mesh.points[node])).into()
-            });
-            let forces = stiffness_times(&model, &u);
-            let inner: Vec<f64> = (0..mesh.points.len())
-                .filter(|node| is_inside(&mesh, *node))
-                .flat_map(|node| forces[3 * node..3 * node + 3].to_vec())
-                .collect();
-            let share = max_abs(&inner) / max_abs(&forces);
-            at_most("force inside over that on the surface", share, 1e-11);
-
-            let (lambda, mu) = sinew_fem::tetra::lame(3500.0, nu);
-            let strain = (gradient() + gradient().transpose()) / 2.0;
-            let stress = strain * (2.0 * mu) + Matrix3::identity() * (lambda * strain.trace());
-            let mut found = vec![[0.0; 6]; mesh.tets.len()];
-            model.stress(0.0, &u, &mut found).unwrap();
-            for (tet, found) in found.iter().enumerate() {
-                let places = [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0)];
-                for (place, found) in places.into_iter().zip(found) {
-                    assert!((stress[place] - found).abs() < 1e-10 * stress.norm());
-                }
-                assert_eq!(model.tet_stress(0.0, &u, tet).unwrap(), *found);
-            }
-        }
-    }
-}
-
-#[test]
-fn rigid_motions_take_no_force_and_the_matrix_is_symmetric() {
-    let mesh = uneven_cube();
-    for element in ELEMENTS {
-        let model = build(&mesh, &of(element, linear(3500.0, 0.49)));
-        let spin = Matrix3::new(0.0, 0.4, -0.3, -0.4, 0.0, 0.9, 0.3, -0.9, 0.0);
-        let u = on_cells(&model, |node| {
-            (spin * Vector3::from(mesh.points[node]) + Vector3::new(0.02, -0.01, 0.03)).into()
-        });
-        let stiff = max_abs(&stiffness_times(
-            &model,
-            &on_cells(&model, |n| [n as f64, 0.0, 0.0]),
-        ));
-        at_most(
-            "force of a rigid motion",
-            max_abs(&stiffness_times(&model, &u)) / stiff,
-            1e-13,
-        );
-        let stiffness = model.operators().stiffness();
-        for row in 0..stiffness.pattern().cells() {
-            for (column, block) in stiffness.row_blocks(row) {
-                let mirrored = stiffness.block(column, row).unwrap();
-                for k in 0..9 {
-                    let difference = block[k] - mirrored[3 * (k % 3) + k / 3];
-                    assert!(difference.abs() < 1e-12 * stiff);
-                }
-            }
-        }
-    }
 }
 
 /// The work of stresses on strains is twice the energy: what is shown as stress is what makes the forces.

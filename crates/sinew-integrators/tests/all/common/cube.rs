@@ -12,7 +12,7 @@ use sinew_fem::{Law, LoadKind, LoadSpec, Model, Problem, Rayleigh, SpringRule};
 use sinew_mesh::structured::{self, Split};
 
 use super::tissue::{body, held};
-use super::{build, relative_error, watch};
+use super::{build, watch};
 
 /// The time between two instants at which errors are taken [s].
 pub(crate) const INSTANT: f64 = 0.02;
@@ -102,9 +102,4 @@ pub(crate) fn run(
 pub(crate) fn reference() -> &'static [Vec<f64>] {
     static REFERENCE: OnceLock<Vec<Vec<f64>>> = OnceLock::new();
     REFERENCE.get_or_init(|| run(paper_cube(), &mut *build("rk4", &Options::new()), 20).0)
-}
-
-/// Error against the reference.
-pub(crate) fn error(instants: &[Vec<f64>]) -> f64 {
-    relative_error(instants, reference())
 }

@@ -14,7 +14,6 @@ pub(crate) mod methods;
 pub(crate) mod nonlinear;
 pub(crate) mod sliver;
 pub(crate) mod springs;
-pub(crate) mod taylor;
 pub(crate) mod tissue;
 
 use std::collections::BTreeMap;
@@ -95,21 +94,6 @@ pub(crate) fn watch(
 /// True if a run ended because displacements grew without bound.
 pub(crate) fn diverged(report: &RunReport) -> bool {
     matches!(report.outcome, Outcome::Diverged { .. })
-}
-
-/// Checks a figure against its digits as printed.
-#[track_caller]
-pub(crate) fn assert_prints(value: f64, printed: &str) {
-    let mantissa = printed.split('e').next().unwrap();
-    let decimals = mantissa
-        .split_once('.')
-        .map_or(0, |(_, digits)| digits.len());
-    let found = if printed.contains('e') {
-        format!("{value:.decimals$e}")
-    } else {
-        format!("{value:.decimals$}")
-    };
-    assert_eq!(found, printed, "{value:e}");
 }
 
 /// `||a - b|| / ||b||` over all entries.

@@ -11,6 +11,3 @@ mod moved_parts;
 mod moved_supports;
 #[cfg(feature = "implicit")]
 mod numerical_dissipation;
-mod paper_cube;
-mod paper_oscillator;
-mod reference_points;

@@ -1,0 +1,46 @@
+//! Reasons for which there is no figure.
+
+use std::error::Error;
+use std::fmt;
+
+/// A reason for which there is no figure: an error of what was called, or a sentence. Reasons are read, and nobody
+/// tells them apart.
+pub struct LabError(Box<dyn Error + Send + Sync>);
+
+impl LabError {
+    /// A sentence.
+    #[must_use]
+    pub fn new(reason: impl Into<String>) -> Self {
+        Self(reason.into().into())
+    }
+
+    /// An error whose kinds are not known here.
+    #[must_use]
+    pub fn boxed(error: Box<dyn Error + Send + Sync>) -> Self {
+        Self(error)
+    }
+
+    /// A scene or a system that lacks what is computed on.
+    #[must_use]
+    pub fn no_body() -> Self {
+        Self::new("the scene has no body")
+    }
+}
+
+impl<E: Error + Send + Sync + 'static> From<E> for LabError {
+    fn from(error: E) -> Self {
+        Self(Box::new(error))
+    }
+}
+
+impl fmt::Display for LabError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.fmt(f)
+    }
+}
+
+impl fmt::Debug for LabError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(&self.0, f)
+    }
+}
