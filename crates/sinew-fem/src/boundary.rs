@@ -13,6 +13,23 @@ pub struct Fixed {
     pub axes: [bool; 3],
 }
 
+impl Fixed {
+    /// A support of all components.
+    #[must_use]
+    pub fn at(on: impl Into<On>) -> Self {
+        Self {
+            on: on.into(),
+            axes: [true; 3],
+        }
+    }
+
+    /// The same support of some components: true for those of x, y and z that are held.
+    #[must_use]
+    pub fn along(self, axes: [bool; 3]) -> Self {
+        Self { axes, ..self }
+    }
+}
+
 /// A prescribed motion: components of displacement that follow a course. All nodes move alike; the
 /// displacement is the sum of the courses.
 #[derive(Clone, Debug, PartialEq)]
@@ -23,6 +40,24 @@ pub struct Moving {
     pub axes: [bool; 3],
     /// The courses; without one the components are held.
     pub courses: Vec<Course>,
+}
+
+impl Moving {
+    /// A motion of all components.
+    #[must_use]
+    pub fn new(on: impl Into<On>, courses: impl Into<Vec<Course>>) -> Self {
+        Self {
+            on: on.into(),
+            axes: [true; 3],
+            courses: courses.into(),
+        }
+    }
+
+    /// The same motion of some components: true for those of x, y and z that are prescribed.
+    #[must_use]
+    pub fn along(self, axes: [bool; 3]) -> Self {
+        Self { axes, ..self }
+    }
 }
 
 /// A displacement in one direction, times a factor over time.

@@ -22,6 +22,50 @@ pub struct Problem {
 }
 
 impl Problem {
+    /// A free body of these materials, without damping and loads.
+    #[must_use]
+    pub fn of(regions: impl IntoIterator<Item = Region>) -> Self {
+        Self {
+            regions: regions.into_iter().collect(),
+            ..Self::default()
+        }
+    }
+
+    /// The same body with a support more.
+    #[must_use]
+    pub fn with_fixed(mut self, fixed: Fixed) -> Self {
+        self.fixed.push(fixed);
+        self
+    }
+
+    /// The same body with a prescribed motion more.
+    #[must_use]
+    pub fn with_move(mut self, moving: Moving) -> Self {
+        self.moves.push(moving);
+        self
+    }
+
+    /// The same body with a load more.
+    #[must_use]
+    pub fn with_load(mut self, load: LoadSpec) -> Self {
+        self.loads.push(load);
+        self
+    }
+
+    /// The same body with other damping.
+    #[must_use]
+    pub fn with_damping(mut self, damping: Rayleigh) -> Self {
+        self.damping = damping;
+        self
+    }
+
+    /// The same body under gravity (m/s^2).
+    #[must_use]
+    pub fn with_gravity(mut self, acceleration: [f64; 3]) -> Self {
+        self.gravity = Some(acceleration);
+        self
+    }
+
     /// The element of each region.
     pub(crate) fn elements(&self) -> Vec<Element> {
         self.regions.iter().map(|region| region.element).collect()
@@ -45,6 +89,49 @@ pub struct Region {
     pub from_mesh: FromMesh,
 }
 
+impl Region {
+    /// The whole mesh of plain tetrahedra ([`Element::P1`]) of one material: its law and its density (kg/m^3).
+    #[must_use]
+    pub fn new(law: Law, density: f64) -> Self {
+        Self {
+            group: None,
+            density,
+            law,
+            element: Element::P1,
+            tissue: Tissue::default(),
+            from_mesh: FromMesh::default(),
+        }
+    }
+
+    /// The same material on a group of tetrahedra.
+    #[must_use]
+    pub fn on(mut self, group: impl Into<String>) -> Self {
+        self.group = Some(group.into());
+        self
+    }
+
+    /// The same region with another element.
+    #[must_use]
+    pub fn with_element(mut self, element: Element) -> Self {
+        self.element = element;
+        self
+    }
+
+    /// The same region with other additions to its law.
+    #[must_use]
+    pub fn with_tissue(mut self, tissue: Tissue) -> Self {
+        self.tissue = tissue;
+        self
+    }
+
+    /// The same region with properties from the mesh's data.
+    #[must_use]
+    pub fn with_from_mesh(mut self, from_mesh: FromMesh) -> Self {
+        self.from_mesh = from_mesh;
+        self
+    }
+}
+
 /// Rayleigh damping, `D = alpha M + beta K`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Rayleigh {
@@ -52,6 +139,14 @@ pub struct Rayleigh {
     pub mass: f64,
     /// beta (s).
     pub stiffness: f64,
+}
+
+impl Rayleigh {
+    /// Damping by alpha (1/s) and beta (s).
+    #[must_use]
+    pub const fn new(mass: f64, stiffness: f64) -> Self {
+        Self { mass, stiffness }
+    }
 }
 
 /// A load: a force on a part of the mesh with a factor over time.
@@ -63,6 +158,25 @@ pub struct LoadSpec {
     pub kind: LoadKind,
     /// Its factor over time.
     pub ramp: Ramp,
+}
+
+impl LoadSpec {
+    /// A load that acts in full from t = 0 on.
+    #[must_use]
+    pub fn new(on: impl Into<On>, kind: LoadKind) -> Self {
+        Self {
+            on: on.into(),
+            kind,
+            ramp: Ramp::Step,
+        }
+    }
+
+    /// The same load with another factor over time.
+    #[must_use]
+    pub fn with_ramp(mut self, ramp: Ramp) -> Self {
+        self.ramp = ramp;
+        self
+    }
 }
 
 /// A kind of load, with its size.
