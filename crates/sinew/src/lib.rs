@@ -9,19 +9,10 @@
 //! use sinew::prelude::*;
 //!
 //! let mesh = structured::cube(4, 0.1, Split::Kuhn)?;
-//! let model = Model::build(&mesh, &Problem {
-//!     regions: vec![Region {
-//!         group: None,
-//!         density: 1060.0,
-//!         law: Law::Linear { youngs_modulus: 3500.0, poissons_ratio: 0.45 },
-//!         element: Element::P1,
-//!         tissue: Tissue::default(),
-//!         from_mesh: FromMesh::default(),
-//!     }],
-//!     fixed: vec![Fixed { on: "bottom".into(), axes: [true; 3] }],
-//!     gravity: Some([0.0, 0.0, -9.81]),
-//!     ..Problem::default()
-//! })?;
+//! let problem = Problem::of([Region::new(Law::linear(3500.0, 0.45), 1060.0)])
+//!     .with_fixed(Fixed::at("bottom"))
+//!     .with_gravity([0.0, 0.0, -9.81]);
+//! let model = Model::build(&mesh, &problem)?;
 //! let mut integrator = sinew::integrators::build("central-difference", &Options::new())?;
 //! let StableStep::UpTo(limit) = integrator.stable_step(&model)? else { unreachable!() };
 //! let mut state = State::at_rest(model.dofs());

@@ -23,10 +23,7 @@ use std::error::Error;
 use std::time::{Duration, Instant};
 
 use sinew_core::{Inputs, LoadTime, Options, State, System, worst_beyond};
-use sinew_fem::{
-    Element, Fixed, FromMesh, Law, Model, NodalForces, On, Problem, Rayleigh, Region, Tissue,
-    stress::von_mises,
-};
+use sinew_fem::{Fixed, Law, Model, NodalForces, On, Problem, Rayleigh, Region, stress::von_mises};
 use sinew_integrators::{Stepper, build};
 use sinew_mesh::structured::{Split, block};
 
@@ -44,30 +41,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     let floor: Vec<u32> = floor.collect();
     let (touched, _) = mesh.nearest_node([SIZE[0] / 2.0, SIZE[1] / 2.0, SIZE[2]]);
 
-    let law = Law::Linear {
-        youngs_modulus: 10e3, // Pa
-        poissons_ratio: 0.4,
-    };
-    let density = 1060.0; // kg/m3
-    let problem = Problem {
-        regions: vec![Region {
-            group: None,
-            density,
-            law,
-            element: Element::P1,
-            tissue: Tissue::default(),
-            from_mesh: FromMesh::default(),
-        }],
-        damping: Rayleigh {
-            mass: 40.0,
-            stiffness: 0.0,
-        },
-        fixed: vec![Fixed {
-            on: On::Nodes(floor.clone()),
-            axes: [true; 3],
-        }],
-        ..Problem::default()
-    };
+    let law = Law::linear(10e3, 0.4); // Young's modulus (Pa), Poisson's ratio
+    let problem = Problem::of([Region::new(law, 1060.0)]) // kg/m3
+        .with_damping(Rayleigh::new(40.0, 0.0))
+        .with_fixed(Fixed::at(On::Nodes(floor.clone())));
     let model = Model::build(&mesh, &problem)?;
     let mut method = central_difference()?;
     let mut state = State::at_rest(model.dofs());
