@@ -5,8 +5,7 @@ use std::f64::consts::{PI, TAU};
 use sinew_core::{Integrator, LinearSystem, Ramp, State, StepError, StepReport, System};
 use sinew_fem::hyperelastic::{Hyperelastic, Parameters};
 use sinew_fem::{
-    Element, FemError, Fixed, FromMesh, Law, LoadKind, LoadSpec, Model, On, Problem, Rayleigh,
-    Region, Tissue,
+    Element, FemError, Fixed, Law, LoadKind, LoadSpec, Model, On, Problem, Rayleigh, Region,
 };
 use sinew_integrators::explicit::PatchedCentralDifference;
 use sinew_integrators::{Frame, StaticError, static_solution_under};
@@ -42,7 +41,7 @@ pub enum TissueError {
 pub(crate) fn law(id: &'static str, youngs_modulus: f64, poissons_ratio: f64) -> Law {
     let parameters = Hyperelastic::parameters(id, youngs_modulus, poissons_ratio);
     let parameters = parameters.unwrap_or_else(|_| Parameters::new(youngs_modulus, poissons_ratio));
-    Law::Hyperelastic { id, parameters }
+    Law::hyperelastic(id, parameters)
 }
 
 /// The law of most blocks: `neo-hookean`, E = 3500 Pa, nu = .45.
@@ -52,36 +51,20 @@ pub(crate) fn soft() -> Law {
 
 /// A free body of one material.
 pub(crate) fn free(law: Law, element: Element) -> Problem {
-    Problem {
-        regions: vec![Region {
-            group: None,
-            density: DENSITY,
-            law,
-            element,
-            tissue: Tissue::default(),
-            from_mesh: FromMesh::default(),
-        }],
-        ..Problem::default()
-    }
+    Problem::of([Region::new(law, DENSITY).with_element(element)])
 }
 
 /// A body whose bottom is held.
 pub(crate) fn standing(law: Law, element: Element) -> Problem {
     Problem {
-        fixed: vec![Fixed {
-            on: "bottom".into(),
-            axes: [true; 3],
-        }],
+        fixed: vec![Fixed::at("bottom")],
         ..free(law, element)
     }
 }
 
 /// Damping in proportion to the masses (1/s).
 pub(crate) fn of_mass(mass: f64) -> Rayleigh {
-    Rayleigh {
-        mass,
-        stiffness: 0.0,
-    }
+    Rayleigh::new(mass, 0.0)
 }
 
 /// A body with the state that it starts from.
@@ -222,11 +205,8 @@ fn trapezoid(mesh: &TetMesh, cells: usize, force: f64, ramp: &Ramp) -> Vec<LoadS
             .map(|(node, _)| node)
             .collect();
         let share = nodes.len() as f64 * 0.5_f64.powi(rim as i32) / (cells * cells) as f64;
-        LoadSpec {
-            on: On::Nodes(nodes),
-            kind: LoadKind::Force([0.0, 0.0, share * force]),
-            ramp: ramp.clone(),
-        }
+        LoadSpec::new(On::Nodes(nodes), LoadKind::Force([0.0, 0.0, share * force]))
+            .with_ramp(ramp.clone())
     };
     (0..3).map(of_rims).collect()
 }

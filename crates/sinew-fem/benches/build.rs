@@ -17,10 +17,8 @@ use std::alloc::{GlobalAlloc, Layout, System as SystemAllocator};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
-use sinew_core::{Ramp, System};
-use sinew_fem::{
-    Element, Fixed, FromMesh, Law, LoadKind, LoadSpec, Model, Problem, Region, SpringRule, Tissue,
-};
+use sinew_core::System;
+use sinew_fem::{Fixed, Law, LoadKind, LoadSpec, Model, Problem, Region, SpringRule};
 use sinew_mesh::TetMesh;
 use sinew_mesh::structured::{Split, cube};
 
@@ -82,10 +80,7 @@ fn main() {
     let seconds = (cpu_time() - before).as_secs_f64();
     let (nodes, tets) = (mesh.points.len(), mesh.tets.len());
     println!("{tets} tetrahedra, {nodes} nodes; the mesh itself took {seconds:.3} s of CPU");
-    let linear = Law::Linear {
-        youngs_modulus: 3500.0,
-        poissons_ratio: 0.45,
-    };
+    let linear = Law::linear(3500.0, 0.45);
     let springs = |rule, damping_ratio| Law::Springs {
         youngs_modulus: 3500.0,
         rule,
@@ -109,26 +104,9 @@ fn main() {
 
 /// A cube on its bottom, pressed from above.
 fn problem(law: Law) -> Problem {
-    Problem {
-        regions: vec![Region {
-            group: None,
-            density: 1060.0,
-            law,
-            element: Element::P1,
-            tissue: Tissue::default(),
-            from_mesh: FromMesh::default(),
-        }],
-        fixed: vec![Fixed {
-            on: "bottom".into(),
-            axes: [true; 3],
-        }],
-        loads: vec![LoadSpec {
-            on: "top".into(),
-            kind: LoadKind::Pressure(100.0),
-            ramp: Ramp::Step,
-        }],
-        ..Problem::default()
-    }
+    Problem::of([Region::new(law, 1060.0)])
+        .with_fixed(Fixed::at("bottom"))
+        .with_load(LoadSpec::new("top", LoadKind::Pressure(100.0)))
 }
 
 fn measure(name: &str, mesh: &TetMesh, problem: &Problem, repeats: usize) {

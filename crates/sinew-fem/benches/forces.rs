@@ -14,7 +14,7 @@ use std::time::{Duration, Instant};
 
 use sinew_core::{ElasticLaw, ForceLaw, LoadTime, System, Trial};
 use sinew_fem::hyperelastic::Parameters;
-use sinew_fem::{Element, FromMesh, Law, Model, Problem, Region, Tissue};
+use sinew_fem::{Element, Law, Model, Problem, Region};
 use sinew_mesh::TetMesh;
 use sinew_mesh::structured::{Split, cube};
 
@@ -53,20 +53,11 @@ fn main() {
 }
 
 fn problem(law: &'static str, element: Element) -> Problem {
-    Problem {
-        regions: vec![Region {
-            group: None,
-            density: 1060.0,
-            law: Law::Hyperelastic {
-                id: law,
-                parameters: Parameters::new(3500.0, 0.45),
-            },
-            element,
-            tissue: Tissue::default(),
-            from_mesh: FromMesh::default(),
-        }],
-        ..Problem::default()
-    }
+    Problem::of([Region::new(
+        Law::hyperelastic(law, Parameters::new(3500.0, 0.45)),
+        1060.0,
+    )
+    .with_element(element)])
 }
 
 fn measure(name: &str, mesh: &TetMesh, problem: &Problem, time: Duration) {

@@ -481,10 +481,9 @@ impl CutModel {
         let frozen = nodes.filter_map(|(node, of_body)| Some((node, *self.frozen.get(of_body)?)));
         let frozen: Vec<(u32, [f64; 3])> = frozen.collect();
         if !frozen.is_empty() {
-            problem.fixed.push(Fixed {
-                on: On::Nodes(frozen.iter().map(|(node, _)| *node).collect()),
-                axes: [true; 3],
-            });
+            problem.fixed.push(Fixed::at(On::Nodes(
+                frozen.iter().map(|(node, _)| *node).collect(),
+            )));
         }
         let built = Model::build_after_cuts(&mesh.mesh, &problem, &frozen);
         let model = built.map_err(|error| match error.cause() {

@@ -11,7 +11,7 @@ use std::time::Instant;
 
 use sinew_cnn::{LoadAt, Machine, Physics, Program, Register};
 use sinew_core::{Batch, ElementPrecision, Inputs, LinearSystem, State, System, VelocityTime};
-use sinew_fem::{Element, Fixed, FromMesh, Law, Model, Problem, Region, Tissue};
+use sinew_fem::{Fixed, Law, Model, Problem, Region};
 use sinew_machines::{FastMachine, Layout};
 use sinew_mesh::structured::{Split, cube};
 
@@ -59,23 +59,7 @@ fn step(machine: &mut dyn Machine, model: &Model, steps: usize) -> f64 {
 }
 
 fn held_cube(cells: usize) -> Model {
-    let problem = Problem {
-        regions: vec![Region {
-            group: None,
-            density: 1060.0,
-            law: Law::Linear {
-                youngs_modulus: 3500.0,
-                poissons_ratio: 0.45,
-            },
-            element: Element::P1,
-            tissue: Tissue::default(),
-            from_mesh: FromMesh::default(),
-        }],
-        fixed: vec![Fixed {
-            on: "sides".into(),
-            axes: [true; 3],
-        }],
-        ..Problem::default()
-    };
+    let problem = Problem::of([Region::new(Law::linear(3500.0, 0.45), 1060.0)])
+        .with_fixed(Fixed::at("sides"));
     Model::build(&cube(cells, 0.1, Split::Kuhn).unwrap(), &problem).unwrap()
 }

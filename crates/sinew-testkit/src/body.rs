@@ -7,8 +7,7 @@ use proptest::prelude::*;
 use sinew_core::spectrum::Spectrum;
 use sinew_core::{LinearSystem, Ramp, State};
 use sinew_fem::{
-    Element, Fixed, FromMesh, Item, Law, LoadKind, LoadSpec, Model, Problem, Rayleigh, Region,
-    SpringRule, Tissue,
+    Fixed, Item, Law, LoadKind, LoadSpec, Model, Problem, Rayleigh, Region, SpringRule,
 };
 use sinew_mesh::structured::{self, Split};
 use sinew_mesh::{Group, GroupMembers, TetMesh};
@@ -63,10 +62,7 @@ impl Body {
 
     /// The same body held at its bottom and nowhere else, with what loads still act.
     pub fn on_the_ground(mut self) -> Self {
-        self.problem.fixed = vec![Fixed {
-            on: "bottom".into(),
-            axes: [true; 3],
-        }];
+        self.problem.fixed = vec![Fixed::at("bottom")];
         self.without_what_cannot_be()
     }
 
@@ -263,10 +259,8 @@ fn modulus() -> impl Strategy<Value = f64> {
 }
 
 fn laws() -> impl Strategy<Value = Law> {
-    let linear = (modulus(), -0.5..0.49).prop_map(|(youngs_modulus, poissons_ratio)| Law::Linear {
-        youngs_modulus,
-        poissons_ratio,
-    });
+    let linear = (modulus(), -0.5..0.49)
+        .prop_map(|(youngs_modulus, poissons_ratio)| Law::linear(youngs_modulus, poissons_ratio));
     let rule = prop_oneof![Just(SpringRule::Lloyd), Just(SpringRule::VanGelder)];
     let dashpots = prop_oneof![Just(0.0), 0.01..1.0];
     let springs = (modulus(), rule, any::<bool>(), dashpots).prop_map(
@@ -284,11 +278,7 @@ fn laws() -> impl Strategy<Value = Law> {
 fn regions(tets: usize) -> impl Strategy<Value = (Vec<Region>, Vec<Group>)> {
     let region = |group: Option<&str>, density, law| Region {
         group: group.map(Into::into),
-        density,
-        law,
-        element: Element::P1,
-        tissue: Tissue::default(),
-        from_mesh: FromMesh::default(),
+        ..Region::new(law, density)
     };
     let one = (500.0..2000.0, laws())
         .prop_map(move |(density, law)| (vec![region(None, density, law)], vec![]));
@@ -324,10 +314,7 @@ fn supports(nodes: usize) -> impl Strategy<Value = (Vec<Fixed>, Group)> {
         uniform3(any::<bool>()).prop_filter("holds something", |axes| axes.contains(&true)),
     ];
     let some = prop_oneof![Just("pins"), Just("bottom"), Just("top"), Just("sides")];
-    let support = (some, axes).prop_map(|(group, axes)| Fixed {
-        on: group.into(),
-        axes,
-    });
+    let support = (some, axes).prop_map(|(group, axes)| Fixed::at(group).along(axes));
     (vec(support, 0..3), orders(nodes), 1..=nodes.div_ceil(3)).prop_map(
         |(supports, order, count)| {
             let mut members = order[..count].to_vec();
@@ -346,7 +333,7 @@ fn supports(nodes: usize) -> impl Strategy<Value = (Vec<Fixed>, Group)> {
 fn problems(block: &TetMesh) -> impl Strategy<Value = (Problem, Vec<Group>)> + use<> {
     let rate = prop_oneof![Just(0.0), 0.1..100.0];
     let time = prop_oneof![Just(0.0), 1e-5..1e-2];
-    let damping = (rate, time).prop_map(|(mass, stiffness)| Rayleigh { mass, stiffness });
+    let damping = (rate, time).prop_map(|(mass, stiffness)| Rayleigh::new(mass, stiffness));
     let loads = (direction(), direction());
     let parts = (
         regions(block.tets.len()),
@@ -362,11 +349,10 @@ fn problems(block: &TetMesh) -> impl Strategy<Value = (Problem, Vec<Group>)> + u
                 damping,
                 fixed,
                 moves: Vec::new(),
-                loads: vec![LoadSpec {
-                    on: "top".into(),
-                    kind: LoadKind::Traction(traction.map(|part| 100.0 * part)),
-                    ramp: Ramp::Sin2 { rise: 0.5 },
-                }],
+                loads: vec![
+                    LoadSpec::new("top", LoadKind::Traction(traction.map(|part| 100.0 * part)))
+                        .with_ramp(Ramp::Sin2 { rise: 0.5 }),
+                ],
                 gravity: Some(gravity.map(|part| 10.0 * part)),
             };
             (problem, groups)

@@ -15,7 +15,7 @@ use std::time::{Duration, Instant};
 
 use sinew_core::{Batch, Inputs, Integrator, Options, State, System};
 use sinew_fem::hyperelastic::Parameters;
-use sinew_fem::{Element, Fixed, FromMesh, Law, Model, Problem, Region, Tissue};
+use sinew_fem::{Fixed, Law, Model, Problem, Region};
 use sinew_mesh::structured::{Split, cube};
 use sinew_tools::{Convex, Motion, Row, Shape, Table, Tool, Tools, TouchedCell};
 
@@ -53,14 +53,8 @@ fn main() {
 }
 
 fn laws() -> [(&'static str, Law); 2] {
-    let linear = Law::Linear {
-        youngs_modulus: 3500.0,
-        poissons_ratio: 0.45,
-    };
-    let large = Law::Hyperelastic {
-        id: "neo-hookean",
-        parameters: Parameters::new(3500.0, 0.45),
-    };
+    let linear = Law::linear(3500.0, 0.45);
+    let large = Law::hyperelastic("neo-hookean", Parameters::new(3500.0, 0.45));
     [("linear", linear), ("neo-hookean", large)]
 }
 
@@ -78,21 +72,7 @@ impl Lap {
     /// A cube, and a ball of 12 mm whose centre is so high above its bottom.
     fn new(cells: usize, law: Law, height: Option<f64>) -> Self {
         let mesh = cube(cells, EDGE, Split::Kuhn).expect("the mesh is small enough");
-        let problem = Problem {
-            regions: vec![Region {
-                group: None,
-                density: 1060.0,
-                law,
-                element: Element::P1,
-                tissue: Tissue::default(),
-                from_mesh: FromMesh::default(),
-            }],
-            fixed: vec![Fixed {
-                on: "bottom".into(),
-                axes: [true; 3],
-            }],
-            ..Problem::default()
-        };
+        let problem = Problem::of([Region::new(law, 1060.0)]).with_fixed(Fixed::at("bottom"));
         let mut model = Model::build(&mesh, &problem).expect("it can be built");
         let is_outside = |point: &[f64; 3]| point.iter().any(|x| *x < 1e-9 || *x > EDGE - 1e-9);
         let cells = (0..).zip(model.nodes());

@@ -1,9 +1,7 @@
 //! Bodies of one material, and their equilibria.
 
-use sinew_core::{LinearSystem, LoadTime, Ramp, System};
-use sinew_fem::{
-    Element, Fixed, FromMesh, Law, LoadKind, LoadSpec, Model, On, Problem, Region, Tissue,
-};
+use sinew_core::{LinearSystem, LoadTime, System};
+use sinew_fem::{Element, Fixed, Law, LoadKind, LoadSpec, Model, On, Problem, Region};
 use sinew_integrators::static_solution;
 
 use super::error::VerifyError;
@@ -16,38 +14,18 @@ pub(crate) const YOUNGS_MODULUS: f64 = 3500.0;
 
 /// A free body of one linear material.
 pub(crate) fn body(youngs_modulus: f64, poissons_ratio: f64, element: Element) -> Problem {
-    let law = Law::Linear {
-        youngs_modulus,
-        poissons_ratio,
-    };
-    Problem {
-        regions: vec![Region {
-            group: None,
-            density: DENSITY,
-            law,
-            element,
-            tissue: Tissue::default(),
-            from_mesh: FromMesh::default(),
-        }],
-        ..Problem::default()
-    }
+    let law = Law::linear(youngs_modulus, poissons_ratio);
+    Problem::of([Region::new(law, DENSITY).with_element(element)])
 }
 
 /// A support that holds components of displacement.
 pub(crate) fn held(on: impl Into<On>, axes: [bool; 3]) -> Fixed {
-    Fixed {
-        on: on.into(),
-        axes,
-    }
+    Fixed::at(on).along(axes)
 }
 
 /// A load from t = 0 on.
 pub(crate) fn load(on: impl Into<On>, kind: LoadKind) -> LoadSpec {
-    LoadSpec {
-        on: on.into(),
-        kind,
-        ramp: Ramp::Step,
-    }
+    LoadSpec::new(on, kind)
 }
 
 /// The loads of a model (N).

@@ -6,7 +6,7 @@ use proptest::prelude::*;
 use sinew_cnn::{Blend, DampingShare, GammaRule, Inner, Majorant, Stabiliser};
 use sinew_core::spectrum::critical_step;
 use sinew_core::{LinearOperators, LinearSystem, System};
-use sinew_fem::{Element, Fixed, FromMesh, Law, Model, Problem, Region, SpringRule, Tissue};
+use sinew_fem::{Fixed, Law, Model, Problem, Region, SpringRule};
 use sinew_mesh::structured::{self, Split};
 use sinew_testkit::body::{Body, bodies_up_to};
 use sinew_testkit::dense::{dense, dense_damping};
@@ -322,7 +322,7 @@ proptest! {
     ) {
         let mut body = body;
         for region in &mut body.problem.regions {
-            region.law = Law::Linear { youngs_modulus: 3500.0, poissons_ratio };
+            region.law = Law::linear(3500.0, poissons_ratio);
         }
         let k = stiffness(body.model().operators());
         let least = extremes(&(blockdiag(&k) * 4.0 - &k)).0;
@@ -363,21 +363,8 @@ proptest! {
 
 fn cube(cells: usize, law: Law, axes: [bool; 3]) -> Model {
     let mesh = structured::cube(cells, 0.1, Split::Kuhn).unwrap();
-    let problem = Problem {
-        regions: vec![Region {
-            group: None,
-            density: 1060.0,
-            law,
-            element: Element::P1,
-            tissue: Tissue::default(),
-            from_mesh: FromMesh::default(),
-        }],
-        fixed: vec![Fixed {
-            on: "sides".into(),
-            axes,
-        }],
-        ..Problem::default()
-    };
+    let problem =
+        Problem::of([Region::new(law, 1060.0)]).with_fixed(Fixed::at("sides").along(axes));
     Model::build(&mesh, &problem).unwrap()
 }
 
@@ -392,10 +379,7 @@ fn springs(rule: SpringRule) -> Law {
 
 #[test]
 fn gamma_of_the_paper_s_cube() {
-    let linear = |poissons_ratio| Law::Linear {
-        youngs_modulus: 3500.0,
-        poissons_ratio,
-    };
+    let linear = |poissons_ratio| Law::linear(3500.0, poissons_ratio);
     for (law, expected) in [
         (springs(SpringRule::Lloyd), 1.974),
         (springs(SpringRule::VanGelder), 1.984),

@@ -8,7 +8,7 @@ use sinew_core::{
     BlockMatrix, Damping, Layers, LinearModel, LinearOperators, LinearSystem, LoadTime, Pattern,
     State, System,
 };
-use sinew_fem::{Element, Fixed, FromMesh, Law, Model, Problem, Region, Tissue};
+use sinew_fem::{Fixed, Law, Model, Problem, Region};
 use sinew_mesh::structured::{self, Split};
 use sinew_testkit::body::bodies;
 use sinew_testkit::dense::{ROUNDING, dense, dense_damping, row_product};
@@ -165,24 +165,8 @@ fn a_node_of_no_tetrahedron_is_refused_by_its_tag() {
     let mut mesh = structured::cube(1, 0.1, Split::Kuhn).unwrap();
     mesh.points.push([1.0; 3]);
     mesh.node_tags.push(77);
-    let problem = Problem {
-        regions: vec![Region {
-            group: None,
-            density: 1000.0,
-            law: Law::Linear {
-                youngs_modulus: 1000.0,
-                poissons_ratio: 0.3,
-            },
-            element: Element::P1,
-            tissue: Tissue::default(),
-            from_mesh: FromMesh::default(),
-        }],
-        fixed: vec![Fixed {
-            on: "bottom".into(),
-            axes: [true; 3],
-        }],
-        ..Problem::default()
-    };
+    let problem = Problem::of([Region::new(Law::linear(1000.0, 0.3), 1000.0)])
+        .with_fixed(Fixed::at("bottom"));
     let model = Model::build(&mesh, &problem).unwrap();
     assert_eq!(
         Templates::new(&model).unwrap_err().to_string(),

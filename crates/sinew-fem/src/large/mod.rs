@@ -312,9 +312,7 @@ mod tests {
     use crate::hyperelastic::fibres::{Fibres, Stiffening};
     use crate::hyperelastic::prony::Term;
     use crate::shares::Shares;
-    use crate::{
-        Element, FibreFamily, FromMesh, Law, Memory, Moduli, Problem, Region, Tissue, ViscousPart,
-    };
+    use crate::{Element, FibreFamily, Law, Memory, Moduli, Problem, Region, Tissue, ViscousPart};
     use sinew_mesh::structured::{Split, cube};
     use sinew_sparse::simd::SharedSlice;
 
@@ -372,17 +370,9 @@ mod tests {
     ) -> LargeDeformation {
         let parameters = Hyperelastic::parameters(id, 3500.0, 0.45).unwrap();
         let law = Hyperelastic::new(id, &parameters).unwrap();
-        let problem = Problem {
-            regions: vec![Region {
-                group: None,
-                density: 1060.0,
-                law: Law::Hyperelastic { id, parameters },
-                element,
-                tissue: tissue.clone(),
-                from_mesh: FromMesh::default(),
-            }],
-            ..Problem::default()
-        };
+        let problem = Problem::of([Region::new(Law::hyperelastic(id, parameters), 1060.0)
+            .with_element(element)
+            .with_tissue(tissue.clone())]);
         let smoothing = Smoothing::new(mesh, &problem.elements(), &vec![0; mesh.tets.len()]);
         let tets: Vec<u32> = (0..mesh.tets.len() as u32).collect();
         let uneven = || (0..mesh.tets.len()).map(|tet| (tet as f64 * 1.7).sin());

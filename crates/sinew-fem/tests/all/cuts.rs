@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::common::{at_most, body, figure, linear, springs};
 use sinew_core::spectrum::{largest_eigenvalue, largest_eigenvalue_of_pencil};
-use sinew_core::{Inputs, LinearSystem, Ramp, State, System};
+use sinew_core::{Inputs, LinearSystem, State, System};
 use sinew_cutting::Sheet;
 use sinew_fem::{
     CutModel, CutModelError, Element, Fixed, LoadKind, LoadSpec, Model, On, Problem, SpringRule,
@@ -18,10 +18,7 @@ fn cube(cells: usize) -> Arc<TetMesh> {
 
 fn held(problem: Problem) -> Problem {
     Problem {
-        fixed: vec![Fixed {
-            on: "bottom".into(),
-            axes: [true; 3],
-        }],
+        fixed: vec![Fixed::at("bottom")],
         ..problem
     }
 }
@@ -197,11 +194,7 @@ fn a_split_keeps_mass_momentum_and_energy() {
 #[test]
 fn supports_hold_copies_tractions_follow_triangles_and_forces_stay_with_their_nodes() {
     let mesh = cube(4);
-    let load = |on: On, kind| LoadSpec {
-        on,
-        kind,
-        ramp: Ramp::Step,
-    };
+    let load = |on: On, kind| LoadSpec::new(on, kind);
     let problem = Problem {
         loads: vec![
             load("top".into(), LoadKind::Traction([1.0, 0.0, -5.0])),

@@ -5,28 +5,11 @@ use std::sync::Arc;
 use crate::common::{advance, build};
 use sinew_core::{Inputs, Options, State, System};
 use sinew_cutting::Sheet;
-use sinew_fem::{CutModel, Element, Fixed, FromMesh, Law, Model, Problem, Region, Tissue};
+use sinew_fem::{CutModel, Fixed, Law, Model, Problem, Region};
 use sinew_mesh::structured::{self, Split};
 
 fn problem() -> Problem {
-    Problem {
-        regions: vec![Region {
-            group: None,
-            density: 1060.0,
-            law: Law::Linear {
-                youngs_modulus: 3500.0,
-                poissons_ratio: 0.45,
-            },
-            element: Element::P1,
-            tissue: Tissue::default(),
-            from_mesh: FromMesh::default(),
-        }],
-        fixed: vec![Fixed {
-            on: "bottom".into(),
-            axes: [true; 3],
-        }],
-        ..Problem::default()
-    }
+    Problem::of([Region::new(Law::linear(3500.0, 0.45), 1060.0)]).with_fixed(Fixed::at("bottom"))
 }
 
 fn cube(cells: usize) -> CutModel {

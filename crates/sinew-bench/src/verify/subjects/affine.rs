@@ -107,14 +107,16 @@ fn confined_compression(mesh: &TetMesh, kind: Kind) -> Result<f64, VerifyError> 
         .fixed
         .push(held(On::Nodes(face(2, low[2])), [false, false, true]));
     let top = On::Nodes(face(2, high[2]));
-    problem.moves.push(Moving {
-        on: top.clone(),
-        axes: [false, false, true],
-        courses: vec![Course {
-            displacement: [0.0, 0.0, STRAIN * (high[2] - low[2])],
-            ramp: sinew_core::Ramp::Step,
-        }],
-    });
+    problem.moves.push(
+        Moving::new(
+            top.clone(),
+            [Course::new(
+                [0.0, 0.0, STRAIN * (high[2] - low[2])],
+                sinew_core::Ramp::Step,
+            )],
+        )
+        .along([false, false, true]),
+    );
     let model = Model::build(mesh, &problem)?;
     let u = equilibrium(&model)?;
     let at_rest = vec![0.0; u.len()];

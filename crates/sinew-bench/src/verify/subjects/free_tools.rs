@@ -93,10 +93,7 @@ pub(super) fn checks() -> Vec<Check> {
 
 fn cube(damping: f64) -> Problem {
     Problem {
-        damping: Rayleigh {
-            mass: damping,
-            stiffness: 0.0,
-        },
+        damping: Rayleigh::new(damping, 0.0),
         fixed: vec![held("bottom", [true; 3])],
         ..body(YOUNGS_MODULUS, 0.3, Element::P1)
     }

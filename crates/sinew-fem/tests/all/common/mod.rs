@@ -1,9 +1,7 @@
 //! Shared by the verification tests: small models, static solutions, and figures beside their references.
 
-use sinew_core::{ElasticLaw, LinearSystem, LoadTime, Ramp, System, TangentKind, Trial};
-use sinew_fem::{
-    Element, Fixed, FromMesh, Law, LoadKind, LoadSpec, Model, Problem, Region, SpringRule, Tissue,
-};
+use sinew_core::{ElasticLaw, LinearSystem, LoadTime, System, TangentKind, Trial};
+use sinew_fem::{Element, Fixed, Law, LoadKind, LoadSpec, Model, Problem, Region, SpringRule};
 use sinew_mesh::structured::{self, Split};
 use sinew_mesh::{Group, GroupMembers, TetMesh};
 
@@ -29,10 +27,7 @@ pub(crate) fn at_most(name: &str, error: f64, limit: f64) {
 }
 
 pub(crate) fn linear(youngs_modulus: f64, poissons_ratio: f64) -> Law {
-    Law::Linear {
-        youngs_modulus,
-        poissons_ratio,
-    }
+    Law::linear(youngs_modulus, poissons_ratio)
 }
 
 /// Undamped springs.
@@ -47,17 +42,7 @@ pub(crate) fn springs(youngs_modulus: f64, rule: SpringRule, calibrate: bool) ->
 
 /// A free body of one material.
 pub(crate) fn body(law: Law) -> Problem {
-    Problem {
-        regions: vec![Region {
-            group: None,
-            density: DENSITY,
-            law,
-            element: Element::P1,
-            tissue: Tissue::default(),
-            from_mesh: FromMesh::default(),
-        }],
-        ..Problem::default()
-    }
+    Problem::of([Region::new(law, DENSITY)])
 }
 
 pub(crate) fn held(group: &str) -> Fixed {
@@ -65,18 +50,11 @@ pub(crate) fn held(group: &str) -> Fixed {
 }
 
 pub(crate) fn held_along(group: &str, axes: [bool; 3]) -> Fixed {
-    Fixed {
-        on: group.into(),
-        axes,
-    }
+    Fixed::at(group).along(axes)
 }
 
 pub(crate) fn load(group: &str, kind: LoadKind) -> LoadSpec {
-    LoadSpec {
-        on: group.into(),
-        kind,
-        ramp: Ramp::Step,
-    }
+    LoadSpec::new(group, kind)
 }
 
 pub(crate) fn build(mesh: &TetMesh, problem: &Problem) -> Model {

@@ -6,9 +6,7 @@ use crate::common::{
 };
 use nalgebra::{Matrix3, Vector3};
 use sinew_core::{ElementStiffness, Elements, LinearSystem, System};
-use sinew_fem::{
-    Cause, Element, FromMesh, Law, LoadKind, Model, Problem, Region, SpringRule, Tissue,
-};
+use sinew_fem::{Cause, Element, Law, LoadKind, Model, Problem, Region, SpringRule};
 use sinew_mesh::structured::{self, Split};
 use sinew_mesh::{Group, GroupMembers, TetMesh};
 
@@ -230,39 +228,24 @@ fn regions_of_different_elements_share_nodes_and_nothing_else() {
             members: GroupMembers::Tets(tets),
         });
     }
-    let region = |group: &str, element, stiff| Region {
-        group: Some(group.into()),
-        density: 1060.0,
-        law: linear(if stiff { 3500.0 } else { 3500e-20 }, 0.45),
-        element,
-        tissue: Tissue::default(),
-        from_mesh: FromMesh::default(),
+    let region = |group: &str, element, stiff| {
+        Region::new(linear(if stiff { 3500.0 } else { 3500e-20 }, 0.45), 1060.0)
+            .on(group)
+            .with_element(element)
     };
     let model = |low_is_stiff| {
         let regions = vec![
             region("low", Element::Fbar { patch: None }, low_is_stiff),
             region("high", edges(0.9, None), !low_is_stiff),
         ];
-        build(
-            &mesh,
-            &Problem {
-                regions,
-                ..Problem::default()
-            },
-        )
+        build(&mesh, &Problem::of(regions))
     };
     let both = {
         let regions = vec![
             region("low", Element::Fbar { patch: None }, true),
             region("high", edges(0.9, None), true),
         ];
-        build(
-            &mesh,
-            &Problem {
-                regions,
-                ..Problem::default()
-            },
-        )
+        build(&mesh, &Problem::of(regions))
     };
     let x: Vec<f64> = (0..both.dofs()).map(|i| (1.3 * i as f64).cos()).collect();
     let sum: Vec<f64> = stiffness_times(&model(true), &x)

@@ -7,9 +7,7 @@ use crate::common::{
 use nalgebra::{Matrix3, Vector3};
 use sinew_core::System;
 use sinew_fem::stress::von_mises;
-use sinew_fem::{
-    Element, FieldError, FromMesh, LoadKind, Model, Problem, Region, SpringRule, Tissue,
-};
+use sinew_fem::{FieldError, LoadKind, Model, Problem, Region, SpringRule};
 use sinew_mesh::structured::{self, Split};
 use sinew_mesh::{Group, GroupMembers, TetMesh};
 
@@ -153,21 +151,11 @@ fn half_springs() -> (TetMesh, Model) {
             members: GroupMembers::Tets(members),
         });
     }
-    let region = |group: &str, law| Region {
-        group: Some(group.into()),
-        density: 1000.0,
-        law,
-        element: Element::P1,
-        tissue: Tissue::default(),
-        from_mesh: FromMesh::default(),
-    };
-    let problem = Problem {
-        regions: vec![
-            region("high", linear(YOUNGS_MODULUS, 0.3)),
-            region("low", springs(YOUNGS_MODULUS, SpringRule::Lloyd, true)),
-        ],
-        ..Problem::default()
-    };
+    let region = |group: &str, law| Region::new(law, 1000.0).on(group);
+    let problem = Problem::of([
+        region("high", linear(YOUNGS_MODULUS, 0.3)),
+        region("low", springs(YOUNGS_MODULUS, SpringRule::Lloyd, true)),
+    ]);
     let model = build(&mesh, &problem);
     (mesh, model)
 }

@@ -4,26 +4,13 @@ use crate::common::{DENSITY, at_most, linear, springs};
 use sinew_core::{
     ElementStiffness, Elements, LinearSystem, System, element_omegas_squared, spectrum,
 };
-use sinew_fem::{Element, Fixed, FromMesh, Law, Model, Problem, Region, SpringRule, Tissue};
+use sinew_fem::{Fixed, Law, Model, Problem, Region, SpringRule};
 use sinew_mesh::structured::{self, Split};
 
 fn model(law: Law, axes: [bool; 3]) -> Model {
     let mesh = structured::cube(3, 0.1, Split::Kuhn).unwrap();
-    let problem = Problem {
-        regions: vec![Region {
-            group: None,
-            density: DENSITY,
-            law,
-            element: Element::P1,
-            tissue: Tissue::default(),
-            from_mesh: FromMesh::default(),
-        }],
-        fixed: vec![Fixed {
-            on: "sides".into(),
-            axes,
-        }],
-        ..Problem::default()
-    };
+    let problem =
+        Problem::of([Region::new(law, DENSITY)]).with_fixed(Fixed::at("sides").along(axes));
     Model::build(&mesh, &problem).unwrap()
 }
 

@@ -6,7 +6,7 @@ use crate::common::{
 };
 use sinew_core::{BlockMatrix, ElasticLaw, ForceLaw, Layers, Pattern, System, TangentKind};
 use sinew_fem::hyperelastic::{Hyperelastic, Parameters};
-use sinew_fem::{Element, FromMesh, Law, Model, Problem, Region, Tissue};
+use sinew_fem::{Element, Law, Model, Problem, Region};
 use sinew_mesh::structured::{self, Split};
 use sinew_mesh::{Group, GroupMembers, TetMesh};
 
@@ -22,10 +22,10 @@ const ELEMENTS: [Element; 5] = [
 ];
 
 fn law(id: &'static str) -> Law {
-    Law::Hyperelastic {
+    Law::hyperelastic(
         id,
-        parameters: Hyperelastic::parameters(id, YOUNGS_MODULUS, NU).unwrap(),
-    }
+        Hyperelastic::parameters(id, YOUNGS_MODULUS, NU).unwrap(),
+    )
 }
 
 fn of(id: &'static str, element: Element) -> Problem {
@@ -226,10 +226,7 @@ fn confined_compression_is_in_balance_and_has_its_reaction() {
     jitter(&mut mesh, 0.06, 3);
     for element in ELEMENTS {
         let parameters = Parameters::new(1.0, 0.499);
-        let mut problem = body(Law::Hyperelastic {
-            id: "neo-hookean",
-            parameters,
-        });
+        let mut problem = body(Law::hyperelastic("neo-hookean", parameters));
         problem.regions[0].element = element;
         let model = build(&mesh, &problem);
         let u = crate::common::on_cells(&model, |node| [0.0, 0.0, -0.1 * mesh.points[node][2]]);
@@ -337,22 +334,9 @@ fn regions_of_different_laws_and_elements_add_up() {
                 if stiff.is_some_and(|stiff| stiff != index) {
                     law.scale_stiffness(1e-20);
                 }
-                Region {
-                    group: Some((*group).into()),
-                    density: 1060.0,
-                    law,
-                    element: *element,
-                    tissue: Tissue::default(),
-                    from_mesh: FromMesh::default(),
-                }
+                Region::new(law, 1060.0).on(*group).with_element(*element)
             });
-        build(
-            &mesh,
-            &Problem {
-                regions: regions.collect(),
-                ..Problem::default()
-            },
-        )
+        build(&mesh, &Problem::of(regions))
     };
     let all = model(None);
     let u = bent(&mesh, &all, 0.5);

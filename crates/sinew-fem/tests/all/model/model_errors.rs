@@ -3,8 +3,7 @@
 use crate::common::{DENSITY, add_node_group, body, held, held_along, linear, load, springs};
 use sinew_core::{Ramp, RampError};
 use sinew_fem::{
-    Cause, Element, FemError, Fixed, FromMesh, Item, Law, LoadKind, LoadSpec, Model, On, Problem,
-    Region, SpringRule, Tissue,
+    Cause, FemError, Fixed, Item, Law, LoadKind, LoadSpec, Model, On, Problem, Region, SpringRule,
 };
 use sinew_mesh::structured::{self, Split};
 use sinew_mesh::{Group, GroupMembers, TetMesh};
@@ -26,19 +25,12 @@ fn tissue() -> Problem {
 fn region(group: Option<&str>) -> Region {
     Region {
         group: group.map(Into::into),
-        density: DENSITY,
-        law: linear(3500.0, 0.45),
-        element: Element::P1,
-        tissue: Tissue::default(),
-        from_mesh: FromMesh::default(),
+        ..Region::new(linear(3500.0, 0.45), DENSITY)
     }
 }
 
 fn with_regions(groups: &[Option<&str>]) -> Problem {
-    Problem {
-        regions: groups.iter().map(|group| region(*group)).collect(),
-        ..Problem::default()
-    }
+    Problem::of(groups.iter().map(|group| region(*group)))
 }
 
 fn with_load(group: &str, kind: LoadKind) -> Problem {
@@ -47,11 +39,7 @@ fn with_load(group: &str, kind: LoadKind) -> Problem {
 
 fn loaded_on(on: On, kind: LoadKind) -> Problem {
     Problem {
-        loads: vec![LoadSpec {
-            on,
-            kind,
-            ramp: Ramp::Step,
-        }],
+        loads: vec![LoadSpec::new(on, kind)],
         ..tissue()
     }
 }
@@ -302,10 +290,7 @@ fn nodes_the_mesh_does_not_have() {
     let triangles = On::Triangles(vec![[0, 1, 3], [26, 2, 27]]);
     for on in [nodes, triangles.clone()] {
         let problem = Problem {
-            fixed: vec![Fixed {
-                on: on.clone(),
-                axes: [true; 3],
-            }],
+            fixed: vec![Fixed::at(on.clone())],
             ..tissue()
         };
         let message = format!("support 1: {words}");
@@ -387,15 +372,14 @@ fn value_refused(problem: &Problem, item: Item, name: &str, value: f64, expected
 
 #[test]
 fn materials_of_impossible_numbers() {
-    let material = |law| Problem {
-        regions: vec![
+    let material = |law| {
+        Problem::of([
             region(Some("tissue")),
             Region {
                 law,
                 ..region(None)
             },
-        ],
-        ..Problem::default()
+        ])
     };
     let item = Item::Region(1);
     for value in [0.0, -1.0, f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {

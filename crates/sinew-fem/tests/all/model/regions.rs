@@ -5,7 +5,7 @@ use crate::common::{
     relative_difference,
 };
 use sinew_core::{BlockMatrix, LinearSystem, System};
-use sinew_fem::{Element, FromMesh, Law, LoadKind, Model, Problem, Region, SpringRule, Tissue};
+use sinew_fem::{Law, LoadKind, Model, Problem, Region, SpringRule};
 use sinew_mesh::structured::{self, Split};
 use sinew_mesh::{Group, GroupMembers, TetMesh};
 
@@ -32,18 +32,8 @@ fn bar() -> TetMesh {
 }
 
 fn in_two_regions(lower: Law, upper: Law) -> Problem {
-    let region = |group: &str, law| Region {
-        group: Some(group.into()),
-        density: DENSITY,
-        law,
-        element: Element::P1,
-        tissue: Tissue::default(),
-        from_mesh: FromMesh::default(),
-    };
-    Problem {
-        regions: vec![region("lower", lower), region("upper", upper)],
-        ..Problem::default()
-    }
+    let region = |group: &str, law| Region::new(law, DENSITY).on(group);
+    Problem::of([region("lower", lower), region("upper", upper)])
 }
 
 fn damped_springs(rule: SpringRule, damping_ratio: f64) -> Law {

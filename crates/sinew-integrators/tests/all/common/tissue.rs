@@ -1,36 +1,20 @@
 //! Bodies of one material.
 
-use sinew_fem::{Element, Fixed, FromMesh, Law, Problem, Region, Tissue};
+use sinew_fem::{Fixed, Law, Problem, Region};
 
 /// Density of soft tissue (kg/m^3).
 pub(crate) const DENSITY: f64 = 1060.0;
 
 pub(crate) fn linear(youngs_modulus: f64, poissons_ratio: f64) -> Law {
-    Law::Linear {
-        youngs_modulus,
-        poissons_ratio,
-    }
+    Law::linear(youngs_modulus, poissons_ratio)
 }
 
 /// A free body without loads.
 pub(crate) fn body(law: Law) -> Problem {
-    Problem {
-        regions: vec![Region {
-            group: None,
-            density: DENSITY,
-            law,
-            element: Element::P1,
-            tissue: Tissue::default(),
-            from_mesh: FromMesh::default(),
-        }],
-        ..Problem::default()
-    }
+    Problem::of([Region::new(law, DENSITY)])
 }
 
 /// A group held along these axes.
 pub(crate) fn held(group: &str, axes: [bool; 3]) -> Fixed {
-    Fixed {
-        on: group.into(),
-        axes,
-    }
+    Fixed::at(group).along(axes)
 }

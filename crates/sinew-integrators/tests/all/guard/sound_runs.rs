@@ -10,7 +10,7 @@ use sinew_core::{
     BlockMatrix, Damping, Integrator, Layers, LinearModel, LinearOperators, LinearSystem, Load,
     OptionValue, Options, Pattern, Ramp, StableStep, State, System,
 };
-use sinew_fem::{Element, FromMesh, LoadKind, LoadSpec, Model, Problem, Rayleigh, Region, Tissue};
+use sinew_fem::{LoadKind, LoadSpec, Model, Problem, Rayleigh, Region};
 use sinew_integrators::explicit::Guarded;
 use sinew_mesh::structured::{self, Split};
 use sinew_mesh::{Group, GroupMembers, TetMesh};
@@ -73,22 +73,11 @@ fn assert_untouched(system: &dyn System, start: &State, shares: &[f64], steps: u
 }
 
 fn tissue() -> Region {
-    Region {
-        group: None,
-        density: 1060.0,
-        law: linear(3500.0, 0.3),
-        element: Element::P1,
-        tissue: Tissue::default(),
-        from_mesh: FromMesh::default(),
-    }
+    Region::new(linear(3500.0, 0.3), 1060.0)
 }
 
 fn pulse(group: &str, traction: [f64; 3], to: f64) -> LoadSpec {
-    LoadSpec {
-        on: group.into(),
-        kind: LoadKind::Traction(traction),
-        ramp: Ramp::Pulse { from: 0.0, to },
-    }
+    LoadSpec::new(group, LoadKind::Traction(traction)).with_ramp(Ramp::Pulse { from: 0.0, to })
 }
 
 /// A bar whose width at each height (between 0 and 1) is this share of that of the block.
@@ -105,11 +94,7 @@ fn shaped(cells: [usize; 3], edges: [f64; 3], width: impl Fn(f64) -> f64) -> Tet
 /// A bar 0.3 m long and 15 mm thick at its foot, free, under a pulse on the foot.
 fn whip(width: impl Fn(f64) -> f64) -> Model {
     let mesh = shaped([1, 1, 30], [0.015, 0.015, 0.3], width);
-    let problem = Problem {
-        regions: vec![tissue()],
-        loads: vec![pulse("bottom", [0.0, 0.0, 100.0], 0.015)],
-        ..Problem::default()
-    };
+    let problem = Problem::of([tissue()]).with_load(pulse("bottom", [0.0, 0.0, 100.0], 0.015));
     Model::build(&mesh, &problem).unwrap()
 }
 
@@ -185,21 +170,10 @@ impl Slender {
                 });
             }
             regions[0].group = Some("lower".into());
-            regions.push(Region {
-                group: Some("upper".into()),
-                density,
-                law: linear(modulus, self.poissons_ratio),
-                element: Element::P1,
-                tissue: Tissue::default(),
-                from_mesh: FromMesh::default(),
-            });
+            regions.push(Region::new(linear(modulus, self.poissons_ratio), density).on("upper"));
         }
         let fixed = vec![held("bottom", [true; 3])];
-        let mut problem = Problem {
-            regions,
-            damping: self.damping,
-            ..Problem::default()
-        };
+        let mut problem = Problem::of(regions).with_damping(self.damping);
         match self.acts {
             Acts::Nothing => {}
             Acts::Pulse(traction, to) => problem.loads = vec![pulse("bottom", traction, to)],
@@ -253,7 +227,7 @@ fn slender_bodies() -> impl Strategy<Value = Slender> {
     ];
     let damping = prop_oneof![
         Just(Rayleigh::default()),
-        (0.0..100.0, 0.0..1e-3).prop_map(|(mass, stiffness)| Rayleigh { mass, stiffness }),
+        (0.0..100.0, 0.0..1e-3).prop_map(|(mass, stiffness)| Rayleigh::new(mass, stiffness)),
     ];
     let size = |largest: f64| prop_oneof![Just(0.0), 0.0..largest];
     (

@@ -6,7 +6,7 @@ use sinew_core::{
     Equations, EvaluationError, ForceLaw, Layers, LoadTime, OptionError, Revision, SetupError,
     State, System, Trial,
 };
-use sinew_fem::{Element, FromMesh, Law, Model, Problem, Region, Tissue};
+use sinew_fem::{Law, Model, Problem, Region};
 use sinew_mesh::structured::{self, Split};
 use sinew_mesh::{Group, GroupMembers};
 
@@ -130,10 +130,7 @@ fn a_run_says_on_which_kernel_it_is() {
 #[test]
 fn nearly_incompressible_tissue_rounds_more_and_says_how_much() {
     let tissue = |poissons_ratio: f64| {
-        let law = Law::Linear {
-            youngs_modulus: 3500.0,
-            poissons_ratio,
-        };
+        let law = Law::linear(3500.0, poissons_ratio);
         scene(3, 0.1, law, mass_damping(20.0))
     };
     let prepared = |system: &Model, tolerance: f64| {
@@ -190,10 +187,7 @@ fn machines_that_do_not_fit_are_refused_and_none_takes_their_place() {
 
 #[test]
 fn stiffnesses_too_far_apart_for_24_bits_are_refused() {
-    let law = |factor: f64| Law::Linear {
-        youngs_modulus: factor * 3500.0,
-        poissons_ratio: 0.45,
-    };
+    let law = |factor: f64| Law::linear(factor * 3500.0, 0.45);
     let mut mesh = structured::cube(3, 0.1, Split::Kuhn).unwrap();
     let count = mesh.tets.len() as u32;
     mesh.groups = [("stiff", 1, 0..6), ("soft", 2, 6..count)]
@@ -205,18 +199,8 @@ fn stiffnesses_too_far_apart_for_24_bits_are_refused() {
         })
         .into();
     let prepared = |factor: f64| {
-        let region = |group: &str, law: Law| Region {
-            group: Some(group.into()),
-            density: 1060.0,
-            law,
-            element: Element::P1,
-            tissue: Tissue::default(),
-            from_mesh: FromMesh::default(),
-        };
-        let problem = Problem {
-            regions: vec![region("stiff", law(factor)), region("soft", law(1.0))],
-            ..Problem::default()
-        };
+        let region = |group: &str, law: Law| Region::new(law, 1060.0).on(group);
+        let problem = Problem::of([region("stiff", law(factor)), region("soft", law(1.0))]);
         let model = Model::build(&mesh, &problem).unwrap();
         let options = plain().with_text("precision", "f32");
         let mut method = sinew_integrators::build("rk4", &options).unwrap();

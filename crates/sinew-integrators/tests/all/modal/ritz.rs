@@ -12,10 +12,7 @@ use sinew_fem::{Law, Model};
 use sinew_integrators::Frame;
 use sinew_integrators::implicit::{Modal, static_solution};
 
-const LAW: Law = Law::Linear {
-    youngs_modulus: 3500.0,
-    poissons_ratio: 0.45,
-};
+const LAW: Law = Law::linear(3500.0, 0.45);
 
 fn ritz(modes: f64) -> Options {
     eigen(modes).with("vectors", OptionValue::Text("ritz".into()))

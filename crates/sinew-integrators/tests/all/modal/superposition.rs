@@ -10,10 +10,7 @@ use sinew_core::{
     BlockMatrix, Damping, Integrator, Layers, LinearModel, LinearOperators, LinearSystem, Load,
     LoadTime, OptionValue, Options, Pattern, Ramp, State, System,
 };
-use sinew_fem::{
-    Element, Fixed, FromMesh, Law, LoadKind, LoadSpec, Model, Problem, Rayleigh, Region,
-    SpringRule, Tissue,
-};
+use sinew_fem::{Fixed, Law, LoadKind, LoadSpec, Model, Problem, Rayleigh, Region, SpringRule};
 use sinew_integrators::implicit::Modal;
 use sinew_integrators::{Frame, Method};
 use sinew_mesh::structured::{self, Split};
@@ -98,10 +95,7 @@ fn motion(
 }
 
 fn linear(poissons_ratio: f64) -> Law {
-    Law::Linear {
-        youngs_modulus: 3500.0,
-        poissons_ratio,
-    }
+    Law::linear(3500.0, poissons_ratio)
 }
 
 fn springs(rule: SpringRule) -> Law {
@@ -122,26 +116,12 @@ fn body(
     damping: Rayleigh,
 ) -> Model {
     let mesh = structured::cube(cells, 0.1, Split::Kuhn).unwrap();
-    let held = |(group, axes): &(&str, [bool; 3])| Fixed {
-        on: (*group).into(),
-        axes: *axes,
-    };
+    let held = |(group, axes): &(&str, [bool; 3])| Fixed::at(*group).along(*axes);
     let problem = Problem {
-        regions: vec![Region {
-            group: None,
-            density: 1060.0,
-            law,
-            element: Element::P1,
-            tissue: Tissue::default(),
-            from_mesh: FromMesh::default(),
-        }],
+        regions: vec![Region::new(law, 1060.0)],
         damping,
         fixed: fixed.iter().map(held).collect(),
-        loads: vec![LoadSpec {
-            on: "top".into(),
-            kind,
-            ramp: Ramp::Step,
-        }],
+        loads: vec![LoadSpec::new("top", kind)],
         gravity: None,
         moves: Vec::new(),
     };

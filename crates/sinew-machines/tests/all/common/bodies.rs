@@ -4,14 +4,11 @@ use std::sync::Arc;
 
 use sinew_cnn::{LoadAt, Loads, Machine, Physics, Program, Register};
 use sinew_core::{Batch, Inputs, LinearSystem, State, System, VelocityTime};
-use sinew_fem::{Element, Fixed, FromMesh, Law, Model, Problem, Region, Tissue};
+use sinew_fem::{Fixed, Law, Model, Problem, Region};
 use sinew_mesh::TetMesh;
 use sinew_mesh::structured::{Split, cube};
 
-pub(crate) const TISSUE: Law = Law::Linear {
-    youngs_modulus: 3500.0,
-    poissons_ratio: 0.45,
-};
+pub(crate) const TISSUE: Law = Law::linear(3500.0, 0.45);
 
 /// A cube of `cells` cells along each edge, held at its sides.
 pub(crate) fn held_cube(cells: usize, split: Split) -> Model {
@@ -19,21 +16,7 @@ pub(crate) fn held_cube(cells: usize, split: Split) -> Model {
 }
 
 pub(crate) fn body(mesh: &TetMesh, held: &str) -> Model {
-    let problem = Problem {
-        regions: vec![Region {
-            group: None,
-            density: 1060.0,
-            law: TISSUE,
-            element: Element::P1,
-            tissue: Tissue::default(),
-            from_mesh: FromMesh::default(),
-        }],
-        fixed: vec![Fixed {
-            on: held.into(),
-            axes: [true; 3],
-        }],
-        ..Problem::default()
-    };
+    let problem = Problem::of([Region::new(TISSUE, 1060.0)]).with_fixed(Fixed::at(held));
     Model::build(mesh, &problem).unwrap()
 }
 

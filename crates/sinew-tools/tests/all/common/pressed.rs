@@ -6,9 +6,7 @@ use sinew_core::{
     LinearSystem, LoadTime, Options, Run, StableStep, State, System, Trial, simulate, vectors,
 };
 use sinew_fem::hyperelastic::Parameters;
-use sinew_fem::{
-    Course, Element, Fixed, FromMesh, Law, Model, Moving, Problem, Rayleigh, Region, Tissue,
-};
+use sinew_fem::{Course, Element, Fixed, Law, Model, Moving, Problem, Rayleigh, Region};
 use sinew_mesh::structured::{Split, block};
 use sinew_tools::{
     Convex, Corner, Motion, Row, Shape, Table, Tool, Tools, TouchedCell, TouchedTriangle,
@@ -62,33 +60,19 @@ impl Block {
 
     pub(crate) fn problem(&self) -> Problem {
         let is_carried = self.carried_at != [0.0; 3];
-        let bottom = Fixed {
-            on: "bottom".into(),
-            axes: [true; 3],
-        };
-        let moving = Moving {
-            on: "bottom".into(),
-            axes: [true; 3],
-            courses: vec![Course::at_velocity(self.carried_at)],
-        };
+        let bottom = Fixed::at("bottom");
+        let moving = Moving::new("bottom", [Course::at_velocity(self.carried_at)]);
         Problem {
-            regions: vec![Region {
-                group: None,
-                density: DENSITY,
-                law: match self.law {
-                    None => Law::Linear {
-                        youngs_modulus: E,
-                        poissons_ratio: self.nu,
+            regions: vec![
+                Region::new(
+                    match self.law {
+                        None => Law::linear(E, self.nu),
+                        Some(id) => Law::hyperelastic(id, Parameters::new(E, self.nu)),
                     },
-                    Some(id) => Law::Hyperelastic {
-                        id,
-                        parameters: Parameters::new(E, self.nu),
-                    },
-                },
-                element: self.element,
-                tissue: Tissue::default(),
-                from_mesh: FromMesh::default(),
-            }],
+                    DENSITY,
+                )
+                .with_element(self.element),
+            ],
             damping: self.damping,
             fixed: match self.is_held && !is_carried {
                 true => vec![bottom],
