@@ -23,7 +23,7 @@ impl Fixed {
         }
     }
 
-    /// The same support of some components: true for those of x, y and z that are held.
+    /// Sets the components that are held: true for those of x, y and z.
     #[must_use]
     pub fn along(self, axes: [bool; 3]) -> Self {
         Self { axes, ..self }
@@ -53,7 +53,7 @@ impl Moving {
         }
     }
 
-    /// The same motion of some components: true for those of x, y and z that are prescribed.
+    /// Sets the components that are prescribed: true for those of x, y and z.
     #[must_use]
     pub fn along(self, axes: [bool; 3]) -> Self {
         Self { axes, ..self }

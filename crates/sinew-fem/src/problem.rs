@@ -31,35 +31,35 @@ impl Problem {
         }
     }
 
-    /// The same body with a support more.
+    /// Adds a support.
     #[must_use]
     pub fn with_fixed(mut self, fixed: Fixed) -> Self {
         self.fixed.push(fixed);
         self
     }
 
-    /// The same body with a prescribed motion more.
+    /// Adds a prescribed motion.
     #[must_use]
     pub fn with_move(mut self, moving: Moving) -> Self {
         self.moves.push(moving);
         self
     }
 
-    /// The same body with a load more.
+    /// Adds a load.
     #[must_use]
     pub fn with_load(mut self, load: LoadSpec) -> Self {
         self.loads.push(load);
         self
     }
 
-    /// The same body with other damping.
+    /// Sets the damping.
     #[must_use]
     pub fn with_damping(mut self, damping: Rayleigh) -> Self {
         self.damping = damping;
         self
     }
 
-    /// The same body under gravity (m/s^2).
+    /// Sets the acceleration of free fall (m/s^2).
     #[must_use]
     pub fn with_gravity(mut self, acceleration: [f64; 3]) -> Self {
         self.gravity = Some(acceleration);
@@ -103,28 +103,28 @@ impl Region {
         }
     }
 
-    /// The same material on a group of tetrahedra.
+    /// Restricts the region to a group of tetrahedra.
     #[must_use]
     pub fn on(mut self, group: impl Into<String>) -> Self {
         self.group = Some(group.into());
         self
     }
 
-    /// The same region with another element.
+    /// Sets the element.
     #[must_use]
     pub fn with_element(mut self, element: Element) -> Self {
         self.element = element;
         self
     }
 
-    /// The same region with other additions to its law.
+    /// Sets the additions to the law.
     #[must_use]
     pub fn with_tissue(mut self, tissue: Tissue) -> Self {
         self.tissue = tissue;
         self
     }
 
-    /// The same region with properties from the mesh's data.
+    /// Sets the properties that come from the mesh's data.
     #[must_use]
     pub fn with_from_mesh(mut self, from_mesh: FromMesh) -> Self {
         self.from_mesh = from_mesh;
@@ -171,7 +171,7 @@ impl LoadSpec {
         }
     }
 
-    /// The same load with another factor over time.
+    /// Sets the factor over time.
     #[must_use]
     pub fn with_ramp(mut self, ramp: Ramp) -> Self {
         self.ramp = ramp;

@@ -50,6 +50,7 @@ pub mod prelude {
     pub use sinew_mesh::structured::{self, Split};
     pub use sinew_mesh::{TetMesh, read_mesh_file, read_msh_file};
     pub use sinew_scene::Scene;
+    pub use sinew_world::World;
 }
 
 /// The README's examples, compiled and run with the tests.
