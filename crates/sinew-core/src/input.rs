@@ -74,6 +74,7 @@ impl Inputs {
     }
 
     /// Adds a channel of lines that begins with a value at `t` (s).
+    #[cfg(feature = "serde")]
     pub(crate) fn add_line_from(&mut self, t: f64, value: f64) -> Result<Channel, InputError> {
         let channel = self.channels.len() as u32;
         check_finite(channel, t, value)?;
@@ -180,6 +181,7 @@ impl Inputs {
     }
 
     /// The courses of all channels so far.
+    #[cfg(any(test, feature = "serde"))]
     pub(crate) fn channels(&self) -> impl ExactSizeIterator<Item = &Ramp> {
         self.channels.iter().map(|record| &record.value)
     }

@@ -261,6 +261,7 @@ pub enum EnergyBehaviour {
 
 /// The largest stable step.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum StableStep {
     /// Stable at any step.
     Any,

@@ -45,6 +45,7 @@ impl Run {
 
 /// End of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Outcome {
     /// All steps taken.
     Finished,
@@ -61,6 +62,7 @@ pub enum Outcome {
 
 /// Summary of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct RunReport {
     /// End of the run.
     pub outcome: Outcome,

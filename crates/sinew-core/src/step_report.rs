@@ -4,6 +4,7 @@ use std::ops::AddAssign;
 
 /// The work of a step, or of many. Counts reproduce; seconds do not.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct StepReport {
     /// Evaluations of F - K u - D v over all cells, or work of that size.
     pub sweeps: u64,

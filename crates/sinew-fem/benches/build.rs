@@ -17,7 +17,7 @@ use std::alloc::{GlobalAlloc, Layout, System as SystemAllocator};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
-use sinew_core::{Ramp, System};
+use sinew_core::System;
 use sinew_fem::{Fixed, Law, LoadKind, LoadSpec, Model, Problem, Region, SpringRule};
 use sinew_mesh::TetMesh;
 use sinew_mesh::structured::{Split, cube};
@@ -104,12 +104,9 @@ fn main() {
 
 /// A cube on its bottom, pressed from above.
 fn problem(law: Law) -> Problem {
-    Problem {
-        regions: vec![Region::new(law, 1060.0)],
-        fixed: vec![Fixed::new("bottom")],
-        loads: vec![LoadSpec::new("top", LoadKind::Pressure(100.0), Ramp::Step)],
-        ..Problem::default()
-    }
+    Problem::of([Region::new(law, 1060.0)])
+        .with_fixed(Fixed::at("bottom"))
+        .with_load(LoadSpec::new("top", LoadKind::Pressure(100.0)))
 }
 
 fn measure(name: &str, mesh: &TetMesh, problem: &Problem, repeats: usize) {

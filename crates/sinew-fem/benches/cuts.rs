@@ -16,7 +16,7 @@ use std::hint::black_box;
 use std::sync::Arc;
 use std::time::Instant;
 
-use sinew_core::{Inputs, Ramp, State, System};
+use sinew_core::{Inputs, State, System};
 use sinew_cutting::Sheet;
 use sinew_fem::{CutModel, Fixed, Law, LoadKind, LoadSpec, Model, Problem, Region};
 use sinew_mesh::TetMesh;
@@ -48,13 +48,10 @@ fn main() {
 
 /// A cube on its bottom, pressed from above, under its weight.
 fn problem() -> Problem {
-    Problem {
-        regions: vec![Region::new(Law::linear(3500.0, 0.45), 1060.0)],
-        fixed: vec![Fixed::new("bottom")],
-        loads: vec![LoadSpec::new("top", LoadKind::Pressure(100.0), Ramp::Step)],
-        gravity: Some([0.0, 0.0, -9.81]),
-        ..Problem::default()
-    }
+    Problem::of([Region::new(Law::linear(3500.0, 0.45), 1060.0)])
+        .with_fixed(Fixed::at("bottom"))
+        .with_load(LoadSpec::new("top", LoadKind::Pressure(100.0)))
+        .with_gravity([0.0, 0.0, -9.81])
 }
 
 /// Prints what parts of making everything anew take.

@@ -53,19 +53,11 @@ fn main() {
 }
 
 fn problem(law: &'static str, element: Element) -> Problem {
-    Problem {
-        regions: vec![Region {
-            element,
-            ..Region::new(
-                Law::Hyperelastic {
-                    id: law,
-                    parameters: Parameters::new(3500.0, 0.45),
-                },
-                1060.0,
-            )
-        }],
-        ..Problem::default()
-    }
+    Problem::of([Region::new(
+        Law::hyperelastic(law, Parameters::new(3500.0, 0.45)),
+        1060.0,
+    )
+    .with_element(element)])
 }
 
 fn measure(name: &str, mesh: &TetMesh, problem: &Problem, time: Duration) {

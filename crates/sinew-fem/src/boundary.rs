@@ -14,13 +14,19 @@ pub struct Fixed {
 }
 
 impl Fixed {
-    /// A support along all three axes.
+    /// A support of all components.
     #[must_use]
-    pub fn new(on: impl Into<On>) -> Self {
+    pub fn at(on: impl Into<On>) -> Self {
         Self {
             on: on.into(),
             axes: [true; 3],
         }
+    }
+
+    /// Sets the components that are held: true for those of x, y and z.
+    #[must_use]
+    pub fn along(self, axes: [bool; 3]) -> Self {
+        Self { axes, ..self }
     }
 }
 
@@ -34,6 +40,24 @@ pub struct Moving {
     pub axes: [bool; 3],
     /// The courses; without one the components are held.
     pub courses: Vec<Course>,
+}
+
+impl Moving {
+    /// A motion of all components.
+    #[must_use]
+    pub fn new(on: impl Into<On>, courses: impl Into<Vec<Course>>) -> Self {
+        Self {
+            on: on.into(),
+            axes: [true; 3],
+            courses: courses.into(),
+        }
+    }
+
+    /// Sets the components that are prescribed: true for those of x, y and z.
+    #[must_use]
+    pub fn along(self, axes: [bool; 3]) -> Self {
+        Self { axes, ..self }
+    }
 }
 
 /// A displacement in one direction, times a factor over time.

@@ -15,7 +15,7 @@ pub(crate) fn numbers(problem: &Problem) -> Result<(), FemError> {
         region.element.check(item)?;
         region.tissue.check(&region.from_mesh, item)?;
         let [at_once, _] = region.tissue.moduli(&region.law);
-        match at_once.hyperelastic() {
+        match at_once.of_large_deformation() {
             Some(Ok(law)) => region.tissue.check_with(&law, item)?,
             // The law as it is stated has been checked.
             Some(Err(_)) => {

@@ -472,7 +472,7 @@ impl CutModel {
         let frozen = nodes.filter_map(|(node, of_body)| Some((node, *self.frozen.get(of_body)?)));
         let frozen: Vec<(u32, [f64; 3])> = frozen.collect();
         if !frozen.is_empty() {
-            problem.fixed.push(Fixed::new(On::Nodes(
+            problem.fixed.push(Fixed::at(On::Nodes(
                 frozen.iter().map(|(node, _)| *node).collect(),
             )));
         }

@@ -49,13 +49,19 @@ pub enum SpringRule {
 }
 
 impl Law {
-    /// Linear elasticity of small strain: Young's modulus (Pa) and Poisson's ratio.
+    /// [`Law::Linear`] of a Young's modulus (Pa) and a Poisson's ratio.
     #[must_use]
     pub const fn linear(youngs_modulus: f64, poissons_ratio: f64) -> Self {
         Self::Linear {
             youngs_modulus,
             poissons_ratio,
         }
+    }
+
+    /// [`Law::Hyperelastic`] of a law's id, one of [`crate::hyperelastic::known_laws`], and its parameters.
+    #[must_use]
+    pub const fn hyperelastic(id: &'static str, parameters: Parameters) -> Self {
+        Self::Hyperelastic { id, parameters }
     }
 
     /// Young's modulus (Pa) at small strain; NaN for a law that does not exist or cannot have its parameters.
@@ -158,7 +164,7 @@ impl Law {
     }
 
     /// The law ready for computation; `None` unless it is of large deformation.
-    pub(crate) fn hyperelastic(&self) -> Option<Result<Hyperelastic, LawError>> {
+    pub(crate) fn of_large_deformation(&self) -> Option<Result<Hyperelastic, LawError>> {
         match self {
             Self::Hyperelastic { id, parameters } => Some(Hyperelastic::new(id, parameters)),
             Self::Linear { .. } | Self::Springs { .. } => None,

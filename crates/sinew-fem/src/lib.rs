@@ -1,24 +1,15 @@
 //! Systems from a tetrahedral mesh, materials of small or large deformation, supports and loads.
 //!
 //! ```
-//! use sinew_core::{Ramp, System};
+//! use sinew_core::System;
 //! use sinew_fem::{Fixed, Law, LoadKind, LoadSpec, Model, Problem, Region};
 //! use sinew_mesh::structured::{self, Split};
 //!
 //! let mesh = structured::cube(4, 0.1, Split::Kuhn)?;
-//! let problem = Problem {
-//!     regions: vec![Region::new(
-//!         Law::linear(3500.0, 0.45),
-//!         1060.0, // kg/m3
-//!     )],
-//!     fixed: vec![Fixed::new("sides")],
-//!     loads: vec![LoadSpec {
-//!         on: "top".into(),
-//!         kind: LoadKind::Traction([0.0, 0.0, -100.0]), // Pa
-//!         ramp: Ramp::Step,
-//!     }],
-//!     ..Problem::default()
-//! };
+//! let law = Law::linear(3500.0, 0.45); // Young's modulus (Pa), Poisson's ratio
+//! let problem = Problem::of([Region::new(law, 1060.0)]) // kg/m3
+//!     .with_fixed(Fixed::at("sides"))
+//!     .with_load(LoadSpec::new("top", LoadKind::Traction([0.0, 0.0, -100.0]))); // Pa
 //! let model = Model::build(&mesh, &problem)?;
 //! assert_eq!(model.dofs(), 3 * (3 * 3 * 5)); // the nodes off the four sides
 //! # Ok::<(), Box<dyn std::error::Error>>(())
@@ -34,11 +25,8 @@
 //! let mesh = structured::cube(4, 0.1, Split::Kuhn)?;
 //! let law = Law::linear(3500.0, 0.0);
 //! let floor: Vec<u32> = (0..25).collect();
-//! let model = Model::build(&mesh, &Problem {
-//!     regions: vec![Region::new(law, 1060.0)],
-//!     fixed: vec![Fixed::new(On::Nodes(floor.clone()))],
-//!     ..Problem::default()
-//! })?;
+//! let floor_held = Fixed::at(On::Nodes(floor.clone()));
+//! let model = Model::build(&mesh, &Problem::of([Region::new(law, 1060.0)]).with_fixed(floor_held))?;
 //!
 //! // Stretched by one per cent along z: a stress of 35 Pa, held on 0.01 m2 by -0.35 N.
 //! let field: Vec<[f64; 3]> = mesh.points.iter().map(|p| [0.0, 0.0, 0.01 * p[2]]).collect();
@@ -60,19 +48,11 @@
 //! # use sinew_mesh::structured::{self, Split};
 //! let mesh = structured::cube(4, 0.1, Split::Kuhn)?;
 //! let law = Law::linear(3500.0, 0.0);
-//! let model = Model::build(&mesh, &Problem {
-//!     regions: vec![Region::new(law, 1060.0)],
-//!     fixed: vec![Fixed::new("bottom")],
-//!     moves: vec![Moving {
-//!         on: "top".into(),
-//!         axes: [true; 3],
-//!         courses: vec![Course {
-//!             displacement: [0.0, 0.0, 0.001], // m
-//!             ramp: Ramp::Sin2 { rise: 0.2 },
-//!         }],
-//!     }],
-//!     ..Problem::default()
-//! })?;
+//! let up = Course::new([0.0, 0.0, 0.001], Ramp::Sin2 { rise: 0.2 }); // m, s
+//! let problem = Problem::of([Region::new(law, 1060.0)])
+//!     .with_fixed(Fixed::at("bottom"))
+//!     .with_move(Moving::new("top", [up]));
+//! let model = Model::build(&mesh, &problem)?;
 //!
 //! // At t = 0.1 s the top is half way up; held evenly in between, it pulls with 17.5 Pa on 0.01 m2.
 //! let field: Vec<[f64; 3]> = mesh.points.iter().map(|p| [0.0, 0.0, 0.005 * p[2]]).collect();

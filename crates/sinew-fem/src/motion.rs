@@ -222,6 +222,12 @@ impl MovedPart {
 }
 
 impl Course {
+    /// A displacement from rest (m) at factor 1, and the factor over time.
+    #[must_use]
+    pub fn new(displacement: [f64; 3], ramp: Ramp) -> Self {
+        Self { displacement, ramp }
+    }
+
     /// Motion at constant velocity (m/s) from t = 0 on.
     #[must_use]
     pub fn at_velocity(velocity: [f64; 3]) -> Self {

@@ -4,6 +4,7 @@ use std::fmt;
 
 /// The part of a mesh that a support holds or a load acts on. A name turns into [`On::Group`].
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum On {
     /// A group of the mesh, by name.
     Group(String),

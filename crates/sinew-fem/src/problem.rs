@@ -22,6 +22,50 @@ pub struct Problem {
 }
 
 impl Problem {
+    /// A free body of these materials, without damping and loads.
+    #[must_use]
+    pub fn of(regions: impl IntoIterator<Item = Region>) -> Self {
+        Self {
+            regions: regions.into_iter().collect(),
+            ..Self::default()
+        }
+    }
+
+    /// Adds a support.
+    #[must_use]
+    pub fn with_fixed(mut self, fixed: Fixed) -> Self {
+        self.fixed.push(fixed);
+        self
+    }
+
+    /// Adds a prescribed motion.
+    #[must_use]
+    pub fn with_move(mut self, moving: Moving) -> Self {
+        self.moves.push(moving);
+        self
+    }
+
+    /// Adds a load.
+    #[must_use]
+    pub fn with_load(mut self, load: LoadSpec) -> Self {
+        self.loads.push(load);
+        self
+    }
+
+    /// Sets the damping.
+    #[must_use]
+    pub fn with_damping(mut self, damping: Rayleigh) -> Self {
+        self.damping = damping;
+        self
+    }
+
+    /// Sets the acceleration of free fall (m/s^2).
+    #[must_use]
+    pub fn with_gravity(mut self, acceleration: [f64; 3]) -> Self {
+        self.gravity = Some(acceleration);
+        self
+    }
+
     /// The element of each region.
     pub(crate) fn elements(&self) -> Vec<Element> {
         self.regions.iter().map(|region| region.element).collect()
@@ -46,8 +90,7 @@ pub struct Region {
 }
 
 impl Region {
-    /// The whole mesh of one isotropic material on plain elements, the same everywhere: a law and a mass density
-    /// (kg/m^3).
+    /// The whole mesh of plain tetrahedra ([`Element::P1`]) of one material: its law and its density (kg/m^3).
     #[must_use]
     pub fn new(law: Law, density: f64) -> Self {
         Self {
@@ -59,6 +102,34 @@ impl Region {
             from_mesh: FromMesh::default(),
         }
     }
+
+    /// Restricts the region to a group of tetrahedra.
+    #[must_use]
+    pub fn on(mut self, group: impl Into<String>) -> Self {
+        self.group = Some(group.into());
+        self
+    }
+
+    /// Sets the element.
+    #[must_use]
+    pub fn with_element(mut self, element: Element) -> Self {
+        self.element = element;
+        self
+    }
+
+    /// Sets the additions to the law.
+    #[must_use]
+    pub fn with_tissue(mut self, tissue: Tissue) -> Self {
+        self.tissue = tissue;
+        self
+    }
+
+    /// Sets the properties that come from the mesh's data.
+    #[must_use]
+    pub fn with_from_mesh(mut self, from_mesh: FromMesh) -> Self {
+        self.from_mesh = from_mesh;
+        self
+    }
 }
 
 /// Rayleigh damping, `D = alpha M + beta K`.
@@ -68,6 +139,14 @@ pub struct Rayleigh {
     pub mass: f64,
     /// beta (s).
     pub stiffness: f64,
+}
+
+impl Rayleigh {
+    /// Damping by alpha (1/s) and beta (s).
+    #[must_use]
+    pub const fn new(mass: f64, stiffness: f64) -> Self {
+        Self { mass, stiffness }
+    }
 }
 
 /// A load: a force on a part of the mesh with a factor over time.
@@ -82,14 +161,21 @@ pub struct LoadSpec {
 }
 
 impl LoadSpec {
-    /// A load of this kind on a part of the mesh, with its factor over time.
+    /// A load that acts in full from t = 0 on.
     #[must_use]
-    pub fn new(on: impl Into<On>, kind: LoadKind, ramp: Ramp) -> Self {
+    pub fn new(on: impl Into<On>, kind: LoadKind) -> Self {
         Self {
             on: on.into(),
             kind,
-            ramp,
+            ramp: Ramp::Step,
         }
+    }
+
+    /// Sets the factor over time.
+    #[must_use]
+    pub fn with_ramp(mut self, ramp: Ramp) -> Self {
+        self.ramp = ramp;
+        self
     }
 }
 

@@ -63,7 +63,7 @@ mod tests {
     fn stated_moduli_are_the_instantaneous_or_the_long_term_ones() {
         for id in ["neo-hookean-iso", "yeoh"] {
             let parameters = Hyperelastic::parameters(id, 3500.0, 0.45).unwrap();
-            let stated = Law::Hyperelastic { id, parameters };
+            let stated = Law::hyperelastic(id, parameters);
             for part in [ViscousPart::All, ViscousPart::Deviatoric] {
                 let [at_once, later] = memory(part, Moduli::Instantaneous).moduli(&stated);
                 assert_eq!(at_once, stated);

@@ -59,10 +59,7 @@ fn step(machine: &mut dyn Machine, model: &Model, steps: usize) -> f64 {
 }
 
 fn held_cube(cells: usize) -> Model {
-    let problem = Problem {
-        regions: vec![Region::new(Law::linear(3500.0, 0.45), 1060.0)],
-        fixed: vec![Fixed::new("sides")],
-        ..Problem::default()
-    };
+    let problem = Problem::of([Region::new(Law::linear(3500.0, 0.45), 1060.0)])
+        .with_fixed(Fixed::at("sides"));
     Model::build(&cube(cells, 0.1, Split::Kuhn).unwrap(), &problem).unwrap()
 }

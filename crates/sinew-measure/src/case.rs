@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 
+use serde::{Deserialize, Serialize};
 use sinew_core::Run;
 use sinew_scene::{CuttingError, Scene, SceneError, SceneModel, Simulation};
 
@@ -34,7 +35,7 @@ pub struct Case {
 }
 
 /// The part of a scene that is compared, and its instants.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Span {
     /// Simulated time (s), from 0 on.
     pub duration: f64,

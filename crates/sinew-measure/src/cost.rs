@@ -1,9 +1,11 @@
 //! Cost of a run: time, or work.
 
+use serde::{Deserialize, Serialize};
+
 use crate::row::Row;
 
 /// Measure of the cost of a run.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Cost {
     /// CPU time as it was measured: what a run takes on this machine.
     #[default]

@@ -2,13 +2,14 @@
 
 use std::time::Instant;
 
+use serde::{Deserialize, Serialize};
 use sinew_core::{Integrator, Run, SetupError, SimulateError, StepReport, simulate};
 use sinew_scene::Simulation;
 
 use crate::cpu_time::process_cpu_time;
 
 /// The work and the time that a run of a scene will take, as its first steps tell.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Forecast {
     /// Step (s).
     pub dt: f64,

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use sinew_core::{Integrator, OptionError, OptionValue, Options, SetupError, StableStep};
 use sinew_scene::{Simulation, options_json};
@@ -10,7 +11,7 @@ use crate::case::Case;
 use crate::row::label;
 
 /// An integrator with its options.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MethodChoice {
     /// Integrator id.
     pub integrator: String,

@@ -215,7 +215,8 @@ pub struct Work {
 
 /// The verdict on a run in one word. Stability and accuracy are separate questions; see the
 /// fields of [`Row`] for all the answers.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum RowVerdict {
     /// Finished, bounded, nothing saturated, error at most [`ACCURATE`].
     Accurate,

@@ -2,12 +2,13 @@
 
 use std::time::Duration;
 
+use serde::{Deserialize, Serialize};
 use sinew_core::{Integrator, Run, SimulateError, State, System, simulate};
 
 use crate::cpu_time::CostSince;
 
 /// The repeats and the time that go into measuring the cost of a run.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Effort {
     /// Repeats that are aimed at, of which the median counts: fewer where they would pass the
     /// budget, but always one; more where they take less than a quarter of it. 0: nothing is timed.

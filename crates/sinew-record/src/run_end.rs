@@ -1,12 +1,13 @@
 //! End of a run.
 
+use serde::{Deserialize, Serialize};
 use sinew_scene::CutTotals;
 use sinew_scene::output::Replaced;
 
 use crate::stepping::Stepping;
 
 /// The end of a run, in short.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct RunEnd {
     /// Reason for the end.
     pub ended: Ended,
@@ -37,7 +38,7 @@ pub struct RunEnd {
 }
 
 /// End of a run.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Ended {
     /// All steps taken.
     Finished,

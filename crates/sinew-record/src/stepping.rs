@@ -1,5 +1,6 @@
 //! Methods and lengths of the steps of a run.
 
+use serde::Serialize;
 use serde_json::Value;
 use sinew_core::Options;
 use sinew_scene::{Simulation, options_json};
@@ -9,7 +10,7 @@ use sinew_world::Course;
 const SEVERAL: &str = "several";
 
 /// Methods and lengths of the steps of a run: both may change in a session that is replayed.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Stepping {
     /// Ids and options, in the order of their first steps.
     methods: Vec<(String, Options)>,

@@ -175,10 +175,7 @@ mod tests {
             is_gone: false,
             place: String::new(),
         };
-        let along_y = Course {
-            displacement: [9.0, 0.25, 9.0],
-            ramp: Ramp::Linear,
-        };
+        let along_y = Course::new([9.0, 0.25, 9.0], Ramp::Linear);
         let moved = [Vec::new(), vec![along_y], Vec::new()];
         vec![
             probe(

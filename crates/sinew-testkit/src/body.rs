@@ -62,7 +62,7 @@ impl Body {
 
     /// The same body held at its bottom and nowhere else, with what loads still act.
     pub fn on_the_ground(mut self) -> Self {
-        self.problem.fixed = vec![Fixed::new("bottom")];
+        self.problem.fixed = vec![Fixed::at("bottom")];
         self.without_what_cannot_be()
     }
 
@@ -314,10 +314,7 @@ fn supports(nodes: usize) -> impl Strategy<Value = (Vec<Fixed>, Group)> {
         uniform3(any::<bool>()).prop_filter("holds something", |axes| axes.contains(&true)),
     ];
     let some = prop_oneof![Just("pins"), Just("bottom"), Just("top"), Just("sides")];
-    let support = (some, axes).prop_map(|(group, axes)| Fixed {
-        on: group.into(),
-        axes,
-    });
+    let support = (some, axes).prop_map(|(group, axes)| Fixed::at(group).along(axes));
     (vec(support, 0..3), orders(nodes), 1..=nodes.div_ceil(3)).prop_map(
         |(supports, order, count)| {
             let mut members = order[..count].to_vec();
@@ -336,7 +333,7 @@ fn supports(nodes: usize) -> impl Strategy<Value = (Vec<Fixed>, Group)> {
 fn problems(block: &TetMesh) -> impl Strategy<Value = (Problem, Vec<Group>)> + use<> {
     let rate = prop_oneof![Just(0.0), 0.1..100.0];
     let time = prop_oneof![Just(0.0), 1e-5..1e-2];
-    let damping = (rate, time).prop_map(|(mass, stiffness)| Rayleigh { mass, stiffness });
+    let damping = (rate, time).prop_map(|(mass, stiffness)| Rayleigh::new(mass, stiffness));
     let loads = (direction(), direction());
     let parts = (
         regions(block.tets.len()),
@@ -352,11 +349,10 @@ fn problems(block: &TetMesh) -> impl Strategy<Value = (Problem, Vec<Group>)> + u
                 damping,
                 fixed,
                 moves: Vec::new(),
-                loads: vec![LoadSpec::new(
-                    "top",
-                    LoadKind::Traction(traction.map(|part| 100.0 * part)),
-                    Ramp::Sin2 { rise: 0.5 },
-                )],
+                loads: vec![
+                    LoadSpec::new("top", LoadKind::Traction(traction.map(|part| 100.0 * part)))
+                        .with_ramp(Ramp::Sin2 { rise: 0.5 }),
+                ],
                 gravity: Some(gravity.map(|part| 10.0 * part)),
             };
             (problem, groups)

@@ -54,10 +54,7 @@ fn main() {
 
 fn laws() -> [(&'static str, Law); 2] {
     let linear = Law::linear(3500.0, 0.45);
-    let large = Law::Hyperelastic {
-        id: "neo-hookean",
-        parameters: Parameters::new(3500.0, 0.45),
-    };
+    let large = Law::hyperelastic("neo-hookean", Parameters::new(3500.0, 0.45));
     [("linear", linear), ("neo-hookean", large)]
 }
 
@@ -75,11 +72,7 @@ impl Lap {
     /// A cube, and a ball of 12 mm whose centre is so high above its bottom.
     fn new(cells: usize, law: Law, height: Option<f64>) -> Self {
         let mesh = cube(cells, EDGE, Split::Kuhn).expect("the mesh is small enough");
-        let problem = Problem {
-            regions: vec![Region::new(law, 1060.0)],
-            fixed: vec![Fixed::new("bottom")],
-            ..Problem::default()
-        };
+        let problem = Problem::of([Region::new(law, 1060.0)]).with_fixed(Fixed::at("bottom"));
         let mut model = Model::build(&mesh, &problem).expect("it can be built");
         let is_outside = |point: &[f64; 3]| point.iter().any(|x| *x < 1e-9 || *x > EDGE - 1e-9);
         let cells = (0..).zip(model.nodes());

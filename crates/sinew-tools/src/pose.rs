@@ -4,10 +4,39 @@ use crate::rotation::{self, Matrix};
 use crate::vector::{add, between, length, scaled, sub};
 
 /// Pose of a tool's own frame in the world: `world = position + rotation own`.
+///
+/// With the feature `serde` it is written as its position and its rotation vector, as [`Pose::new`] takes them.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(from = "Written", into = "Written"))]
 pub struct Pose {
     position: [f64; 3],
     rotation: Matrix,
+}
+
+/// A pose as it is written.
+#[cfg(feature = "serde")]
+#[derive(serde::Serialize, serde::Deserialize)]
+struct Written {
+    position: [f64; 3],
+    rotation_vector: [f64; 3],
+}
+
+#[cfg(feature = "serde")]
+impl From<Written> for Pose {
+    fn from(written: Written) -> Self {
+        Self::new(written.position, written.rotation_vector)
+    }
+}
+
+#[cfg(feature = "serde")]
+impl From<Pose> for Written {
+    fn from(pose: Pose) -> Self {
+        Self {
+            position: pose.position(),
+            rotation_vector: pose.rotation_vector(),
+        }
+    }
 }
 
 impl Pose {

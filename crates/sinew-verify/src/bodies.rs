@@ -1,10 +1,7 @@
 //! Bodies of one material, and their equilibria.
 
-use sinew_core::{LinearSystem, LoadTime, Ramp, System};
-use sinew_fem::{
-    Element, Fixed, FromMesh, Law, LoadKind, LoadSpec, Model, On, Problem, Region, SpringRule,
-    Tissue,
-};
+use sinew_core::{LinearSystem, LoadTime, System};
+use sinew_fem::{Element, Fixed, Law, LoadKind, LoadSpec, Model, On, Problem, Region, SpringRule};
 use sinew_integrators::static_solution;
 
 use crate::error::LabError;
@@ -17,11 +14,7 @@ pub const YOUNGS_MODULUS: f64 = 3500.0;
 
 /// A free body of one linear material.
 pub fn body(youngs_modulus: f64, poissons_ratio: f64, element: Element) -> Problem {
-    let law = Law::Linear {
-        youngs_modulus,
-        poissons_ratio,
-    };
-    of_law(law, element)
+    of_law(Law::linear(youngs_modulus, poissons_ratio), element)
 }
 
 /// Undamped springs along the edges, by a rule for the modulus of soft tissue.
@@ -38,43 +31,23 @@ pub fn springs(rule: SpringRule) -> Law {
 /// Linear elasticity with the modulus of soft tissue.
 #[must_use]
 pub fn linear(poissons_ratio: f64) -> Law {
-    Law::Linear {
-        youngs_modulus: YOUNGS_MODULUS,
-        poissons_ratio,
-    }
+    Law::linear(YOUNGS_MODULUS, poissons_ratio)
 }
 
 /// A free body of one material.
 #[must_use]
 pub fn of_law(law: Law, element: Element) -> Problem {
-    Problem {
-        regions: vec![Region {
-            group: None,
-            density: DENSITY,
-            law,
-            element,
-            tissue: Tissue::default(),
-            from_mesh: FromMesh::default(),
-        }],
-        ..Problem::default()
-    }
+    Problem::of([Region::new(law, DENSITY).with_element(element)])
 }
 
 /// A support that holds components of displacement.
 pub fn held(on: impl Into<On>, axes: [bool; 3]) -> Fixed {
-    Fixed {
-        on: on.into(),
-        axes,
-    }
+    Fixed::at(on).along(axes)
 }
 
 /// A load from t = 0 on.
 pub fn load(on: impl Into<On>, kind: LoadKind) -> LoadSpec {
-    LoadSpec {
-        on: on.into(),
-        kind,
-        ramp: Ramp::Step,
-    }
+    LoadSpec::new(on, kind)
 }
 
 /// The loads of a model (N).

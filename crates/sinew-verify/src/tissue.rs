@@ -27,7 +27,7 @@ pub const COLUMN: [f64; 3] = [0.02, 0.02, 0.12];
 pub fn law(id: &'static str, youngs_modulus: f64, poissons_ratio: f64) -> Law {
     let parameters = Hyperelastic::parameters(id, youngs_modulus, poissons_ratio);
     let parameters = parameters.unwrap_or_else(|_| Parameters::new(youngs_modulus, poissons_ratio));
-    Law::Hyperelastic { id, parameters }
+    Law::hyperelastic(id, parameters)
 }
 
 /// The law of most blocks: `neo-hookean`, E = 3500 Pa, nu = .45.
@@ -45,10 +45,7 @@ pub fn standing(law: Law, element: Element) -> Problem {
 
 /// Damping in proportion to the masses (1/s).
 pub fn of_mass(mass: f64) -> Rayleigh {
-    Rayleigh {
-        mass,
-        stiffness: 0.0,
-    }
+    Rayleigh::new(mass, 0.0)
 }
 
 /// A body with the state that it starts from.
@@ -191,11 +188,8 @@ fn trapezoid(mesh: &TetMesh, cells: usize, force: f64, ramp: &Ramp) -> Vec<LoadS
             .map(|(node, _)| node)
             .collect();
         let share = nodes.len() as f64 * 0.5_f64.powi(rim as i32) / (cells * cells) as f64;
-        LoadSpec {
-            on: On::Nodes(nodes),
-            kind: LoadKind::Force([0.0, 0.0, share * force]),
-            ramp: ramp.clone(),
-        }
+        LoadSpec::new(On::Nodes(nodes), LoadKind::Force([0.0, 0.0, share * force]))
+            .with_ramp(ramp.clone())
     };
     (0..3).map(of_rims).collect()
 }

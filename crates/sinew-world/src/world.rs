@@ -8,6 +8,7 @@ mod saved;
 use std::cell::OnceCell;
 use std::sync::Arc;
 
+use serde::{Deserialize, Serialize};
 use sinew_core::{
     Batch, Channel, Inputs, OptionError, Options, StableStep, State, StepError, StepReport, System,
 };
@@ -88,7 +89,7 @@ pub struct World {
 }
 
 /// End of [`World::advance`].
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Ended {
     /// All steps were taken.
     Finished,

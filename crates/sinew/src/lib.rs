@@ -9,15 +9,10 @@
 //! use sinew::prelude::*;
 //!
 //! let mesh = structured::cube(4, 0.1, Split::Kuhn)?;
-//! let model = Model::build(&mesh, &Problem {
-//!     regions: vec![Region::new(
-//!         Law::linear(3500.0, 0.45),
-//!         1060.0, // kg/m3
-//!     )],
-//!     fixed: vec![Fixed::new("bottom")],
-//!     gravity: Some([0.0, 0.0, -9.81]),
-//!     ..Problem::default()
-//! })?;
+//! let problem = Problem::of([Region::new(Law::linear(3500.0, 0.45), 1060.0)])
+//!     .with_fixed(Fixed::at("bottom"))
+//!     .with_gravity([0.0, 0.0, -9.81]);
+//! let model = Model::build(&mesh, &problem)?;
 //! let mut integrator = sinew::integrators::build("central-difference", &Options::new())?;
 //! let StableStep::UpTo(limit) = integrator.stable_step(&model)? else { unreachable!() };
 //! let mut state = State::at_rest(model.dofs());
@@ -55,6 +50,7 @@ pub mod prelude {
     pub use sinew_mesh::structured::{self, Split};
     pub use sinew_mesh::{TetMesh, read_mesh_file, read_msh_file};
     pub use sinew_scene::Scene;
+    pub use sinew_world::World;
 }
 
 /// The README's examples, compiled and run with the tests.

@@ -190,26 +190,16 @@ fn advance(
 /// A block of tissue on a floor, pushed from above in a pulse that is half over at the checkpoint.
 fn block(cells: usize, youngs_modulus: f64) -> Result<Model, Box<dyn Error>> {
     let duration = STEP * STEPS as f64;
-    let problem = Problem {
-        regions: vec![Region::new(
-            Law::linear(youngs_modulus, 0.4),
-            1060.0, // kg/m3
-        )],
-        damping: Rayleigh {
-            mass: 5.0,
-            stiffness: 0.001,
-        },
-        fixed: vec![Fixed::new("bottom")],
-        loads: vec![LoadSpec {
-            on: "top".into(),
-            kind: LoadKind::Traction([0.0, 20.0, -50.0]), // Pa
-            ramp: Ramp::Pulse {
-                from: 0.25 * duration,
-                to: 0.75 * duration,
-            },
-        }],
-        gravity: Some([0.0, 0.0, -9.81]),
-        ..Problem::default()
+    let pulse = Ramp::Pulse {
+        from: 0.25 * duration,
+        to: 0.75 * duration,
     };
+    let push = LoadKind::Traction([0.0, 20.0, -50.0]); // Pa
+    let density = 1060.0; // kg/m3
+    let problem = Problem::of([Region::new(Law::linear(youngs_modulus, 0.4), density)])
+        .with_damping(Rayleigh::new(5.0, 0.001))
+        .with_fixed(Fixed::at("bottom"))
+        .with_load(LoadSpec::new("top", push).with_ramp(pulse))
+        .with_gravity([0.0, 0.0, -9.81]);
     Ok(Model::build(&cube(cells, 0.1, Split::Mirrored)?, &problem)?)
 }

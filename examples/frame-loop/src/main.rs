@@ -41,20 +41,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     let floor: Vec<u32> = floor.collect();
     let (touched, _) = mesh.nearest_node([SIZE[0] / 2.0, SIZE[1] / 2.0, SIZE[2]]);
 
-    let law = Law::Linear {
-        youngs_modulus: 10e3, // Pa
-        poissons_ratio: 0.4,
-    };
-    let density = 1060.0; // kg/m3
-    let problem = Problem {
-        regions: vec![Region::new(law, density)],
-        damping: Rayleigh {
-            mass: 40.0,
-            stiffness: 0.0,
-        },
-        fixed: vec![Fixed::new(On::Nodes(floor.clone()))],
-        ..Problem::default()
-    };
+    let law = Law::linear(10e3, 0.4); // Young's modulus (Pa), Poisson's ratio
+    let problem = Problem::of([Region::new(law, 1060.0)]) // kg/m3
+        .with_damping(Rayleigh::new(40.0, 0.0))
+        .with_fixed(Fixed::at(On::Nodes(floor.clone())));
     let model = Model::build(&mesh, &problem)?;
     let mut method = central_difference()?;
     let mut state = State::at_rest(model.dofs());

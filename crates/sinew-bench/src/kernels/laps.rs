@@ -48,10 +48,10 @@ pub(super) fn rows(body: &Body, quick: bool) -> Result<Vec<KernelRow>, LabError>
     let Some((program, dt)) = central_difference(model)? else {
         return Ok(Vec::new());
     };
-    let damping = Rayleigh {
-        mass: model.operators().damping().mass,
-        stiffness: model.operators().damping().stiffness,
-    };
+    let damping = Rayleigh::new(
+        model.operators().damping().mass,
+        model.operators().damping().stiffness,
+    );
     let dofs = model.operators().dofs();
     let (steps, laps) = match quick {
         true => (4, 3),

@@ -261,10 +261,7 @@ impl Second {
     fn new(shape: Shape, candidate: &Candidate, nu: f64) -> Result<Self, LabError> {
         let mut problem = shape.problem(candidate.element, nu);
         for region in &mut problem.regions {
-            region.law = Law::Hyperelastic {
-                id: LAW,
-                parameters: Parameters::new(YOUNGS_MODULUS, nu),
-            };
+            region.law = Law::hyperelastic(LAW, Parameters::new(YOUNGS_MODULUS, nu));
         }
         let model = Model::build_on(Arc::new(shape.mesh(candidate.cells)?), &problem)?;
         let mut integrator: Box<dyn Integrator> = CentralDifference.integrator();

@@ -363,14 +363,8 @@ proptest! {
 
 fn cube(cells: usize, law: Law, axes: [bool; 3]) -> Model {
     let mesh = structured::cube(cells, 0.1, Split::Kuhn).unwrap();
-    let problem = Problem {
-        regions: vec![Region::new(law, 1060.0)],
-        fixed: vec![Fixed {
-            on: "sides".into(),
-            axes,
-        }],
-        ..Problem::default()
-    };
+    let problem =
+        Problem::of([Region::new(law, 1060.0)]).with_fixed(Fixed::at("sides").along(axes));
     Model::build(&mesh, &problem).unwrap()
 }
 

@@ -165,11 +165,8 @@ fn a_node_of_no_tetrahedron_is_refused_by_its_tag() {
     let mut mesh = structured::cube(1, 0.1, Split::Kuhn).unwrap();
     mesh.points.push([1.0; 3]);
     mesh.node_tags.push(77);
-    let problem = Problem {
-        regions: vec![Region::new(Law::linear(1000.0, 0.3), 1000.0)],
-        fixed: vec![Fixed::new("bottom")],
-        ..Problem::default()
-    };
+    let problem = Problem::of([Region::new(Law::linear(1000.0, 0.3), 1000.0)])
+        .with_fixed(Fixed::at("bottom"));
     let model = Model::build(&mesh, &problem).unwrap();
     assert_eq!(
         Templates::new(&model).unwrap_err().to_string(),

@@ -370,14 +370,9 @@ mod tests {
     ) -> LargeDeformation {
         let parameters = Hyperelastic::parameters(id, 3500.0, 0.45).unwrap();
         let law = Hyperelastic::new(id, &parameters).unwrap();
-        let problem = Problem {
-            regions: vec![Region {
-                element,
-                tissue: tissue.clone(),
-                ..Region::new(Law::Hyperelastic { id, parameters }, 1060.0)
-            }],
-            ..Problem::default()
-        };
+        let problem = Problem::of([Region::new(Law::hyperelastic(id, parameters), 1060.0)
+            .with_element(element)
+            .with_tissue(tissue.clone())]);
         let smoothing = Smoothing::new(mesh, &problem.elements(), &vec![0; mesh.tets.len()]);
         let tets: Vec<u32> = (0..mesh.tets.len() as u32).collect();
         let uneven = || (0..mesh.tets.len()).map(|tet| (tet as f64 * 1.7).sin());

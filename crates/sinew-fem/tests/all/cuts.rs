@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::common::{at_most, body, linear};
 use sinew_core::spectrum::largest_eigenvalue;
-use sinew_core::{Inputs, LinearSystem, Ramp, State, System};
+use sinew_core::{Inputs, LinearSystem, State, System};
 use sinew_cutting::Sheet;
 use sinew_fem::{CutModel, CutModelError, Element, Fixed, LoadKind, LoadSpec, Model, On, Problem};
 use sinew_mesh::TetMesh;
@@ -16,7 +16,7 @@ fn cube(cells: usize) -> Arc<TetMesh> {
 
 fn held(problem: Problem) -> Problem {
     Problem {
-        fixed: vec![Fixed::new("bottom")],
+        fixed: vec![Fixed::at("bottom")],
         ..problem
     }
 }
@@ -45,7 +45,7 @@ fn some_state(model: &Model) -> State {
 #[test]
 fn supports_hold_copies_tractions_follow_triangles_and_forces_stay_with_their_nodes() {
     let mesh = cube(4);
-    let load = |on: On, kind| LoadSpec::new(on, kind, Ramp::Step);
+    let load = |on: On, kind| LoadSpec::new(on, kind);
     let problem = Problem {
         loads: vec![
             load("top".into(), LoadKind::Traction([1.0, 0.0, -5.0])),

@@ -56,10 +56,7 @@ fn problem() -> Problem {
             load("top", LoadKind::Traction([0.0; 3])),
         ],
         gravity: Some([0.0, 1.0, -9.81]),
-        damping: Rayleigh {
-            mass: 1.0,
-            stiffness: 1e-3,
-        },
+        damping: Rayleigh::new(1.0, 1e-3),
         ..Problem::default()
     }
 }

@@ -9,11 +9,7 @@ use sinew_fem::{CutModel, Fixed, Law, Model, Problem, Region};
 use sinew_mesh::structured::{self, Split};
 
 fn problem() -> Problem {
-    Problem {
-        regions: vec![Region::new(Law::linear(3500.0, 0.45), 1060.0)],
-        fixed: vec![Fixed::new("bottom")],
-        ..Problem::default()
-    }
+    Problem::of([Region::new(Law::linear(3500.0, 0.45), 1060.0)]).with_fixed(Fixed::at("bottom"))
 }
 
 fn cube(cells: usize) -> CutModel {

@@ -235,19 +235,12 @@ fn a_frame_of_a_simulator_allocates_nothing() {
     let mut problem = body(linear(3500.0, 0.3));
     problem.fixed = vec![held("bottom", [true; 3])];
     problem.damping.stiffness = 1e-4;
-    problem.moves = vec![Moving {
-        on: "top".into(),
-        axes: [false, false, true],
-        courses: vec![Course {
-            displacement: [0.0, 0.0, -0.01],
-            ramp: Ramp::Input(clamp),
-        }],
-    }];
-    problem.loads = vec![LoadSpec::new(
-        "sides",
-        LoadKind::Pressure(50.0),
-        Ramp::Input(cuff),
-    )];
+    problem.moves = vec![
+        Moving::new("top", [Course::new([0.0, 0.0, -0.01], Ramp::Input(clamp))])
+            .along([false, false, true]),
+    ];
+    problem.loads =
+        vec![LoadSpec::new("sides", LoadKind::Pressure(50.0)).with_ramp(Ramp::Input(cuff))];
     let model = Model::build(&mesh, &problem).unwrap();
     let options = Options::new().with_text("substeps", "auto");
     let mut method = build("central-difference", &options);

@@ -19,21 +19,11 @@ const EDGES: Element = Element::FbarEdge {
 };
 
 fn law(id: &'static str) -> Law {
-    Law::Hyperelastic {
-        id,
-        parameters: Parameters::new(3500.0, 0.45),
-    }
+    Law::hyperelastic(id, Parameters::new(3500.0, 0.45))
 }
 
 fn problem(law: Law, element: Element) -> Problem {
-    Problem {
-        regions: vec![Region {
-            element,
-            ..Region::new(law, 1060.0)
-        }],
-        fixed: vec![Fixed::new("bottom")],
-        ..Problem::default()
-    }
+    Problem::of([Region::new(law, 1060.0).with_element(element)]).with_fixed(Fixed::at("bottom"))
 }
 
 /// Bodies of every element and some laws, with components that are held, a support in motion, mass damping, and a linear region
@@ -51,17 +41,17 @@ fn models(mesh: &TetMesh) -> Vec<(String, Model)> {
     }
     let mut held = problem(law("neo-hookean"), EDGES);
     held.damping.mass = 20.0;
-    held.fixed.push(Fixed {
-        on: "top".into(),
-        axes: [false, true, false],
-    });
+    held.fixed
+        .push(Fixed::at("top").along([false, true, false]));
     problems.push(("held and damped".into(), held));
     let mut moved = problem(law("neo-hookean"), EDGES);
-    moved.moves.push(Moving {
-        on: "top".into(),
-        axes: [true, false, false],
-        courses: Course::along(&[0.0, 0.1], &[[0.0; 3], [0.01, 0.0, 0.0]]),
-    });
+    moved.moves.push(
+        Moving::new(
+            "top",
+            Course::along(&[0.0, 0.1], &[[0.0; 3], [0.01, 0.0, 0.0]]),
+        )
+        .along([true, false, false]),
+    );
     problems.push(("moved".into(), moved));
     let mut uneven = problem(law("neo-hookean"), EDGES);
     let region = &mut uneven.regions[0];

@@ -5,7 +5,7 @@ use crate::common::bodies;
 use bodies::{body, bump, difference, held_cube, leapfrog, run};
 use sinew_cnn::{Machine, ReferenceMachine};
 use sinew_core::{LinearSystem, System};
-use sinew_fem::{Element, Fixed, FromMesh, Law, Model, Problem, Region, SpringRule, Tissue};
+use sinew_fem::{Fixed, FromMesh, Law, Model, Problem, Region, SpringRule};
 use sinew_machines::{Chosen, FastMachine, Layout, Settings};
 use sinew_mesh::structured::{Split, cube};
 use sinew_mesh::{TetData, TetMesh};
@@ -42,16 +42,8 @@ fn a_cube_held_at_its_sides_has_a_template_for_its_inside_and_one_for_each_free_
 fn a_free_cube_has_a_template_for_each_kind_of_node() {
     // Inside, 6 faces, 12 edges and 8 corners, the corners on the diagonal of their own.
     let mesh = cube(9, 0.1, Split::Kuhn).unwrap();
-    let law = bodies::TISSUE;
-    let regions = vec![Region::new(law, 1060.0)];
-    let model = Model::build(
-        &mesh,
-        &Problem {
-            regions,
-            ..Problem::default()
-        },
-    )
-    .unwrap();
+    let problem = Problem::of([Region::new(bodies::TISSUE, 1060.0)]);
+    let model = Model::build(&mesh, &problem).unwrap();
     assert_eq!(templates(&model), 27);
 }
 
@@ -71,11 +63,7 @@ fn springs_repeat_as_tetrahedra_do() {
         calibrate: true,
         damping_ratio: 0.1,
     };
-    let problem = Problem {
-        regions: vec![Region::new(law, 1060.0)],
-        fixed: vec![Fixed::new("sides")],
-        ..Problem::default()
-    };
+    let problem = Problem::of([Region::new(law, 1060.0)]).with_fixed(Fixed::at("sides"));
     let model = Model::build(&mesh, &problem).unwrap();
     assert!(model.operators().damping().extra.is_some());
     assert_eq!(templates(&model), 3);
@@ -92,23 +80,12 @@ fn with_moduli(cells: usize, modulus: impl Fn(&TetMesh, usize) -> f64) -> Model 
         components: 1,
         values,
     });
-    let regions = vec![Region {
-        group: None,
-        density: 1060.0,
-        law: Law::linear(1.0, 0.45),
-        element: Element::P1,
-        tissue: Tissue::default(),
-        from_mesh: FromMesh {
-            youngs_modulus: Some("E".to_owned()),
-            ..FromMesh::default()
-        },
-    }];
-    let fixed = vec![Fixed::new("sides")];
-    let problem = Problem {
-        regions,
-        fixed,
-        ..Problem::default()
+    let moduli = FromMesh {
+        youngs_modulus: Some("E".to_owned()),
+        ..FromMesh::default()
     };
+    let region = Region::new(Law::linear(1.0, 0.45), 1060.0).with_from_mesh(moduli);
+    let problem = Problem::of([region]).with_fixed(Fixed::at("sides"));
     Model::build(&mesh, &problem).unwrap()
 }
 
@@ -172,10 +149,7 @@ fn voxels(cells: usize) -> Model {
         groups: Vec::new(),
         ..grid
     };
-    let problem = Problem {
-        regions: vec![Region::new(bodies::TISSUE, 1060.0)],
-        ..Problem::default()
-    };
+    let problem = Problem::of([Region::new(bodies::TISSUE, 1060.0)]);
     Model::build(&mesh, &problem).unwrap()
 }
 

@@ -14,6 +14,7 @@ pub use run_table::run_table;
 
 use std::time::Duration;
 
+use serde::{Deserialize, Serialize, Serializer};
 use sinew_core::Ramp;
 use sinew_scene::Simulation;
 
@@ -68,8 +69,22 @@ pub enum NotMeasured {
     Pilot(#[from] PilotError),
 }
 
+/// Serializes as its sentence.
+impl Serialize for LeftOut {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
+    }
+}
+
+/// Serializes as its sentence.
+impl Serialize for NotMeasured {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
+    }
+}
+
 /// The answer to a [`Question`], with how it was found.
-#[derive(Debug)]
+#[derive(Debug, Serialize)]
 pub struct Advice {
     /// The question.
     pub question: Question,
@@ -108,7 +123,7 @@ pub struct Advice {
 /// The runs that answer a question. Total cost is that of set-up and of the whole scene; errors are
 /// those over the whole scene, as they were measured or, where [`Advice::covers_the_scene`] is
 /// false, as they are to be expected ([`Row::expected_error`](crate::Row::expected_error)).
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub enum Answer {
     /// At least one run keeps to tolerance and budget.
     Met {

@@ -1,12 +1,13 @@
 //! Errors that an estimate of the error in space does not cover.
 
+use serde::{Deserialize, Serialize};
 use sinew_scene::{MeshSource, Simulation, Subject as SceneSubject, WarningKind};
 
 use super::quantity::{Quantity, Subject, is_estimated};
 use crate::number::{percent, three};
 
 /// A restriction of an estimate. It prints as one sentence.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error, Serialize, Deserialize)]
 #[non_exhaustive]
 pub enum Caveat {
     /// Two meshes do not show an order.

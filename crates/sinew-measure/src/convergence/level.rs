@@ -1,5 +1,6 @@
 //! A scene solved on one mesh.
 
+use serde::{Deserialize, Serialize};
 use sinew_core::{
     LoadTime, Moment, Outcome, RecordError, Recorder, Run, RunReport, StepReport, Verdict, simulate,
 };
@@ -16,7 +17,7 @@ use crate::reference::follow_affordably;
 const BALANCED: f64 = 1e-9;
 
 /// A mesh and the runs on it.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Level {
     /// Nodes.
     pub nodes: usize,

@@ -23,6 +23,7 @@ pub use prediction::{LevelPrediction, Prediction, TimeCheck, predict};
 pub use quantity::{Quantity, Subject, When};
 pub use richardson::{Estimate, richardson};
 
+use serde::{Deserialize, Serialize};
 use sinew_core::vectors::norm;
 use sinew_scene::Simulation;
 
@@ -33,7 +34,7 @@ use observed::{Observed, Places};
 pub const LEVELS: std::ops::RangeInclusive<usize> = 2..=4;
 
 /// A scene on its mesh and on refined ones.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Convergence {
     /// The meshes, the scene's first, and what the runs on them took.
     pub levels: Vec<Level>,

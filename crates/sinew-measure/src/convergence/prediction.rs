@@ -2,6 +2,7 @@
 
 use std::time::Instant;
 
+use serde::{Deserialize, Serialize};
 use sinew_core::spectrum::Spectrum;
 use sinew_scene::{RefinementError, Simulation};
 
@@ -11,7 +12,7 @@ use super::step::{parts, stable_step};
 use crate::forecast::Forecast;
 
 /// Methods to find errors in time.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum TimeCheck {
     /// Against a reference solution, whose own error is below 1e-6.
     Reference,
@@ -20,7 +21,7 @@ pub enum TimeCheck {
 }
 
 /// Counts of an estimate, for every mesh, and the time it will take.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Prediction {
     /// The meshes, the scene's first.
     pub levels: Vec<LevelPrediction>,
@@ -29,14 +30,17 @@ pub struct Prediction {
     /// Time (s) by this computer's clock, from a few steps and products on the scene's mesh.
     pub seconds: f64,
     /// The scene's step (s) and the number of its steps.
+    #[serde(skip)]
     pub(super) dt: f64,
+    #[serde(skip)]
     pub(super) steps: usize,
     /// Steps from one compared instant to the next.
+    #[serde(skip)]
     pub(super) stride: usize,
 }
 
 /// Counts on one mesh; on refined ones expected.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LevelPrediction {
     /// Nodes.
     pub nodes: usize,

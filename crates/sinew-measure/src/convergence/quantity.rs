@@ -1,9 +1,11 @@
 //! A quantity that is compared between meshes.
 
+use serde::{Deserialize, Serialize};
+
 use super::richardson::Estimate;
 
 /// The subject of a quantity.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Subject {
     /// The displacement of all nodes of the scene's mesh (m).
     Displacement,
@@ -16,7 +18,7 @@ pub enum Subject {
 }
 
 /// The time of a quantity.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum When {
     /// The whole run.
     Run,
@@ -25,7 +27,7 @@ pub enum When {
 }
 
 /// A quantity on all meshes.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Quantity {
     /// Its subject.
     pub subject: Subject,

@@ -1,5 +1,7 @@
 //! Richardson's extrapolation over meshes of which each has edges of half the length of the one before.
 
+use serde::{Deserialize, Serialize};
+
 /// The order in the length of edges that linear elements have where the solution is smooth: of displacements in the mean
 /// square, and of energies (Strang and Fix, An Analysis of the Finite Element Method, 1973, chapters 3 and 8). At the edges of
 /// supports and at corners that point inwards stresses are singular as `r^(a-1)`, `a` between 1/2 and 1, and both have order
@@ -13,7 +15,7 @@ const LEAST: f64 = 0.25;
 const SAME: f64 = 1e-6;
 
 /// Error estimate for a quantity from its values on several meshes.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Estimate {
     /// The differences between neighbouring meshes, the scene's first, over the size of the quantity (fraction).
     pub differences: Vec<f64>,

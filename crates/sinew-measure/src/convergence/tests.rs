@@ -78,6 +78,9 @@ fn waves_in_a_column_have_the_error_of_dalemberts_solution_and_order_two() {
     let prediction = predict(&simulation, 3).unwrap();
     assert_eq!(prediction.time_check, TimeCheck::Reference);
     let found = converge(&simulation, &prediction).unwrap();
+    let json = serde_json::to_value(&found).unwrap();
+    let again: Convergence = serde_json::from_value(json).unwrap();
+    assert_eq!(again, found);
     let top = Subject::Probe("top".into());
     let estimate = &of(&found, &top, When::Run).estimate;
     // The truth at the same instants.

@@ -1,12 +1,13 @@
 //! A method that a search may choose.
 
+use serde::{Deserialize, Serialize};
 use sinew_core::{Accuracy, StableStep};
 use sinew_scene::Simulation;
 
 use crate::method_choice::{MethodChoice, MethodError};
 
 /// A method with what its search needs to know of it.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Candidate {
     /// The method.
     pub method: MethodChoice,

@@ -1,9 +1,11 @@
 //! The goal of a search.
 
+use serde::{Deserialize, Serialize};
+
 use crate::row::Row;
 
 /// The largest error and cost of a run.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Goal {
     /// Largest relative error over the whole scene (fraction), to be expected where not all of it
     /// is compared.

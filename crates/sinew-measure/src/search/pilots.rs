@@ -2,6 +2,7 @@
 
 use std::time::Duration;
 
+use serde::{Deserialize, Serialize};
 use sinew_core::{LinearSystem, LoadOverStep, OptionError, Ramp, Run};
 use sinew_scene::{SceneModel, Simulation};
 
@@ -14,7 +15,7 @@ use crate::row::Row;
 use crate::timing::Effort;
 
 /// A run that was measured, with the method that made it.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Pilot {
     /// The method.
     pub method: MethodChoice,

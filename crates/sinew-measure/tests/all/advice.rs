@@ -211,6 +211,9 @@ fn what_saturates_is_never_advised() {
             .iter()
             .all(|pilot| pilot.method.integrator != "cnn")
     );
+    let json = serde_json::to_value(&advice).unwrap();
+    assert_eq!(json["question"]["tolerance"], 0.5);
+    assert_eq!(json["written"]["Ok"]["method"]["integrator"], "cnn");
     let written = advice.written.unwrap();
     assert!(written.row.guarded);
     // Section 2 of the paper's table at 20 ms.

@@ -75,6 +75,7 @@ fn a_cube_that_falls_into_another_is_told_with_depth_place_time_and_parts() {
     );
     let end = run(&path("whole"), &simulation, &mut ());
     assert_eq!(end.ended, Ended::Finished);
+    assert_eq!(serde_json::to_value(&end).unwrap()["ended"], "Finished");
     let told = summary(&path("whole"));
     // What of the way of a free fall goes beyond the gap.
     let depth = 0.5 * G * 0.08 * 0.08 - 0.005;

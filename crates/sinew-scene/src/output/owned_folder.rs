@@ -7,6 +7,8 @@ use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
+use serde::{Deserialize, Serialize};
+
 use super::error::OutputError;
 use super::folder::OutputFolder;
 use super::identity::{Identity, Input};
@@ -46,7 +48,7 @@ pub enum Tenant {
 }
 
 /// Fate of the result that was kept while a new one was written.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Replaced {
     /// There was none, or it is gone.
     Whole,

@@ -3,6 +3,7 @@
 use std::fmt;
 use std::sync::Arc;
 
+use serde::{Deserialize, Serialize};
 use sinew_core::State;
 use sinew_fem::FieldError;
 use sinew_tools::vector::{Vector, add};
@@ -17,7 +18,7 @@ use crate::simulation::BodyModel;
 const LIPS: f64 = 0.5;
 
 /// Two parts of a body, or two surfaces of one part, that are in each other.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Overlap {
     /// Distance (m) of the deepest point from the surface of the part that it is in.
     pub depth: f64,

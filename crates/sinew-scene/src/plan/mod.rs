@@ -10,6 +10,7 @@ mod tools;
 
 use std::fmt;
 
+use serde::Serialize;
 use sinew_core::StableStep;
 
 pub use section::PlanSection;
@@ -21,7 +22,7 @@ use matrices::Matrices;
 
 /// A description of a simulation: what was built, what was left out and why, and warnings. It prints
 /// one paragraph for each section, in lines of at most 100 characters.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Plan {
     /// Title of the scene.
     pub title: String,

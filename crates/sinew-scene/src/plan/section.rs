@@ -1,7 +1,9 @@
 //! Sections of a plan.
 
+use serde::Serialize;
+
 /// One section of a plan.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct PlanSection {
     /// Its subject.
     pub heading: &'static str,

@@ -1,8 +1,6 @@
 //! A force that moves a body a little.
 
-use sinew_fem::{
-    Element, Fixed, FromMesh, Law, LoadKind, LoadSpec, Model, On, Problem, Region, Tissue,
-};
+use sinew_fem::{Fixed, FromMesh, Law, LoadKind, LoadSpec, Model, On, Problem, Region};
 use sinew_mesh::TetMesh;
 
 use super::parts::Parts;
@@ -38,35 +36,17 @@ pub(super) fn proposed(mesh: &TetMesh, parts: &Parts, stiffness: Option<&str>) -
 
 /// The largest component of displacement (m) at rest under a force (N); `None` where it is not found.
 fn displacement(mesh: &TetMesh, parts: &Parts, stiffness: Option<&str>, force: f64) -> Option<f64> {
-    let problem = Problem {
-        regions: vec![Region {
-            group: None,
-            density: DENSITY,
-            law: Law::Linear {
-                youngs_modulus: match stiffness {
-                    Some(_) => 1.0,
-                    None => YOUNGS_MODULUS,
-                },
-                poissons_ratio: POISSONS_RATIO,
-            },
-            element: Element::P1,
-            tissue: Tissue::default(),
-            from_mesh: FromMesh {
-                youngs_modulus: stiffness.map(str::to_owned),
-                ..FromMesh::default()
-            },
-        }],
-        fixed: vec![Fixed {
-            on: On::Nodes(parts.held.nodes(mesh)),
-            axes: [true; 3],
-        }],
-        loads: vec![LoadSpec {
-            on: On::Nodes(parts.loaded.nodes(mesh)),
-            kind: LoadKind::Force([0.0, 0.0, -force]),
-            ramp: sinew_core::Ramp::Step,
-        }],
-        ..Problem::default()
+    let modulus = stiffness.map_or(YOUNGS_MODULUS, |_| 1.0);
+    let moduli = FromMesh {
+        youngs_modulus: stiffness.map(str::to_owned),
+        ..FromMesh::default()
     };
+    let region = Region::new(Law::linear(modulus, POISSONS_RATIO), DENSITY);
+    let loaded = On::Nodes(parts.loaded.nodes(mesh));
+    let force = LoadKind::Force([0.0, 0.0, -force]);
+    let problem = Problem::of([region.with_from_mesh(moduli)])
+        .with_fixed(Fixed::at(On::Nodes(parts.held.nodes(mesh))))
+        .with_load(LoadSpec::new(loaded, force));
     let model = Model::build(mesh, &problem).ok()?;
     let largest = at_rest(&model)?
         .iter()

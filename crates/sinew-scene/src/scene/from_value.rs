@@ -1,9 +1,10 @@
-//! Scenes from values without a text.
+//! Scenes from values without a text, and as values.
 
 use std::path::Path;
 use std::sync::Arc;
 
-use serde::Serialize;
+use serde::ser::Error as _;
+use serde::{Serialize, Serializer};
 
 use super::Scene;
 use crate::error::{Fault, SceneError};
@@ -50,5 +51,25 @@ impl Scene {
                 Err(SceneError::new(&nothing, Fault::Values { reason }))
             }
         }
+    }
+}
+
+/// Serializes as the tree of values of its document, which [`Scene::from_value`] reads.
+///
+/// ```
+/// use sinew_scene::{Scene, SceneSource};
+///
+/// let text = "[oscillator]\nmass = 0.1\nstiffness = 100.0\ndamping = 1.0\nvelocity = -5.0\n\
+///             [run]\nduration = 1.0\nintegrator = \"central-difference\"\ndt = 0.01\n";
+/// let scene = Scene::parse(SceneSource::new("spring.toml", text))?;
+/// let value = serde_json::to_value(&scene)?;
+/// assert_eq!(value["run"]["dt"], 0.01);
+/// assert_eq!(Scene::from_value(&value, ".")?.subject(), scene.subject());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+impl Serialize for Scene {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let document = self.source().text().parse::<toml::Table>();
+        document.map_err(S::Error::custom)?.serialize(serializer)
     }
 }

@@ -150,11 +150,7 @@ fn read(
         Some(ramp) => ramp::read(ramp)?,
         None => Ramp::Step.into(),
     };
-    let spec = LoadSpec {
-        on: On::Group(group),
-        kind,
-        ramp: factor.ramp,
-    };
+    let spec = LoadSpec::new(On::Group(group), kind).with_ramp(factor.ramp);
     Ok((spec, factor.file))
 }
 

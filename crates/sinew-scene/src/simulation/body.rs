@@ -87,10 +87,7 @@ fn moving(motion: &Motion, places: &Places, index: usize) -> Result<Moving, Scen
         group, axes, way, ..
     } = motion;
     let courses = match way {
-        Way::Displacement(displacement, ramp) => vec![Course {
-            displacement: *displacement,
-            ramp: ramp.clone(),
-        }],
+        Way::Displacement(displacement, ramp) => vec![Course::new(*displacement, ramp.clone())],
         Way::Velocity(velocity) => vec![Course::at_velocity(*velocity)],
         Way::Table(written) => {
             let place = places.of(&places.motions, index);
@@ -100,11 +97,7 @@ fn moving(motion: &Motion, places: &Places, index: usize) -> Result<Moving, Scen
             Course::along(&table.times, &table.positions)
         }
     };
-    Ok(Moving {
-        on: On::Group(group.clone()),
-        axes: *axes,
-        courses,
-    })
+    Ok(Moving::new(On::Group(group.clone()), courses).along(*axes))
 }
 
 /// The key that gives the way of a motion.

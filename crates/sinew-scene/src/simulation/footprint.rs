@@ -1,12 +1,13 @@
 //! The memory that a scene needs, before it is built.
 
+use serde::{Deserialize, Serialize};
 use sinew_fem::{Law, On};
 use sinew_mesh::TetMesh;
 
 use crate::scene::Body;
 
 /// Counts of a body and the memory it needs, from its mesh and its supports.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Footprint {
     /// Nodes.
     pub nodes: usize,

@@ -3,6 +3,7 @@
 use std::fmt;
 use std::sync::Arc;
 
+use serde::{Deserialize, Serialize};
 use sinew_core::{Inputs, LoadTime, State};
 use sinew_fem::{FieldError, On};
 use sinew_tools::vector::{add, cross, sub};
@@ -12,7 +13,7 @@ use super::scene_body::SceneBody;
 use crate::scene::Subject;
 
 /// The force that holds or moves a part of the body.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Reaction {
     /// The table of the scene that asks for it.
     pub by: ReactionOf,
@@ -25,7 +26,7 @@ pub struct Reaction {
 }
 
 /// A part of the body that a table of the scene holds or moves.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct HeldPlace {
     /// The table.
     pub by: ReactionOf,
@@ -39,7 +40,7 @@ pub struct HeldPlace {
 }
 
 /// A table of a scene by which components are held or moved, by its place in the list (0-based).
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum ReactionOf {
     /// `[[fixed]]`.
     Fixed(usize),

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use sinew_core::{Options, SetupError};
-use sinew_fem::{Element, Fixed, FromMesh, Law, Model, Problem, Region, Tissue};
+use sinew_fem::{Fixed, Law, Model, Problem, Region};
 use sinew_mesh::structured::{Split, block};
 use sinew_tools::Tools;
 
@@ -34,24 +34,8 @@ pub(super) fn check(settings: &RunSettings, run: &Place) -> Result<(), SceneErro
 /// A cube that no tool touches, but which could be; `None` never.
 fn stand_in() -> Option<Model> {
     let mesh = block([1; 3], [1.0; 3], Split::Kuhn).ok()?;
-    let problem = Problem {
-        regions: vec![Region {
-            group: None,
-            density: 1000.0,
-            law: Law::Linear {
-                youngs_modulus: 1000.0,
-                poissons_ratio: 0.3,
-            },
-            element: Element::P1,
-            tissue: Tissue::default(),
-            from_mesh: FromMesh::default(),
-        }],
-        fixed: vec![Fixed {
-            on: "bottom".into(),
-            axes: [true; 3],
-        }],
-        ..Problem::default()
-    };
+    let problem = Problem::of([Region::new(Law::linear(1000.0, 0.3), 1000.0)])
+        .with_fixed(Fixed::at("bottom"));
     let model = Model::build(&mesh, &problem).ok()?;
     let tools = Tools::new(Vec::new(), Vec::new()).ok()?;
     Some(model.with_contact(Arc::new(tools)))

@@ -10,6 +10,26 @@ fn is_in(path: &Path, folder: &str) -> bool {
     path.parent().is_some_and(|parent| parent.ends_with(folder))
 }
 
+#[test]
+fn each_is_a_value_that_reads_as_the_same_scene() {
+    for path in scenes() {
+        let scene = Scene::load(&path).unwrap();
+        let folder = path.parent().unwrap();
+        let json = serde_json::to_value(&scene).unwrap();
+        let again = [
+            Scene::from_value(&scene, folder).unwrap(),
+            Scene::from_value(&json, folder).unwrap(),
+        ];
+        for again in again {
+            assert_eq!(again.title(), scene.title(), "{}", path.display());
+            assert_eq!(again.subject(), scene.subject(), "{}", path.display());
+            assert_eq!(again.settings(), scene.settings(), "{}", path.display());
+            assert_eq!(again.output(), scene.output(), "{}", path.display());
+            assert_eq!(again.input_files()[1..], scene.input_files()[1..]);
+        }
+    }
+}
+
 /// One test, because each scene is built once.
 #[test]
 fn all_are_built_plans_fit_a_terminal_and_memory_is_foretold_from_the_mesh() {

@@ -1,10 +1,7 @@
 //! The scenes that come with the project, and other ways to write the same.
 
 use sinew_core::{OptionValue, Options, Ramp};
-use sinew_fem::{
-    Element, Fixed, FromMesh, Law, LoadKind, LoadSpec, Problem, Rayleigh, Region, SpringRule,
-    Tissue,
-};
+use sinew_fem::{Fixed, Law, LoadKind, LoadSpec, Problem, Rayleigh, Region, SpringRule};
 use sinew_scene::{
     Body, Formula, Initial, MeshChanges, MeshSource, Oscillator, ProbeAt, ProbePoint, Quantity,
     RunSettings, Scene, SceneSource, Subject, TimeStep,
@@ -91,33 +88,22 @@ fn the_papers_cube() {
         cutting: None,
         tools: Vec::new(),
         problem: Problem {
-            regions: vec![Region {
-                group: Some("tissue".into()),
-                density: 1060.0,
-                law: Law::Springs {
-                    youngs_modulus: 3500.0,
-                    rule: SpringRule::Lloyd,
-                    calibrate: false,
-                    damping_ratio: 0.0,
-                },
-                element: Element::P1,
-                tissue: Tissue::default(),
-                from_mesh: FromMesh::default(),
-            }],
-            damping: Rayleigh {
-                mass: 80.0,
-                stiffness: 0.0,
-            },
-            fixed: vec![Fixed {
-                on: "sides".into(),
-                axes: [true; 3],
-            }],
+            regions: vec![
+                Region::new(
+                    Law::Springs {
+                        youngs_modulus: 3500.0,
+                        rule: SpringRule::Lloyd,
+                        calibrate: false,
+                        damping_ratio: 0.0,
+                    },
+                    1060.0,
+                )
+                .on("tissue"),
+            ],
+            damping: Rayleigh::new(80.0, 0.0),
+            fixed: vec![Fixed::at("sides")],
             moves: Vec::new(),
-            loads: vec![LoadSpec {
-                on: "top".into(),
-                kind: LoadKind::Traction([0.0, 0.0, -500.0]),
-                ramp: Ramp::Step,
-            }],
+            loads: vec![LoadSpec::new("top", LoadKind::Traction([0.0, 0.0, -500.0]))],
             gravity: None,
         },
         load_files: vec![None],
@@ -221,10 +207,7 @@ substeps = "auto"
         calibrate: true,
         damping_ratio: 0.5,
     };
-    let linear = Law::Linear {
-        youngs_modulus: 1e4,
-        poissons_ratio: 0.45,
-    };
+    let linear = Law::linear(1e4, 0.45);
     assert_eq!(laws, [linear, springs]);
     assert_eq!(body.problem.damping.stiffness, 1e-3);
     assert_eq!(body.problem.fixed[0].axes, [true, false, true]);

@@ -13,6 +13,7 @@ use crate::vector::dot;
 
 /// A tool after a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ToolReport {
     /// The force on it (N), friction included: the mean over the step, or over the last part of one that is cut into parts.
     pub force: [f64; 3],
@@ -48,6 +49,7 @@ pub struct ToolReport {
 
 /// A tool that is a body of its own, after a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct BodyReport {
     /// The velocity (m/s) of its origin in the middle of the step.
     pub velocity: [f64; 3],
@@ -61,6 +63,7 @@ pub struct BodyReport {
 
 /// Cut faces after a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct LipsReport {
     /// Pairs of nodes that pushed each other.
     pub contacts: usize,
@@ -72,6 +75,7 @@ pub struct LipsReport {
 
 /// Signed distance between a cell and a tool.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Depth {
     /// The distance (m) to the tool's surface, negative inside.
     pub gap: f64,

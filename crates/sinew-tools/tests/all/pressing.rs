@@ -10,10 +10,7 @@ use sinew_tools::{Convex, Grasp, Motion, Pose};
 #[test]
 fn machines_threads_and_batches_lead_to_the_same_motion() {
     let mut cube = Block::of([0.06; 3], [8; 3]);
-    cube.damping = Rayleigh {
-        mass: 5.0,
-        stiffness: 2e-4,
-    };
+    cube.damping = Rayleigh::new(5.0, 2e-4);
     let down = [(0.0, [0.03, 0.03, 0.0725]), (0.1, [0.028, 0.031, 0.066])];
     let mut ball = tool(Convex::sphere(0.012).unwrap(), through(&down, [0.0; 3]));
     ball.friction = 0.3;

@@ -72,14 +72,16 @@ fn bent(id: &'static str) -> Result<(Vec<u64>, [f64; 2]), LabError> {
     let inertia = THICK.powi(4) / 12.0;
     let mut problem = tissue::free(tissue::law(id, youngs_modulus, 0.3), Element::P1);
     problem.fixed = vec![held(On::Nodes(root), [true; 3])];
-    problem.loads = vec![LoadSpec {
-        on: On::Nodes(tip.clone()),
-        kind: LoadKind::Force([0.0, 0.0, FORCE * 3.0 * youngs_modulus * inertia]),
-        ramp: Ramp::Table {
+    problem.loads = vec![
+        LoadSpec::new(
+            On::Nodes(tip.clone()),
+            LoadKind::Force([0.0, 0.0, FORCE * 3.0 * youngs_modulus * inertia]),
+        )
+        .with_ramp(Ramp::Table {
             times: vec![0.0, SLOW],
             values: vec![0.0, 1.0],
-        },
-    }];
+        }),
+    ];
     let model = Model::build(&mesh, &problem)?;
     let states = follow(&model, 4)?;
     let (last, _) = states.last().ok_or_else(LabError::no_body)?;

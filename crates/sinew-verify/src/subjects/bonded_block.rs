@@ -95,14 +95,10 @@ fn checks() -> Vec<Check> {
 fn force_on_top(nu: f64, element: Element, cells: usize, press: f64) -> Result<f64, LabError> {
     let law = tissue::law("neo-hookean", 1.0, nu);
     let mut problem = tissue::standing(law, element);
-    problem.moves = vec![Moving {
-        on: "top".into(),
-        axes: [true; 3],
-        courses: vec![Course {
-            displacement: [0.0, 0.0, -press / SLOW],
-            ramp: Ramp::Linear,
-        }],
-    }];
+    problem.moves = vec![Moving::new(
+        "top",
+        [Course::new([0.0, 0.0, -press / SLOW], Ramp::Linear)],
+    )];
     let model = Model::build(&cube(cells, 1.0, Split::Kuhn)?, &problem)?;
     let states = follow(&model, 12)?;
     let (state, _) = states.last().ok_or_else(LabError::no_body)?;

@@ -219,10 +219,7 @@ fn checks() -> Vec<Check> {
 /// A block of 10 cells, held at the bottom.
 fn cube(nu: f64, damping: f64) -> Problem {
     Problem {
-        damping: Rayleigh {
-            mass: damping,
-            stiffness: 0.0,
-        },
+        damping: Rayleigh::new(damping, 0.0),
         fixed: vec![held("bottom", [true; 3])],
         ..body(YOUNGS_MODULUS, nu, Element::P1)
     }
@@ -447,10 +444,7 @@ fn expected_acceleration(angle: f64) -> f64 {
 fn on_an_incline(angle: f64) -> Result<f64, LabError> {
     let (sin, cos) = angle.to_radians().sin_cos();
     let problem = Problem {
-        damping: Rayleigh {
-            mass: 0.0,
-            stiffness: 2e-3,
-        },
+        damping: Rayleigh::new(0.0, 2e-3),
         gravity: Some([GRAVITY * sin, 0.0, -GRAVITY * cos]),
         ..body(YOUNGS_MODULUS, 0.0, Element::P1)
     };

@@ -64,7 +64,7 @@ fn of_law(law: usize, poissons_ratio: f64) -> Problem {
     if id != "linear" {
         for region in &mut problem.regions {
             let parameters = Parameters::new(YOUNGS_MODULUS, poissons_ratio);
-            region.law = Law::Hyperelastic { id, parameters };
+            region.law = Law::hyperelastic(id, parameters);
         }
     }
     problem
@@ -161,14 +161,10 @@ pub(super) fn under_tension() -> Result<Vec<f64>, LabError> {
         for law in 0..LAWS {
             let mut problem = Problem {
                 fixed: vec![held(end(&|place| place[0] < 1e-9), [true; 3])],
-                moves: vec![Moving {
-                    on: end(&|place| place[0] > size[0] - 1e-9),
-                    axes: [true; 3],
-                    courses: vec![Course {
-                        displacement: [strain * size[0], 0.0, 0.0],
-                        ramp: Ramp::Step,
-                    }],
-                }],
+                moves: vec![Moving::new(
+                    end(&|place| place[0] > size[0] - 1e-9),
+                    [Course::new([strain * size[0], 0.0, 0.0], Ramp::Step)],
+                )],
                 ..of_law(law, 0.0)
             };
             problem.damping.mass = 40.0;

@@ -50,12 +50,7 @@ fn checks() -> Vec<Check> {
         "sag of tetrahedra (m)",
         Asked::relative(linear, 0.01),
         Source::ClosedForm("rho g L^2/(2 E)"),
-        |_| {
-            sag_of_tetrahedra(Law::Linear {
-                youngs_modulus: 2.5 * MODULUS,
-                poissons_ratio: 0.25,
-            })
-        },
+        |_| sag_of_tetrahedra(Law::linear(2.5 * MODULUS, 0.25)),
     ));
     for &(id, sag) in SAG {
         let prototype =

@@ -171,10 +171,7 @@ fn force(press: Press) -> Result<f64, LabError> {
     let shear = YOUNGS_MODULUS / (2.0 * (1.0 + press.nu));
     let slowest = 1.57 * (shear / DENSITY).sqrt() / size;
     let problem = Problem {
-        damping: Rayleigh {
-            mass: 2.0 * slowest,
-            stiffness: 0.0,
-        },
+        damping: Rayleigh::new(2.0 * slowest, 0.0),
         fixed: vec![
             held(on(&|[_, _, z]| near(z, -size)), [true; 3]),
             held(on(&|[x, _, _]| near(x, 0.0)), [true, false, false]),

@@ -16,7 +16,7 @@ use crate::command::Command;
 use crate::input_file::{InputFile, InputFileError, sha256};
 
 /// Identity of the program and the scene of a log.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Header {
     /// Version of the program.
     pub program: String,
@@ -57,11 +57,12 @@ pub struct Entry {
 }
 
 /// All commands of a session, each with the number of steps before it, and the number of steps at its end.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Log {
     header: Header,
     entries: Vec<Entry>,
     steps: usize,
+    #[serde(skip)]
     is_cut_off: bool,
 }
 

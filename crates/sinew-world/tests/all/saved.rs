@@ -1,5 +1,8 @@
 //! A motion that is kept and continued: undone, and carried over to another world.
 
+use std::fmt::Debug;
+
+use serde::{Serialize, de::DeserializeOwned};
 use sinew_scene::Scene;
 use sinew_world::{Command, CommandError, Replay, RestoreError, World};
 
@@ -98,4 +101,32 @@ fn a_world_takes_the_motion_of_its_own_scene_and_kind_only() {
         following(other).restore(&saved),
         Err(RestoreError::State(_) | RestoreError::Cutting(_))
     ));
+}
+
+/// Writes a value and reads it again.
+fn is_read_again<T: Serialize + DeserializeOwned + PartialEq + Debug>(value: &T) {
+    let written = serde_json::to_value(value).unwrap();
+    assert_eq!(*value, serde_json::from_value(written).unwrap());
+}
+
+#[test]
+fn reports_are_values_that_are_written_and_read() {
+    let mut world = session(&cube());
+    drive(&mut world, 0..60);
+    for tool in world.tools() {
+        is_read_again(&world.tool_report(tool).unwrap());
+        is_read_again(&world.tool_gap(tool));
+        // The plate is turned about y alone, so that its rotation vector keeps every bit.
+        is_read_again(&world.tool_pose(tool));
+    }
+    is_read_again(&world.reactions().unwrap());
+    is_read_again(&world.energy().unwrap());
+    is_read_again(&world.overlap());
+    is_read_again(&world.cuts().copied());
+    is_read_again(&world.step().unwrap());
+    is_read_again(&world.log().entries().to_vec());
+    is_read_again(&world.advance(1, &mut ()).unwrap());
+    let log = serde_json::to_value(world.log()).unwrap();
+    assert_eq!(log["entries"][0]["step"], 5);
+    assert_eq!(log["steps"], world.log().steps());
 }

@@ -52,23 +52,13 @@ fn a_frame_loop_needs_no_other_import() {
     let mesh = structured::cube(2, 0.1, Split::Mirrored).unwrap();
     let mut inputs = Inputs::new();
     let clamp: Channel = inputs.add_channel(Between::Line);
-    let problem = Problem {
-        regions: vec![Region::new(Law::linear(3500.0, 0.4), 1060.0)],
-        damping: Rayleigh {
-            mass: 5.0,
-            stiffness: 0.0,
-        },
-        fixed: vec![Fixed::new(On::from("bottom"))],
-        moves: vec![Moving {
-            on: "top".into(),
-            axes: [true; 3],
-            courses: vec![Course {
-                displacement: [0.0, 0.0, -0.01],
-                ramp: Ramp::Input(clamp),
-            }],
-        }],
-        ..Problem::default()
-    };
+    let problem = Problem::of([Region::new(Law::linear(3500.0, 0.4), 1060.0)])
+        .with_damping(Rayleigh::new(5.0, 0.0))
+        .with_fixed(Fixed::at("bottom"))
+        .with_move(Moving::new(
+            "top",
+            [Course::new([0.0, 0.0, -0.01], Ramp::Input(clamp))],
+        ));
     let model = Model::build(&mesh, &problem).unwrap();
     let options = Options::new().with_text("substeps", "auto");
     let method = sinew::integrators::build("central-difference", &options);

@@ -1,7 +1,7 @@
 //! A core a thousand times stiffer than the tissue around it, of another law.
 
 use sinew_core::Ramp;
-use sinew_fem::{Element, FromMesh, LoadKind, LoadSpec, Problem, Region, Tissue};
+use sinew_fem::{Element, LoadKind, LoadSpec, Problem, Region};
 use sinew_measure::MethodChoice;
 
 use super::follow::{Planned, follow, reference};
@@ -34,13 +34,10 @@ const INSTANTS: usize = 30;
 const FINE: f64 = 5e-5;
 
 fn specimen(core: &'static str, element: Element, ramp: Ramp) -> Result<Specimen, LabError> {
-    let region = |group: &str, law| Region {
-        group: Some(group.into()),
-        density: tissue::DENSITY,
-        law,
-        element,
-        tissue: Tissue::default(),
-        from_mesh: FromMesh::default(),
+    let region = |group: &str, law| {
+        Region::new(law, tissue::DENSITY)
+            .on(group)
+            .with_element(element)
     };
     let problem = Problem {
         regions: vec![
@@ -48,11 +45,7 @@ fn specimen(core: &'static str, element: Element, ramp: Ramp) -> Result<Specimen
             region("inclusion", tissue::law(core, RATIO * YOUNGS_MODULUS, 0.45)),
         ],
         damping: tissue::of_mass(10.0),
-        loads: vec![LoadSpec {
-            on: "top".into(),
-            kind: LoadKind::Traction([300.0, 0.0, -800.0]),
-            ramp,
-        }],
+        loads: vec![LoadSpec::new("top", LoadKind::Traction([300.0, 0.0, -800.0])).with_ramp(ramp)],
         ..tissue::standing(tissue::soft(), element)
     };
     Ok(Specimen::new(

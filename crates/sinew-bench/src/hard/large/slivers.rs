@@ -32,11 +32,10 @@ const LARGEST: f64 = 0.05;
 fn specimen(mesh: &TetMesh, law: &'static str) -> Result<Specimen, LabError> {
     let problem = Problem {
         damping: tissue::of_mass(10.0),
-        loads: vec![LoadSpec {
-            on: "top".into(),
-            kind: LoadKind::Traction([200.0, 0.0, -800.0]),
-            ramp: Ramp::Sin2 { rise: 0.1 },
-        }],
+        loads: vec![
+            LoadSpec::new("top", LoadKind::Traction([200.0, 0.0, -800.0]))
+                .with_ramp(Ramp::Sin2 { rise: 0.1 }),
+        ],
         ..tissue::standing(tissue::law(law, YOUNGS_MODULUS, 0.45), Element::P1)
     };
     Ok(Specimen::new(mesh, &problem)?)

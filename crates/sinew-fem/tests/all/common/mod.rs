@@ -1,6 +1,6 @@
 //! Shared by the verification tests: small models, static solutions, and figures beside their references.
 
-use sinew_core::{ElasticLaw, LinearSystem, LoadTime, Ramp, System, TangentKind, Trial};
+use sinew_core::{ElasticLaw, LinearSystem, LoadTime, System, TangentKind, Trial};
 use sinew_fem::{Element, Fixed, Law, LoadKind, LoadSpec, Model, Problem, Region, SpringRule};
 use sinew_mesh::structured::{self, Split};
 use sinew_mesh::{Group, GroupMembers, TetMesh};
@@ -42,10 +42,7 @@ pub(crate) fn springs(youngs_modulus: f64, rule: SpringRule, calibrate: bool) ->
 
 /// A free body of one material.
 pub(crate) fn body(law: Law) -> Problem {
-    Problem {
-        regions: vec![Region::new(law, DENSITY)],
-        ..Problem::default()
-    }
+    Problem::of([Region::new(law, DENSITY)])
 }
 
 pub(crate) fn held(group: &str) -> Fixed {
@@ -53,14 +50,11 @@ pub(crate) fn held(group: &str) -> Fixed {
 }
 
 pub(crate) fn held_along(group: &str, axes: [bool; 3]) -> Fixed {
-    Fixed {
-        on: group.into(),
-        axes,
-    }
+    Fixed::at(group).along(axes)
 }
 
 pub(crate) fn load(group: &str, kind: LoadKind) -> LoadSpec {
-    LoadSpec::new(group, kind, Ramp::Step)
+    LoadSpec::new(group, kind)
 }
 
 pub(crate) fn build(mesh: &TetMesh, problem: &Problem) -> Model {

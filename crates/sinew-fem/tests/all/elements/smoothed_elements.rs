@@ -159,36 +159,24 @@ fn regions_of_different_elements_share_nodes_and_nothing_else() {
             members: GroupMembers::Tets(tets),
         });
     }
-    let region = |group: &str, element, stiff| Region {
-        group: Some(group.into()),
-        element,
-        ..Region::new(linear(if stiff { 3500.0 } else { 3500e-20 }, 0.45), 1060.0)
+    let region = |group: &str, element, stiff| {
+        Region::new(linear(if stiff { 3500.0 } else { 3500e-20 }, 0.45), 1060.0)
+            .on(group)
+            .with_element(element)
     };
     let model = |low_is_stiff| {
         let regions = vec![
             region("low", Element::Fbar { patch: None }, low_is_stiff),
             region("high", edges(0.9, None), !low_is_stiff),
         ];
-        build(
-            &mesh,
-            &Problem {
-                regions,
-                ..Problem::default()
-            },
-        )
+        build(&mesh, &Problem::of(regions))
     };
     let both = {
         let regions = vec![
             region("low", Element::Fbar { patch: None }, true),
             region("high", edges(0.9, None), true),
         ];
-        build(
-            &mesh,
-            &Problem {
-                regions,
-                ..Problem::default()
-            },
-        )
+        build(&mesh, &Problem::of(regions))
     };
     let x: Vec<f64> = (0..both.dofs()).map(|i| (1.3 * i as f64).cos()).collect();
     let sum: Vec<f64> = stiffness_times(&model(true), &x)

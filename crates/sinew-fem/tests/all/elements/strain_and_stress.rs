@@ -86,17 +86,11 @@ fn half_springs() -> (TetMesh, Model) {
             members: GroupMembers::Tets(members),
         });
     }
-    let region = |group: &str, law| Region {
-        group: Some(group.into()),
-        ..Region::new(law, 1000.0)
-    };
-    let problem = Problem {
-        regions: vec![
-            region("high", linear(YOUNGS_MODULUS, 0.3)),
-            region("low", springs(YOUNGS_MODULUS, SpringRule::Lloyd, true)),
-        ],
-        ..Problem::default()
-    };
+    let region = |group: &str, law| Region::new(law, 1000.0).on(group);
+    let problem = Problem::of([
+        region("high", linear(YOUNGS_MODULUS, 0.3)),
+        region("low", springs(YOUNGS_MODULUS, SpringRule::Lloyd, true)),
+    ]);
     let model = build(&mesh, &problem);
     (mesh, model)
 }

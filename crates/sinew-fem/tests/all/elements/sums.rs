@@ -9,14 +9,8 @@ use sinew_mesh::structured::{self, Split};
 
 fn model(law: Law, axes: [bool; 3]) -> Model {
     let mesh = structured::cube(3, 0.1, Split::Kuhn).unwrap();
-    let problem = Problem {
-        regions: vec![Region::new(law, DENSITY)],
-        fixed: vec![Fixed {
-            on: "sides".into(),
-            axes,
-        }],
-        ..Problem::default()
-    };
+    let problem =
+        Problem::of([Region::new(law, DENSITY)]).with_fixed(Fixed::at("sides").along(axes));
     Model::build(&mesh, &problem).unwrap()
 }
 

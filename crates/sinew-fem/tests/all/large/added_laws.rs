@@ -50,7 +50,7 @@ fn a_boxed_law_is_the_compiled_one_in_forces_and_tangents() {
     let mesh = uneven_cube();
     let model = |id: &'static str, element: Element| -> Model {
         let parameters = Parameters::new(3500.0, 0.45);
-        let mut problem = body(Law::Hyperelastic { id, parameters });
+        let mut problem = body(Law::hyperelastic(id, parameters));
         problem.regions[0].element = element;
         problem.fixed = vec![held("bottom")];
         build(&mesh, &problem)
@@ -82,7 +82,7 @@ fn a_boxed_law_refuses_a_mirrored_body_by_its_name() {
     let id = "scripted-too";
     let parameters = Parameters::new(3500.0, 0.45);
     let mesh = uneven_cube();
-    let model = build(&mesh, &body(Law::Hyperelastic { id, parameters }));
+    let model = build(&mesh, &body(Law::hyperelastic(id, parameters)));
     let mirrored = |node: usize| [-2.0 * mesh.points[node][0], 0.0, 0.0];
     let u = on_cells(&model, mirrored);
     let (v, mut force) = (vec![0.0; u.len()], vec![0.0; u.len()]);

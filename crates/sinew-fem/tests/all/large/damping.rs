@@ -20,7 +20,7 @@ const BETA: f64 = 0.005;
 
 fn of(id: &'static str, element: Element) -> Problem {
     let parameters = Hyperelastic::parameters(id, YOUNGS_MODULUS, NU).unwrap();
-    let mut problem = body(Law::Hyperelastic { id, parameters });
+    let mut problem = body(Law::hyperelastic(id, parameters));
     problem.regions[0].element = element;
     problem.damping.stiffness = BETA;
     problem
@@ -226,14 +226,9 @@ fn the_power_of_damping_counts_supports_in_motion() {
     let mut problem = of("neo-hookean", Element::P1);
     problem.damping.mass = 3.0;
     problem.fixed.push(held("bottom"));
-    problem.moves.push(Moving {
-        on: "top".into(),
-        axes: [true; 3],
-        courses: vec![Course {
-            displacement: [0.02, -0.01, 0.03],
-            ramp,
-        }],
-    });
+    problem
+        .moves
+        .push(Moving::new("top", [Course::new([0.02, -0.01, 0.03], ramp)]));
     let model = build(&mesh, &problem);
     let (t, h) = (0.4, 1e-6);
     let u = crate::common::on_cells(&model, |node| {

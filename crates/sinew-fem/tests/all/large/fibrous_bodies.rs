@@ -23,10 +23,7 @@ const DISPERSED: Stiffening = Stiffening::Exponential {
 
 /// E = 3500 Pa, nu = .45.
 fn with_fibres(id: &'static str, fibres: Fibres, direction: [f64; 3]) -> Problem {
-    let mut problem = body(Law::Hyperelastic {
-        id,
-        parameters: Parameters::new(3500.0, 0.45),
-    });
+    let mut problem = body(Law::hyperelastic(id, Parameters::new(3500.0, 0.45)));
     problem.regions[0].tissue = Tissue {
         fibres: Some(FibreFamily { fibres, direction }),
         ..Tissue::default()

@@ -22,10 +22,10 @@ const ELEMENTS: [Element; 5] = [
 ];
 
 fn law(id: &'static str) -> Law {
-    Law::Hyperelastic {
+    Law::hyperelastic(
         id,
-        parameters: Hyperelastic::parameters(id, YOUNGS_MODULUS, NU).unwrap(),
-    }
+        Hyperelastic::parameters(id, YOUNGS_MODULUS, NU).unwrap(),
+    )
 }
 
 fn of(id: &'static str, element: Element) -> Problem {
@@ -286,19 +286,9 @@ fn regions_of_different_laws_and_elements_add_up() {
                 if stiff.is_some_and(|stiff| stiff != index) {
                     law.scale_stiffness(1e-20);
                 }
-                Region {
-                    group: Some((*group).into()),
-                    element: *element,
-                    ..Region::new(law, 1060.0)
-                }
+                Region::new(law, 1060.0).on(*group).with_element(*element)
             });
-        build(
-            &mesh,
-            &Problem {
-                regions: regions.collect(),
-                ..Problem::default()
-            },
-        )
+        build(&mesh, &Problem::of(regions))
     };
     let all = model(None);
     let u = bent(&mesh, &all, 0.5);

@@ -33,7 +33,7 @@ fn memory(part: ViscousPart) -> Memory {
 /// E = 3500 Pa, nu = .45.
 fn of(id: &'static str, element: Element, memory: Option<Memory>) -> Problem {
     let parameters = Hyperelastic::parameters(id, 3500.0, 0.45).unwrap();
-    let mut problem = body(Law::Hyperelastic { id, parameters });
+    let mut problem = body(Law::hyperelastic(id, parameters));
     problem.regions[0].element = element;
     problem.regions[0].tissue.memory = memory;
     problem

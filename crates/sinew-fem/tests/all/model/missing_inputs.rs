@@ -39,12 +39,10 @@ fn a_time_without_the_inputs_that_a_body_follows_is_refused() {
     let cuff = inputs.add_channel(Between::Hold);
     let mut problem = body(linear(3500.0, 0.3));
     problem.fixed = vec![held("bottom")];
-    let press =
-        |on: &str| LoadSpec::new(on, LoadKind::Traction([0.0, 0.0, -10.0]), Ramp::Input(cuff));
-    let course = Course {
-        displacement: [0.0, 0.0, 0.01],
-        ramp: Ramp::Input(clamp),
+    let press = |on: &str| {
+        LoadSpec::new(on, LoadKind::Traction([0.0, 0.0, -10.0])).with_ramp(Ramp::Input(cuff))
     };
+    let course = Course::new([0.0, 0.0, 0.01], Ramp::Input(clamp));
 
     // What moves by a channel on free nodes alone stands in the state.
     problem.loads = vec![press("top")];
@@ -63,11 +61,7 @@ fn a_time_without_the_inputs_that_a_body_follows_is_refused() {
     );
     // A support that moves is where its channel is.
     problem.loads = Vec::new();
-    problem.moves = vec![Moving {
-        on: "top".into(),
-        axes: [true; 3],
-        courses: vec![course.clone()],
-    }];
+    problem.moves = vec![Moving::new("top", [course.clone()])];
     let moved = build(&mesh, &problem);
     let [places, forces] = answers(&moved, 0.1.into());
     assert!(

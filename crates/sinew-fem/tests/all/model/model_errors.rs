@@ -30,10 +30,7 @@ fn region(group: Option<&str>) -> Region {
 }
 
 fn with_regions(groups: &[Option<&str>]) -> Problem {
-    Problem {
-        regions: groups.iter().map(|group| region(*group)).collect(),
-        ..Problem::default()
-    }
+    Problem::of(groups.iter().map(|group| region(*group)))
 }
 
 fn with_load(group: &str, kind: LoadKind) -> Problem {
@@ -42,7 +39,7 @@ fn with_load(group: &str, kind: LoadKind) -> Problem {
 
 fn loaded_on(on: On, kind: LoadKind) -> Problem {
     Problem {
-        loads: vec![LoadSpec::new(on, kind, Ramp::Step)],
+        loads: vec![LoadSpec::new(on, kind)],
         ..tissue()
     }
 }
@@ -293,7 +290,7 @@ fn nodes_the_mesh_does_not_have() {
     let triangles = On::Triangles(vec![[0, 1, 3], [26, 2, 27]]);
     for on in [nodes, triangles.clone()] {
         let problem = Problem {
-            fixed: vec![Fixed::new(on.clone())],
+            fixed: vec![Fixed::at(on.clone())],
             ..tissue()
         };
         let message = format!("support 1: {words}");
@@ -375,15 +372,14 @@ fn value_refused(problem: &Problem, item: Item, name: &str, value: f64, expected
 
 #[test]
 fn materials_of_impossible_numbers() {
-    let material = |law| Problem {
-        regions: vec![
+    let material = |law| {
+        Problem::of([
             region(Some("tissue")),
             Region {
                 law,
                 ..region(None)
             },
-        ],
-        ..Problem::default()
+        ])
     };
     let item = Item::Region(1);
     for value in [0.0, -1.0, f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {

@@ -22,11 +22,7 @@ fn bar() -> TetMesh {
 }
 
 fn moving(on: impl Into<On>, axes: [bool; 3], displacement: [f64; 3], ramp: Ramp) -> Moving {
-    Moving {
-        on: on.into(),
-        axes,
-        courses: vec![Course { displacement, ramp }],
-    }
+    Moving::new(on, [Course::new(displacement, ramp)]).along(axes)
 }
 
 fn all_axes(on: impl Into<On>, displacement: [f64; 3], ramp: Ramp) -> Moving {
@@ -103,11 +99,7 @@ fn table() -> Vec<Course> {
 fn held_and_moved(law: Law, damping: Rayleigh) -> Problem {
     Problem {
         fixed: vec![held("bottom")],
-        moves: vec![Moving {
-            on: "top".into(),
-            axes: [true; 3],
-            courses: table(),
-        }],
+        moves: vec![Moving::new("top", table())],
         loads: vec![
             load("sides", LoadKind::Pressure(30.0)),
             load("tissue", LoadKind::Force([0.1, 0.0, -0.2])),
@@ -126,10 +118,7 @@ fn reactions_of_held_and_moved_parts_balance_all_loads() {
         linear(YOUNGS_MODULUS, 0.45),
         springs(YOUNGS_MODULUS, SpringRule::VanGelder, true),
     ] {
-        let damping = Rayleigh {
-            mass: 2.0,
-            stiffness: 0.01,
-        };
+        let damping = Rayleigh::new(2.0, 0.01);
         let model = build(&mesh, &held_and_moved(law, damping));
         let (u, v) = (settled(&model, 9.0), vec![0.0; model.dofs()]);
         let mut forces = vec![[f64::NAN; 3]; mesh.points.len()];
@@ -158,10 +147,7 @@ fn reactions_of_held_and_moved_parts_balance_all_loads() {
 #[test]
 fn reactions_in_motion_are_the_change_of_momentum() {
     let mesh = bar();
-    let damping = Rayleigh {
-        mass: 5.0,
-        stiffness: 2e-3,
-    };
+    let damping = Rayleigh::new(5.0, 2e-3);
     let law = Law::Springs {
         youngs_modulus: YOUNGS_MODULUS,
         rule: SpringRule::Lloyd,
@@ -169,10 +155,7 @@ fn reactions_in_motion_are_the_change_of_momentum() {
         damping_ratio: 0.1,
     };
     let mut problem = held_and_moved(law, damping);
-    problem.moves[0].courses = vec![Course {
-        displacement: [1e-3, -2e-3, 4e-3],
-        ramp: rise(),
-    }];
+    problem.moves[0].courses = vec![Course::new([1e-3, -2e-3, 4e-3], rise())];
     let model = build(&mesh, &problem);
     let t = 0.07;
     let value = |seed: f64| move |dof: usize| 1e-3 * (dof as f64 * seed).sin();
@@ -296,10 +279,7 @@ fn axes_that_are_not_moved_stay_free() {
 #[test]
 fn another_motion_of_the_same_parts_shares_the_mesh() {
     let mesh = bar();
-    let damping = Rayleigh {
-        mass: 1.0,
-        stiffness: 1e-3,
-    };
+    let damping = Rayleigh::new(1.0, 1e-3);
     let first = held_and_moved(linear(YOUNGS_MODULUS, 0.3), damping);
     let mut second = first.clone();
     // What was moved is held, and the other way round.
@@ -393,14 +373,8 @@ fn a_jump_is_refused_where_damping_would_see_its_velocity() {
         )]
     };
     let refused = Cause::PositionJumps { instant: 0.1 };
-    let by_stiffness = Rayleigh {
-        mass: 0.0,
-        stiffness: 1e-3,
-    };
-    let by_mass = Rayleigh {
-        mass: 10.0,
-        stiffness: 0.0,
-    };
+    let by_stiffness = Rayleigh::new(0.0, 1e-3);
+    let by_mass = Rayleigh::new(10.0, 0.0);
     let elastic = linear(YOUNGS_MODULUS, 0.3);
     let dashpots = Law::Springs {
         youngs_modulus: YOUNGS_MODULUS,
@@ -422,11 +396,7 @@ fn a_jump_is_refused_where_damping_would_see_its_velocity() {
     assert_eq!(model.report().moves[0].jump, Some(0.1));
     // A table that does not begin at rest jumps at once.
     let late = Course::along(&[0.1, 0.2], &[[0.0, 0.0, 1e-3], [0.0; 3]]);
-    let moves = vec![Moving {
-        on: "top".into(),
-        axes: Z,
-        courses: late,
-    }];
+    let moves = vec![Moving::new("top", late).along(Z)];
     let error = refusal(moves, by_stiffness, elastic);
     assert_eq!(error.cause(), &Cause::PositionJumps { instant: 0.0 });
 }

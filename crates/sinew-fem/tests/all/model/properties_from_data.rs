@@ -21,7 +21,7 @@ use sinew_mesh::{Group, GroupMembers, TetData, TetMesh};
 
 fn large(id: &'static str, youngs_modulus: f64, nu: f64) -> Law {
     let parameters = Hyperelastic::parameters(id, youngs_modulus, nu).unwrap();
-    Law::Hyperelastic { id, parameters }
+    Law::hyperelastic(id, parameters)
 }
 
 fn fibres(direction: [f64; 3]) -> Option<FibreFamily> {
@@ -414,10 +414,7 @@ fn pulled(mesh: &TetMesh, mut problem: Problem, traction: f64) -> Model {
         let found = sides.clone().find(|(_, point)| **point == [x, y, 0.0]);
         found.unwrap().0
     };
-    let on = |nodes: Vec<u32>, axes| sinew_fem::Fixed {
-        on: sinew_fem::On::Nodes(nodes),
-        axes,
-    };
+    let on = |nodes: Vec<u32>, axes| sinew_fem::Fixed::at(sinew_fem::On::Nodes(nodes)).along(axes);
     problem
         .fixed
         .push(on(vec![at(0.0, 0.0)], [true, true, false]));
@@ -516,14 +513,14 @@ fn a_bar_of_two_densities_weighs_and_hangs_as_it_should() {
     problem.regions[0].from_mesh.density = named("rho");
     problem.fixed = vec![held_along("top", [false, false, true])];
     problem.gravity = Some([0.0, 0.0, -10.0]);
-    let on = |axis: usize, axes| sinew_fem::Fixed {
-        on: sinew_fem::On::Nodes(
+    let on = |axis: usize, axes| {
+        sinew_fem::Fixed::at(sinew_fem::On::Nodes(
             (0u32..)
                 .zip(&mesh.points)
                 .filter_map(|(node, point)| (point[axis] == 0.0).then_some(node))
                 .collect(),
-        ),
-        axes,
+        ))
+        .along(axes)
     };
     problem.fixed.push(on(0, [true, false, false]));
     problem.fixed.push(on(1, [false, true, false]));

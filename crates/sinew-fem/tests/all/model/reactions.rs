@@ -153,10 +153,7 @@ fn moving_supports_feel_the_rows_of_the_free_body() {
             on: "sides".into(),
             ..problem.loads[0].clone()
         });
-        problem.damping = Rayleigh {
-            mass: 3.0,
-            stiffness: 0.02,
-        };
+        problem.damping = Rayleigh::new(3.0, 0.02);
         let model = build(&mesh, &problem);
         problem.fixed.clear();
         let free = build(&mesh, &problem);
@@ -218,10 +215,7 @@ fn supports_that_move_pull_by_the_columns_of_the_free_body() {
         (damped_springs(), 0.02),
     ] {
         let mut problem = held_and_loaded(law.clone());
-        problem.damping = Rayleigh {
-            mass: 3.0,
-            stiffness,
-        };
+        problem.damping = Rayleigh::new(3.0, stiffness);
         let model = build(&mesh, &problem);
         problem.fixed.clear();
         let free = build(&mesh, &problem);

@@ -32,14 +32,8 @@ fn bar() -> TetMesh {
 }
 
 fn in_two_regions(lower: Law, upper: Law) -> Problem {
-    let region = |group: &str, law| Region {
-        group: Some(group.into()),
-        ..Region::new(law, DENSITY)
-    };
-    Problem {
-        regions: vec![region("lower", lower), region("upper", upper)],
-        ..Problem::default()
-    }
+    let region = |group: &str, law| Region::new(law, DENSITY).on(group);
+    Problem::of([region("lower", lower), region("upper", upper)])
 }
 
 fn damped_springs(rule: SpringRule, damping_ratio: f64) -> Law {

@@ -35,10 +35,7 @@ fn others() -> Vec<Problem> {
         springs(1.0, SpringRule::VanGelder, false),
     ];
     let problems = laws.map(|law| Problem {
-        damping: Rayleigh {
-            mass: 2.0,
-            stiffness: 0.01,
-        },
+        damping: Rayleigh::new(2.0, 0.01),
         loads: vec![load("top", LoadKind::Pressure(50.0))],
         gravity: Some([0.0, 0.0, -9.81]),
         ..problem(law)
@@ -106,14 +103,10 @@ fn the_same_supports_may_be_said_in_other_words() {
     let mut other = problem(linear(900.0, 0.3));
     let nodes = mesh.group_nodes(mesh.group("bottom").unwrap());
     let on = || On::Nodes(nodes.clone());
-    other.fixed[0] = Fixed {
-        on: on(),
-        axes: [true, true, false],
-    };
-    other.fixed.push(Fixed {
-        on: on(),
-        axes: [false, false, true],
-    });
+    other.fixed[0] = Fixed::at(on()).along([true, true, false]);
+    other
+        .fixed
+        .push(Fixed::at(on()).along([false, false, true]));
     let swept = first.with_problem(&other).unwrap();
     assert_eq!(fingerprint(&swept), fingerprint(&build(&mesh, &other)));
 }
@@ -128,10 +121,8 @@ fn other_supports_are_refused() {
         cell.is_some_and(|cell| !first.pinned()[3 * cell as usize + 1])
     });
     let inner = inner.unwrap();
-    more.fixed.push(Fixed {
-        on: On::Nodes(vec![inner]),
-        axes: [false, false, true],
-    });
+    more.fixed
+        .push(Fixed::at(On::Nodes(vec![inner])).along([false, false, true]));
     let mut fewer = problem(linear(3500.0, 0.45));
     fewer.fixed.truncate(1);
     let roller = first.held_nodes().iter().copied();

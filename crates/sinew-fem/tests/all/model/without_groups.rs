@@ -1,7 +1,7 @@
 //! Supports and loads on nodes and triangles are those on groups.
 
 use crate::common::{body, build, linear, springs};
-use sinew_core::{LinearSystem, Load, Ramp};
+use sinew_core::{LinearSystem, Load};
 use sinew_fem::{Fixed, LoadKind, LoadSpec, Model, On, Problem, SpringRule};
 use sinew_mesh::structured::{self, Split};
 use sinew_mesh::{GroupMembers, TetMesh};
@@ -23,11 +23,8 @@ fn nodes(mesh: &TetMesh, group: &str) -> Vec<u32> {
 
 /// Held at two places and loaded in every way at others.
 fn problem(on: impl Fn(&str, bool) -> On) -> Problem {
-    let fixed = |group, axes| Fixed {
-        on: on(group, false),
-        axes,
-    };
-    let load = |group, surface, kind| LoadSpec::new(on(group, surface), kind, Ramp::Step);
+    let fixed = |group, axes| Fixed::at(on(group, false)).along(axes);
+    let load = |group, surface, kind| LoadSpec::new(on(group, surface), kind);
     Problem {
         fixed: vec![
             fixed("bottom", [true; 3]),

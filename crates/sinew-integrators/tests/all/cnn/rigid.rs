@@ -306,10 +306,7 @@ fn the_slowest_motion_is_slowed_by_the_factor_that_is_told() {
 }
 
 fn tissue(mesh: &TetMesh, gravity: Option<[f64; 3]>, law: usize) -> Model {
-    let law = Law::Hyperelastic {
-        id: Hyperelastic::IDS[law],
-        parameters: Parameters::new(5000.0, 0.3),
-    };
+    let law = Law::hyperelastic(Hyperelastic::IDS[law], Parameters::new(5000.0, 0.3));
     let falling = Problem {
         gravity,
         ..body(law)

@@ -349,10 +349,7 @@ fn just_beyond_the_limit_the_first_step_is_nearly_that_of_central_difference() {
 #[test]
 fn within_the_stable_step_of_central_difference_its_error_is_no_larger() {
     let soft = Law::linear(3500.0, 0.3);
-    let stiffness = Rayleigh {
-        mass: 0.0,
-        stiffness: 2e-3,
-    };
+    let stiffness = Rayleigh::new(0.0, 2e-3);
     for system in [
         scene(4, 0.1, soft, stiffness),
         scene(4, 0.1, springs(0.1), mass_damping(0.0)),

@@ -5,8 +5,8 @@
 use std::sync::OnceLock;
 
 use sinew_core::{
-    Damping, Integrator, LinearModel, LinearOperators, LinearSystem, Load, Options, Ramp, Run,
-    RunReport, State, System,
+    Damping, Integrator, LinearModel, LinearOperators, LinearSystem, Load, Options, Run, RunReport,
+    State, System,
 };
 use sinew_fem::{Law, LoadKind, LoadSpec, Model, Problem, Rayleigh, SpringRule};
 use sinew_mesh::structured::{self, Split};
@@ -40,21 +40,14 @@ pub(crate) fn problem(law: Law, damping: Rayleigh, traction: [f64; 3]) -> Proble
     Problem {
         damping,
         fixed: vec![held("sides", [true; 3])],
-        loads: vec![LoadSpec::new(
-            "top",
-            LoadKind::Traction(traction),
-            Ramp::Step,
-        )],
+        loads: vec![LoadSpec::new("top", LoadKind::Traction(traction))],
         ..body(law)
     }
 }
 
 /// Damping in proportion to the mass.
 pub(crate) fn mass_damping(mass: f64) -> Rayleigh {
-    Rayleigh {
-        mass,
-        stiffness: 0.0,
-    }
+    Rayleigh::new(mass, 0.0)
 }
 
 /// The cube with `cells` grid cells along each edge.

@@ -1,6 +1,6 @@
 //! A soft cube on the ground, pressed from above, with one flat tetrahedron in it.
 
-use sinew_core::{OptionValue, Options, Ramp};
+use sinew_core::{OptionValue, Options};
 use sinew_fem::{LoadKind, LoadSpec, Model, Problem, Rayleigh};
 use sinew_mesh::TetMesh;
 use sinew_mesh::structured::{self, Split};
@@ -11,20 +11,13 @@ pub(crate) fn model(mesh: &TetMesh, damping: Rayleigh) -> Model {
     let problem = Problem {
         damping,
         fixed: vec![held("bottom", [true; 3])],
-        loads: vec![LoadSpec::new(
-            "top",
-            LoadKind::Traction([0.0, 0.0, -20.0]),
-            Ramp::Step,
-        )],
+        loads: vec![LoadSpec::new("top", LoadKind::Traction([0.0, 0.0, -20.0]))],
         ..body(linear(3500.0, 0.3))
     };
     Model::build(mesh, &problem).unwrap()
 }
 
-pub(crate) const MASS_DAMPING: Rayleigh = Rayleigh {
-    mass: 20.0,
-    stiffness: 0.0,
-};
+pub(crate) const MASS_DAMPING: Rayleigh = Rayleigh::new(20.0, 0.0);
 
 /// A cube of edge .1 m with one vertex moved towards the opposite face of one tetrahedron until
 /// that is `thinness` times thinner.

@@ -11,16 +11,10 @@ pub(crate) fn linear(youngs_modulus: f64, poissons_ratio: f64) -> Law {
 
 /// A free body without loads.
 pub(crate) fn body(law: Law) -> Problem {
-    Problem {
-        regions: vec![Region::new(law, DENSITY)],
-        ..Problem::default()
-    }
+    Problem::of([Region::new(law, DENSITY)])
 }
 
 /// A group held along these axes.
 pub(crate) fn held(group: &str, axes: [bool; 3]) -> Fixed {
-    Fixed {
-        on: group.into(),
-        axes,
-    }
+    Fixed::at(group).along(axes)
 }

@@ -89,10 +89,7 @@ fn a_sliver_costs_neither_step_nor_accuracy() {
 /// The patch also contains the part whose stiffness-proportional damping would limit the step.
 #[test]
 fn a_sliver_under_stiffness_damping() {
-    let damping = Rayleigh {
-        mass: 0.0,
-        stiffness: 2e-4,
-    };
+    let damping = Rayleigh::new(0.0, 2e-4);
     let model = model(&with_sliver(1000.0), damping);
     assert!(plain_limit(&model) < 0.004 / 8.0, "{}", plain_limit(&model));
     let error = error(&model, &mut *patched(), 5).unwrap();

@@ -231,7 +231,7 @@ fn a_body_that_its_loads_carry_away_needs_a_number() {
 }
 
 fn top_load(ramp: Ramp) -> LoadSpec {
-    LoadSpec::new("top", LoadKind::Traction([0.0, 0.0, -500.0]), ramp)
+    LoadSpec::new("top", LoadKind::Traction([0.0, 0.0, -500.0])).with_ramp(ramp)
 }
 
 /// Any number that is not reached changes nothing, at any step, whatever else the method does.

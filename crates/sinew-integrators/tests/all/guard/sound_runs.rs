@@ -77,11 +77,7 @@ fn tissue() -> Region {
 }
 
 fn pulse(group: &str, traction: [f64; 3], to: f64) -> LoadSpec {
-    LoadSpec::new(
-        group,
-        LoadKind::Traction(traction),
-        Ramp::Pulse { from: 0.0, to },
-    )
+    LoadSpec::new(group, LoadKind::Traction(traction)).with_ramp(Ramp::Pulse { from: 0.0, to })
 }
 
 /// A bar whose width at each height (between 0 and 1) is this share of that of the block.
@@ -98,11 +94,7 @@ fn shaped(cells: [usize; 3], edges: [f64; 3], width: impl Fn(f64) -> f64) -> Tet
 /// A bar 0.3 m long and 15 mm thick at its foot, free, under a pulse on the foot.
 fn whip(width: impl Fn(f64) -> f64) -> Model {
     let mesh = shaped([1, 1, 30], [0.015, 0.015, 0.3], width);
-    let problem = Problem {
-        regions: vec![tissue()],
-        loads: vec![pulse("bottom", [0.0, 0.0, 100.0], 0.015)],
-        ..Problem::default()
-    };
+    let problem = Problem::of([tissue()]).with_load(pulse("bottom", [0.0, 0.0, 100.0], 0.015));
     Model::build(&mesh, &problem).unwrap()
 }
 
@@ -178,17 +170,10 @@ impl Slender {
                 });
             }
             regions[0].group = Some("lower".into());
-            regions.push(Region {
-                group: Some("upper".into()),
-                ..Region::new(linear(modulus, self.poissons_ratio), density)
-            });
+            regions.push(Region::new(linear(modulus, self.poissons_ratio), density).on("upper"));
         }
         let fixed = vec![held("bottom", [true; 3])];
-        let mut problem = Problem {
-            regions,
-            damping: self.damping,
-            ..Problem::default()
-        };
+        let mut problem = Problem::of(regions).with_damping(self.damping);
         match self.acts {
             Acts::Nothing => {}
             Acts::Pulse(traction, to) => problem.loads = vec![pulse("bottom", traction, to)],
@@ -242,7 +227,7 @@ fn slender_bodies() -> impl Strategy<Value = Slender> {
     ];
     let damping = prop_oneof![
         Just(Rayleigh::default()),
-        (0.0..100.0, 0.0..1e-3).prop_map(|(mass, stiffness)| Rayleigh { mass, stiffness }),
+        (0.0..100.0, 0.0..1e-3).prop_map(|(mass, stiffness)| Rayleigh::new(mass, stiffness)),
     ];
     let size = |largest: f64| prop_oneof![Just(0.0), 0.0..largest];
     (

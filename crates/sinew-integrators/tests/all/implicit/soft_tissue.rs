@@ -12,10 +12,10 @@ use sinew_mesh::structured::{self, Split};
 const EDGE: f64 = 0.1;
 
 fn neo_hookean() -> Problem {
-    let mut problem = body(Law::Hyperelastic {
-        id: "neo-hookean",
-        parameters: Parameters::new(3500.0, 0.45),
-    });
+    let mut problem = body(Law::hyperelastic(
+        "neo-hookean",
+        Parameters::new(3500.0, 0.45),
+    ));
     problem.fixed = vec![held("bottom", [true; 3])];
     problem
 }
@@ -28,11 +28,10 @@ fn cube() -> TetMesh {
 fn push(mesh: &TetMesh) -> Model {
     let mut problem = neo_hookean();
     problem.damping.mass = 10.0;
-    problem.loads = vec![LoadSpec::new(
-        "top",
-        LoadKind::Traction([0.0, 0.0, -1200.0]),
-        Ramp::Sin2 { rise: 0.2 },
-    )];
+    problem.loads = vec![
+        LoadSpec::new("top", LoadKind::Traction([0.0, 0.0, -1200.0]))
+            .with_ramp(Ramp::Sin2 { rise: 0.2 }),
+    ];
     Model::build(mesh, &problem).unwrap()
 }
 
@@ -117,16 +116,15 @@ fn a_release_takes_few_projections_and_long_newmark_steps_tell_that_their_energy
 #[test]
 fn a_cantilever_bends_far() {
     let mesh = structured::block([2, 2, 20], [0.1, 0.1, 1.0], Split::Mirrored).unwrap();
-    let mut problem = body(Law::Hyperelastic {
-        id: "neo-hookean",
-        parameters: Parameters::new(3500.0, 0.3),
-    });
+    let mut problem = body(Law::hyperelastic(
+        "neo-hookean",
+        Parameters::new(3500.0, 0.3),
+    ));
     problem.fixed = vec![held("bottom", [true; 3])];
     let force = 0.5 * 1.3 * 3.0 * 3500.0 * 0.1_f64.powi(4) / 12.0;
     problem.loads = vec![LoadSpec::new(
         "top",
         LoadKind::Traction([force / 0.01, 0.0, 0.0]),
-        Ramp::Step,
     )];
     let model = Model::build(&mesh, &problem).unwrap();
     let mut load = vec![0.0; model.dofs()];

@@ -21,18 +21,11 @@ fn block(
 ) -> Model {
     let mesh = structured::block(cells, [0.06, 0.06, 0.1], Split::Kuhn).unwrap();
     let parameters = Parameters::new(4000.0, poissons_ratio);
-    let mut problem = body(Law::Hyperelastic {
-        id: law,
-        parameters,
-    });
+    let mut problem = body(Law::hyperelastic(law, parameters));
     problem.regions[0].element = element;
     problem.fixed = vec![held("bottom", [true; 3])];
     let ramp = Ramp::Sin2 { rise };
-    problem.moves = vec![Moving {
-        on: "top".into(),
-        axes: [true; 3],
-        courses: vec![Course { displacement, ramp }],
-    }];
+    problem.moves = vec![Moving::new("top", [Course::new(displacement, ramp)])];
     Model::build(&mesh, &problem).unwrap()
 }
 

@@ -2,7 +2,7 @@
 
 use crate::common::{build, plain};
 use sinew_core::{
-    BlockMatrix, ElasticLaw, ForceLaw, Inputs, LoadTime, Options, Pattern, Ramp, State, StaticLoad,
+    BlockMatrix, ElasticLaw, ForceLaw, Inputs, LoadTime, Options, Pattern, State, StaticLoad,
     System, Trial,
 };
 use sinew_fem::hyperelastic::Parameters;
@@ -22,20 +22,15 @@ fn block(cells: usize) -> TetMesh {
 }
 
 fn neo_hookean(element: Element) -> Region {
-    Region {
-        element,
-        ..Region::new(
-            Law::Hyperelastic {
-                id: "neo-hookean",
-                parameters: Parameters::new(3500.0, 0.45),
-            },
-            1060.0,
-        )
-    }
+    Region::new(
+        Law::hyperelastic("neo-hookean", Parameters::new(3500.0, 0.45)),
+        1060.0,
+    )
+    .with_element(element)
 }
 
 fn load(group: &str, kind: LoadKind) -> LoadSpec {
-    LoadSpec::new(group, kind, Ramp::Step)
+    LoadSpec::new(group, kind)
 }
 
 /// Under pressure (Pa) on these groups.
@@ -222,10 +217,8 @@ fn a_cube_under_pressure_all_round_shrinks_as_the_closed_form_says() {
         let hold = |axis: usize| {
             let nodes = (0u32..).zip(&mesh.points);
             let nodes = nodes.filter(|(_, point)| point[axis] == 0.0);
-            Fixed {
-                on: On::Nodes(nodes.map(|(node, _)| node).collect()),
-                axes: [0, 1, 2].map(|other| other == axis),
-            }
+            Fixed::at(On::Nodes(nodes.map(|(node, _)| node).collect()))
+                .along([0, 1, 2].map(|other| other == axis))
         };
         (0..3).map(hold).collect()
     };
@@ -257,7 +250,7 @@ fn a_cube_under_pressure_all_round_shrinks_as_the_closed_form_says() {
 fn supports_carry_what_the_pressure_on_the_deformed_surface_asks() {
     let pressure = 800.0;
     let mut problem = pressed(Element::P1, pressure, &["sides", "top"]);
-    problem.fixed = vec![Fixed::new("bottom")];
+    problem.fixed = vec![Fixed::at("bottom")];
     problem
         .loads
         .push(load("top", LoadKind::Traction([300.0, 0.0, 0.0])));
@@ -337,7 +330,7 @@ fn cellular_energy_steps_follow_a_surface_by_implicit_euler_alone() {
 fn a_cube_finds_its_equilibrium_under_pressure_on_one_side() {
     for (cells, pressure) in [(2, -2500.0), (4, -1500.0), (4, 1500.0)] {
         let mut problem = pressed(Element::P1, pressure, &["top"]);
-        problem.fixed = vec![Fixed::new("bottom")];
+        problem.fixed = vec![Fixed::at("bottom")];
         let model = Model::build(&block(cells), &problem).unwrap();
         let u = static_solution_under(&model, &model.full_loads(&[0])).unwrap();
         let trial = Trial {

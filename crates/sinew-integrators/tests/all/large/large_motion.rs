@@ -33,17 +33,11 @@ impl Scene {
     ) -> Self {
         let mesh = structured::block(cells, size, Split::Mirrored).unwrap();
         let parameters = Parameters::new(3500.0, 0.45);
-        let mut problem = Problem {
-            regions: vec![Region::new(
-                Law::Hyperelastic {
-                    id: "neo-hookean",
-                    parameters,
-                },
-                1060.0,
-            )],
-            fixed: vec![Fixed::new("bottom")],
-            ..Problem::default()
-        };
+        let mut problem = Problem::of([Region::new(
+            Law::hyperelastic("neo-hookean", parameters),
+            1060.0,
+        )])
+        .with_fixed(Fixed::at("bottom"));
         change(&mesh, &mut problem);
         let model = Model::build(&mesh, &problem).unwrap();
         Self {
@@ -64,7 +58,7 @@ impl Scene {
     /// Gives it another law, with exponential fibres along z: k1 (Pa) and k2.
     fn take_fibres(&mut self, id: &'static str, parameters: Parameters, [k1, k2]: [f64; 2]) {
         let region = &mut self.problem.regions[0];
-        region.law = Law::Hyperelastic { id, parameters };
+        region.law = Law::hyperelastic(id, parameters);
         let stiffening = Stiffening::Exponential {
             k1,
             k2,
@@ -93,10 +87,7 @@ impl Scene {
     /// A cube under 12 N down, spread over its top by the trapezoidal rule.
     fn push() -> Self {
         Self::new(([6; 3], [0.1; 3]), 0.5, |mesh, problem| {
-            problem.damping = Rayleigh {
-                mass: 10.0,
-                stiffness: 0.0,
-            };
+            problem.damping = Rayleigh::new(10.0, 0.0);
             let rims = |x: f64| !(1e-9..0.1 - 1e-9).contains(&x);
             for rim in 0..3 {
                 let nodes = (0u32..).zip(&mesh.points).filter(|(_, [x, y, z])| {
@@ -104,11 +95,13 @@ impl Scene {
                 });
                 let nodes: Vec<u32> = nodes.map(|(node, _)| node).collect();
                 let weight = nodes.len() as f64 * 0.5_f64.powi(rim as i32);
-                problem.loads.push(LoadSpec::new(
-                    On::Nodes(nodes),
-                    LoadKind::Force([0.0, 0.0, -12.0 * weight / 36.0]),
-                    Ramp::Sin2 { rise: 0.2 },
-                ));
+                problem.loads.push(
+                    LoadSpec::new(
+                        On::Nodes(nodes),
+                        LoadKind::Force([0.0, 0.0, -12.0 * weight / 36.0]),
+                    )
+                    .with_ramp(Ramp::Sin2 { rise: 0.2 }),
+                );
             }
         })
     }
@@ -255,11 +248,7 @@ fn steps_follow_the_current_stiffness() {
 fn steps_that_fibres_stop_are_taken_again_in_shorter_parts() {
     let mut scene = Scene::new(([4; 3], [0.04; 3]), 0.1, |_, problem| {
         problem.damping.mass = 10.0;
-        problem.loads = vec![LoadSpec::new(
-            "top",
-            LoadKind::Traction([0.0, 0.0, 4000.0]),
-            Ramp::Step,
-        )];
+        problem.loads = vec![LoadSpec::new("top", LoadKind::Traction([0.0, 0.0, 4000.0]))];
     });
     scene.take_fibres("neo-hookean", Parameters::new(5000.0, 0.45), [2000.0, 20.0]);
     let (options, dt, steps) = (plain().with_text("substeps", "auto"), 2e-3, 50);
@@ -346,10 +335,7 @@ fn steps_by_the_current_stiffness_make_no_energy() {
     let mut scene = Scene::new(([3; 3], [0.1; 3]), 5.0, |_, problem| {
         problem.gravity = Some([0.0, 0.0, -GRAVITY]);
     });
-    scene.problem.regions[0].law = Law::Hyperelastic {
-        id: "neo-hookean",
-        parameters: Parameters::new(6000.0, 0.45),
-    };
+    scene.problem.regions[0].law = Law::hyperelastic("neo-hookean", Parameters::new(6000.0, 0.45));
     scene.model = scene.model.with_problem(&scene.problem).unwrap();
     for rate in [105, 120, 130] {
         let mut integrator = build("central-difference", &plain().with_text("substeps", "auto"));
@@ -380,10 +366,7 @@ fn single_precision_is_off_by_its_rounding() {
     let in_f32 = plain().with_text("precision", "f32");
     let mut stiff = Scene::push();
     let region = &mut stiff.problem.regions[0];
-    region.law = Law::Hyperelastic {
-        id: "neo-hookean",
-        parameters: Parameters::new(3500.0, 0.499),
-    };
+    region.law = Law::hyperelastic("neo-hookean", Parameters::new(3500.0, 0.499));
     region.element = Element::FbarEdge {
         edge_share: 0.9,
         patch: None,

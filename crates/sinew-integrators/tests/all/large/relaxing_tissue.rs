@@ -2,7 +2,7 @@
 
 use crate::common::build;
 use crate::common::tissue::body;
-use sinew_core::{Inputs, Options, Ramp, State, System};
+use sinew_core::{Inputs, Options, State, System};
 use sinew_fem::hyperelastic::Parameters;
 use sinew_fem::hyperelastic::fibres::{Fibres, Stiffening};
 use sinew_fem::hyperelastic::prony::Term;
@@ -28,10 +28,10 @@ fn bar() -> TetMesh {
 
 /// A bar whose sides are free to move, pulled at its top from t = 0 on.
 fn pulled(mesh: &TetMesh, element: Element) -> Problem {
-    let mut problem = body(Law::Hyperelastic {
-        id: "neo-hookean",
-        parameters: Parameters::new(YOUNGS_MODULUS, 0.3),
-    });
+    let mut problem = body(Law::hyperelastic(
+        "neo-hookean",
+        Parameters::new(YOUNGS_MODULUS, 0.3),
+    ));
     problem.regions[0].element = element;
     problem.regions[0].tissue.memory = Some(Memory {
         terms: vec![Term {
@@ -42,22 +42,18 @@ fn pulled(mesh: &TetMesh, element: Element) -> Problem {
         moduli: Moduli::Instantaneous,
     });
     problem.fixed = (0..3)
-        .map(|axis| Fixed {
-            on: On::Nodes(
+        .map(|axis| {
+            Fixed::at(On::Nodes(
                 (0..)
                     .zip(&mesh.points)
                     .filter(|(_, point)| point[axis] < 1e-9)
                     .map(|(node, _)| node)
                     .collect(),
-            ),
-            axes: [0, 1, 2].map(|of| of == axis),
+            ))
+            .along([0, 1, 2].map(|of| of == axis))
         })
         .collect();
-    problem.loads = vec![LoadSpec::new(
-        "top",
-        LoadKind::Traction([0.0, 0.0, PULL]),
-        Ramp::Step,
-    )];
+    problem.loads = vec![LoadSpec::new("top", LoadKind::Traction([0.0, 0.0, PULL]))];
     problem.damping.mass = 40.0;
     problem
 }

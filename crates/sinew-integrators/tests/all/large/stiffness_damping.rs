@@ -10,23 +10,11 @@ use sinew_mesh::TetMesh;
 use sinew_mesh::structured::{self, Split};
 
 fn tissue(id: &'static str, element: Element) -> Problem {
-    Problem {
-        regions: vec![Region {
-            element,
-            ..Region::new(
-                Law::Hyperelastic {
-                    id,
-                    parameters: Parameters::new(5000.0, 0.3),
-                },
-                1000.0,
-            )
-        }],
-        damping: Rayleigh {
-            mass: 0.0,
-            stiffness: 0.005,
-        },
-        ..Problem::default()
-    }
+    Problem::of([
+        Region::new(Law::hyperelastic(id, Parameters::new(5000.0, 0.3)), 1000.0)
+            .with_element(element),
+    ])
+    .with_damping(Rayleigh::new(0.0, 0.005))
 }
 
 fn sweeps(count: f64) -> Options {
@@ -121,7 +109,7 @@ fn under_pressure_that_follows_the_surface_a_damped_body_gains_no_energy() {
     let mesh = structured::block([3, 3, 1], [0.09, 0.09, 0.03], Split::Mirrored).unwrap();
     let mut problem = tissue("neo-hookean", Element::P1);
     problem.loads = ["bottom", "sides", "top"]
-        .map(|group| LoadSpec::new(group, LoadKind::FollowingPressure(pressure), Ramp::Step))
+        .map(|group| LoadSpec::new(group, LoadKind::FollowingPressure(pressure)))
         .into();
     let model = Model::build(&mesh, &problem).unwrap();
     let with_pressure = |state: &State| {
@@ -147,7 +135,7 @@ fn falling() -> Model {
     let (held, _): (Vec<u32>, Vec<u32>) =
         (0..mesh.points.len() as u32).partition(|node| mesh.points[*node as usize][0] < 1e-9);
     let mut problem = tissue("neo-hookean", Element::P1);
-    problem.fixed.push(Fixed::new(sinew_fem::On::Nodes(held)));
+    problem.fixed.push(Fixed::at(sinew_fem::On::Nodes(held)));
     problem.gravity = Some([0.0, 0.0, -9.81]);
     Model::build(&mesh, &problem).unwrap()
 }
@@ -207,17 +195,16 @@ fn a_body_that_glides_with_its_supports_feels_no_damping() {
     let speed = [0.3, -0.2, 0.1];
     for element in [Element::P1, Element::Fbar { patch: None }] {
         let mut problem = tissue("neo-hookean", element);
-        problem.moves.push(Moving {
-            on: "bottom".into(),
-            axes: [true; 3],
-            courses: vec![Course {
-                displacement: speed,
-                ramp: Ramp::Table {
+        problem.moves.push(Moving::new(
+            "bottom",
+            [Course::new(
+                speed,
+                Ramp::Table {
                     times: vec![0.0, 1.0],
                     values: vec![0.0, 1.0],
                 },
-            }],
-        });
+            )],
+        ));
         let mesh = structured::cube(2, 0.1, Split::Mirrored).unwrap();
         let model = Model::build(&mesh, &problem).unwrap();
         for kind in ["trap", "ie"] {

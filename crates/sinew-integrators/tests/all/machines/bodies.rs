@@ -23,10 +23,7 @@ const EDGES: Element = Element::FbarEdge {
 };
 
 fn law(id: &'static str) -> Law {
-    Law::Hyperelastic {
-        id,
-        parameters: Parameters::new(3500.0, 0.45),
-    }
+    Law::hyperelastic(id, Parameters::new(3500.0, 0.45))
 }
 
 fn region(law: Law, element: Element, group: Option<&str>) -> Region {
@@ -39,16 +36,11 @@ fn region(law: Law, element: Element, group: Option<&str>) -> Region {
 
 /// A cube with a lower and an upper part, which is held at the bottom and pressed on the top.
 fn problem(regions: Vec<Region>) -> Problem {
-    Problem {
-        regions,
-        fixed: vec![held("bottom", [true; 3])],
-        loads: vec![LoadSpec::new(
-            "top",
-            LoadKind::Pressure(100.0),
-            Ramp::Sin2 { rise: 0.05 },
-        )],
-        ..Problem::default()
-    }
+    Problem::of(regions)
+        .with_fixed(held("bottom", [true; 3]))
+        .with_load(
+            LoadSpec::new("top", LoadKind::Pressure(100.0)).with_ramp(Ramp::Sin2 { rise: 0.05 }),
+        )
 }
 
 fn problems() -> Vec<(&'static str, Problem)> {
@@ -58,11 +50,13 @@ fn problems() -> Vec<(&'static str, Problem)> {
     damped.fixed.push(held("top", [false, true, false]));
     let mut moved = one("stable-neo-hookean", Element::Fbar { patch: Some(12) });
     moved.loads.clear();
-    moved.moves.push(Moving {
-        on: "top".into(),
-        axes: [true, false, false],
-        courses: Course::along(&[0.0, 0.1], &[[0.0; 3], [0.01, 0.0, 0.0]]),
-    });
+    moved.moves.push(
+        Moving::new(
+            "top",
+            Course::along(&[0.0, 0.1], &[[0.0; 3], [0.01, 0.0, 0.0]]),
+        )
+        .along([true, false, false]),
+    );
     let mixed = problem(vec![
         region(law("neo-hookean"), EDGES, Some("low")),
         region(linear(3500.0, 0.45), Element::P1, Some("high")),

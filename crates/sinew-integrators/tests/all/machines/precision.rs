@@ -199,14 +199,8 @@ fn stiffnesses_too_far_apart_for_24_bits_are_refused() {
         })
         .into();
     let prepared = |factor: f64| {
-        let region = |group: &str, law: Law| Region {
-            group: Some(group.into()),
-            ..Region::new(law, 1060.0)
-        };
-        let problem = Problem {
-            regions: vec![region("stiff", law(factor)), region("soft", law(1.0))],
-            ..Problem::default()
-        };
+        let region = |group: &str, law: Law| Region::new(law, 1060.0).on(group);
+        let problem = Problem::of([region("stiff", law(factor)), region("soft", law(1.0))]);
         let model = Model::build(&mesh, &problem).unwrap();
         let options = plain().with_text("precision", "f32");
         let mut method = sinew_integrators::build("rk4", &options).unwrap();

@@ -116,15 +116,12 @@ fn body(
     damping: Rayleigh,
 ) -> Model {
     let mesh = structured::cube(cells, 0.1, Split::Kuhn).unwrap();
-    let held = |(group, axes): &(&str, [bool; 3])| Fixed {
-        on: (*group).into(),
-        axes: *axes,
-    };
+    let held = |(group, axes): &(&str, [bool; 3])| Fixed::at(*group).along(*axes);
     let problem = Problem {
         regions: vec![Region::new(law, 1060.0)],
         damping,
         fixed: fixed.iter().map(held).collect(),
-        loads: vec![LoadSpec::new("top", kind, Ramp::Step)],
+        loads: vec![LoadSpec::new("top", kind)],
         gravity: None,
         moves: Vec::new(),
     };

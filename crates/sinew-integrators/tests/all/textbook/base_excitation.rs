@@ -29,15 +29,8 @@ fn tower(law: Law, damping: Rayleigh, courses: Vec<Course>) -> Model {
     ];
     let mesh = TetMesh::new(points, vec![[0, 1, 2, 3]]).unwrap();
     let problem = Problem {
-        fixed: vec![Fixed {
-            on: On::Nodes(vec![0, 1, 2, 3]),
-            axes: [true, true, false],
-        }],
-        moves: vec![Moving {
-            on: On::Nodes(vec![0, 1, 2]),
-            axes: [false, false, true],
-            courses,
-        }],
+        fixed: vec![Fixed::at(On::Nodes(vec![0, 1, 2, 3])).along([true, true, false])],
+        moves: vec![Moving::new(On::Nodes(vec![0, 1, 2]), courses).along([false, false, true])],
         damping,
         ..body(law)
     };
@@ -56,10 +49,7 @@ enum Way {
 
 impl Way {
     fn courses(&self) -> Vec<Course> {
-        let by = |ramp| Course {
-            displacement: [0.0, 0.0, WAY],
-            ramp,
-        };
+        let by = |ramp| Course::new([0.0, 0.0, WAY], ramp);
         match self {
             Self::Rise(rise) => vec![by(Ramp::Sin2 { rise: *rise })],
             Self::Lines(times, values) => {
@@ -227,7 +217,7 @@ fn every_method_follows_a_moving_base_at_its_order() {
     let dampings = [(0.0, 0.0), (3.0, 0.0), (0.0, 2e-3), (3.0, 2e-3)];
     let mut taken = 0;
     for (mass, stiffness) in dampings {
-        let damping = Rayleigh { mass, stiffness };
+        let damping = Rayleigh::new(mass, stiffness);
         let tower_in_theory = Tower::elastic(youngs_modulus, damping);
         for (way, smooth) in ways() {
             let model = tower(law.clone(), damping, way.courses());
@@ -295,7 +285,7 @@ fn ritz_vectors_follow_a_moving_base() {
     let law = linear(5e3, 0.0);
     let ritz = Options::new().with("vectors", OptionValue::Text("ritz".into()));
     for (mass, stiffness) in [(0.0, 0.0), (3.0, 2e-3)] {
-        let damping = Rayleigh { mass, stiffness };
+        let damping = Rayleigh::new(mass, stiffness);
         let theory = Tower::elastic(5e3, damping);
         for (way, _) in ways() {
             let model = tower(law.clone(), damping, way.courses());
@@ -316,10 +306,7 @@ fn dashpots_see_the_velocity_of_the_base() {
         damping_ratio: 0.2,
     };
     let way = Way::Rise(0.26);
-    let damping = Rayleigh {
-        mass: 3.0,
-        stiffness: 1e-3,
-    };
+    let damping = Rayleigh::new(3.0, 1e-3);
     let model = tower(law, damping, way.courses());
     let operators = model.operators();
     let tip = model.dofs() - 1;
@@ -351,10 +338,7 @@ fn dashpots_see_the_velocity_of_the_base() {
 /// A base that is moved as it happens is one whose table was known beforehand.
 #[test]
 fn a_base_moved_by_an_input_is_one_moved_by_its_table() {
-    let damping = Rayleigh {
-        mass: 0.0,
-        stiffness: 2e-3,
-    };
+    let damping = Rayleigh::new(0.0, 2e-3);
     let (dt, steps) = (2e-3, 100);
     let times: Vec<f64> = (0..=steps).map(|n| f64::from(n) * dt).collect();
     let values: Vec<f64> = times.iter().map(|t| (30.0 * t).sin()).collect();
@@ -366,10 +350,7 @@ fn a_base_moved_by_an_input_is_one_moved_by_its_table() {
         damping,
         Way::Lines(times.clone(), values.clone()).courses(),
     );
-    let live = Course {
-        displacement: [0.0, 0.0, WAY],
-        ramp: Ramp::Input(channel),
-    };
+    let live = Course::new([0.0, 0.0, WAY], Ramp::Input(channel));
     let live = tower(law, damping, vec![live]);
     for id in ["central-difference", "newmark", "cnn", "rk4"] {
         let mut inputs = inputs.clone();

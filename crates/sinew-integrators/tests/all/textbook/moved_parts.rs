@@ -17,11 +17,7 @@ const SIZE: [f64; 3] = [0.03, 0.04, 0.1];
 /// A motion over a rise of this length (s).
 fn moved(on: impl Into<On>, axes: [bool; 3], displacement: [f64; 3], rise: f64) -> Moving {
     let ramp = Ramp::Sin2 { rise };
-    Moving {
-        on: on.into(),
-        axes,
-        courses: vec![Course { displacement, ramp }],
-    }
+    Moving::new(on, [Course::new(displacement, ramp)]).along(axes)
 }
 
 /// A bar held at its bottom, 3 x 4 x 5 hexahedra.
@@ -103,10 +99,7 @@ fn a_body_moved_at_its_whole_outside_stays_as_it_is() {
     for law in [linear(YOUNGS_MODULUS, 0.45), springs] {
         let problem = Problem {
             moves: vec![moved(On::Nodes(outside.clone()), [true; 3], d, 0.2)],
-            damping: Rayleigh {
-                mass: 60.0,
-                stiffness: 0.02,
-            },
+            damping: Rayleigh::new(60.0, 0.02),
             ..body(law)
         };
         let model = Model::build(&mesh, &problem).unwrap();
@@ -147,23 +140,19 @@ fn newmark_nears_the_propagator_along_a_table() {
         [1e-3, 1e-3, 2e-3],
         [0.0, 0.0, 5e-3],
     ];
-    let load = |group: &str, kind| LoadSpec::new(group, kind, Ramp::Step);
+    let load = |group: &str, kind| LoadSpec::new(group, kind);
     let model = bar(&Problem {
         fixed: vec![held("bottom", [true; 3])],
-        moves: vec![Moving {
-            on: "top".into(),
-            axes: [true; 3],
-            courses: Course::along(&[0.04, 0.1, 0.12, 0.3], &positions),
-        }],
+        moves: vec![Moving::new(
+            "top",
+            Course::along(&[0.04, 0.1, 0.12, 0.3], &positions),
+        )],
         loads: vec![
             load("sides", LoadKind::Pressure(30.0)),
             load("tissue", LoadKind::Force([0.1, 0.0, -0.2])),
         ],
         gravity: Some([0.0, 1.0, -9.81]),
-        damping: Rayleigh {
-            mass: 2.0,
-            stiffness: 1e-3,
-        },
+        damping: Rayleigh::new(2.0, 1e-3),
         ..body(linear(YOUNGS_MODULUS, 0.3))
     });
     let end = |id: &str, dt: f64| {

@@ -20,7 +20,7 @@ const YOUNGS_MODULUS: f64 = 5000.0;
 
 fn hyperelastic(id: &'static str, poissons_ratio: f64) -> Law {
     let parameters = Parameters::new(YOUNGS_MODULUS, poissons_ratio);
-    Law::Hyperelastic { id, parameters }
+    Law::hyperelastic(id, parameters)
 }
 
 /// A method with a step (s) for a body.
@@ -123,15 +123,11 @@ fn a_body_and_its_clamp_at_one_speed_feel_no_force() {
         (large, 2e-3),
     ] {
         let problem = |law| Problem {
-            moves: vec![Moving {
-                on: face(&mesh, 0, 0.0),
-                axes: [true; 3],
-                courses: vec![Course::at_velocity(velocity)],
-            }],
-            damping: Rayleigh {
-                mass: 0.0,
-                stiffness,
-            },
+            moves: vec![Moving::new(
+                face(&mesh, 0, 0.0),
+                [Course::at_velocity(velocity)],
+            )],
+            damping: Rayleigh::new(0.0, stiffness),
             ..body(law)
         };
         let [model, small] =
@@ -172,15 +168,8 @@ fn beyond_the_stable_step(
 ) -> f64 {
     let mesh = structured::block([4, 1, 1], [0.2, 0.05, 0.05], Split::Kuhn).unwrap();
     let problem = Problem {
-        moves: vec![Moving {
-            on: face(&mesh, 0, 0.0),
-            axes: [true; 3],
-            courses: vec![course],
-        }],
-        damping: Rayleigh {
-            mass: 0.0,
-            stiffness,
-        },
+        moves: vec![Moving::new(face(&mesh, 0, 0.0), [course])],
+        damping: Rayleigh::new(0.0, stiffness),
         ..body(linear(modulus, 0.3))
     };
     let model = Model::build(&mesh, &problem).unwrap();
@@ -221,13 +210,13 @@ fn beyond_the_stable_step_the_stabilised_network_carries_what_supports_carry() {
     // Shaken slowly against its slowest motion, which is slowed down, a body resists by its mass.
     let (frequency, amplitude) = (0.1, 0.04);
     let omega = 2.0 * PI * frequency;
-    let sine = Course {
-        displacement: [0.0, 0.0, amplitude],
-        ramp: Ramp::Sine {
+    let sine = Course::new(
+        [0.0, 0.0, amplitude],
+        Ramp::Sine {
             frequency,
             phase: 0.0,
         },
-    };
+    );
     let shaken = (sine, [0.0, 0.0, omega * amplitude]);
     let force = beyond_the_stable_step((6.0, &Options::new()), (0.0, 2e6), shaken, 2000);
     let expected = DENSITY * 0.2 * 0.05 * 0.05 * omega * omega * amplitude;
@@ -244,13 +233,13 @@ fn few_modes_carry_what_supports_carry() {
     let mesh = structured::block([12, 3, 3], [0.2, 0.05, 0.05], Split::Mirrored).unwrap();
     let (frequency, amplitude) = (0.1, [0.02, -0.01, 0.04]);
     let omega = 2.0 * PI * frequency;
-    let sine = Course {
-        displacement: amplitude,
-        ramp: Ramp::Sine {
+    let sine = Course::new(
+        amplitude,
+        Ramp::Sine {
             frequency,
             phase: 0.0,
         },
-    };
+    );
     let glide = [1.5, -0.4, 0.9];
     let few = Options::new().with_number("modes", 3.0);
     let tolerant = Options::new().with_number("tolerance", 0.1);
@@ -263,15 +252,8 @@ fn few_modes_carry_what_supports_carry() {
     for (course, velocity, size) in cases {
         for stiffness in [0.0, 2e-3] {
             let problem = Problem {
-                moves: vec![Moving {
-                    on: face(&mesh, 0, 0.0),
-                    axes: [true; 3],
-                    courses: vec![course.clone()],
-                }],
-                damping: Rayleigh {
-                    mass: 0.0,
-                    stiffness,
-                },
+                moves: vec![Moving::new(face(&mesh, 0, 0.0), [course.clone()])],
+                damping: Rayleigh::new(0.0, stiffness),
                 ..body(linear(2e5, 0.3))
             };
             let model = Model::build(&mesh, &problem).unwrap();
@@ -319,16 +301,15 @@ fn a_bar_in_tension_pulls_by_its_law_whatever_the_cells() {
         let problem = |law| Problem {
             fixed: vec![
                 held("tissue", [false, true, true]),
-                Fixed {
-                    on: face(&mesh, 0, 0.0),
-                    axes: along,
-                },
+                Fixed::at(face(&mesh, 0, 0.0)).along(along),
             ],
-            moves: vec![Moving {
-                on: face(&mesh, 0, size[0]),
-                axes: along,
-                courses: vec![Course::at_velocity([speed, 0.0, 0.0])],
-            }],
+            moves: vec![
+                Moving::new(
+                    face(&mesh, 0, size[0]),
+                    [Course::at_velocity([speed, 0.0, 0.0])],
+                )
+                .along(along),
+            ],
             ..body(law)
         };
         let [model, small] =
@@ -379,11 +360,7 @@ fn a_shaken_block_is_pushed_by_its_mass_times_the_acceleration() {
     let mass = DENSITY * edge.powi(3);
     let place = |t: f64| speed * t + amplitude * (PI * t / (2.0 * rise)).sin().powi(2);
     let acceleration = |t: f64| amplitude * PI * PI / (2.0 * rise * rise) * (PI * t / rise).cos();
-    let still = Moving {
-        on: face(&mesh, 2, 0.0),
-        axes: [true; 3],
-        courses: Vec::new(),
-    };
+    let still = Moving::new(face(&mesh, 2, 0.0), Vec::new());
     let problem = |law, courses: Vec<Course>| Problem {
         moves: vec![Moving {
             courses,
@@ -411,10 +388,7 @@ fn a_shaken_block_is_pushed_by_its_mass_times_the_acceleration() {
             let courses = |dt: f64| match rows == 0.0 {
                 true => vec![
                     Course::at_velocity([speed, 0.0, 0.0]),
-                    Course {
-                        displacement: [amplitude, 0.0, 0.0],
-                        ramp: Ramp::Sin2 { rise },
-                    },
+                    Course::new([amplitude, 0.0, 0.0], Ramp::Sin2 { rise }),
                 ],
                 false => {
                     let count = ((steps + 2) as f64 * rows) as usize;
@@ -456,18 +430,11 @@ fn damped_block(law: fn(f64) -> Law) -> (Model, Model, State, impl Fn(f64) -> f6
         move |t: f64| amplitude * PI * PI / (2.0 * rise * rise) * (PI * t / rise).cos();
     let model = |law| {
         let problem = Problem {
-            moves: vec![Moving {
-                on: face(&mesh, 2, 0.0),
-                axes: [true; 3],
-                courses: vec![Course {
-                    displacement: [amplitude, 0.0, 0.0],
-                    ramp: Ramp::Sin2 { rise },
-                }],
-            }],
-            damping: Rayleigh {
-                mass: 0.0,
-                stiffness: 2e-3,
-            },
+            moves: vec![Moving::new(
+                face(&mesh, 2, 0.0),
+                [Course::new([amplitude, 0.0, 0.0], Ramp::Sin2 { rise })],
+            )],
+            damping: Rayleigh::new(0.0, 2e-3),
             ..body(law)
         };
         Model::build(&mesh, &problem).unwrap()
@@ -507,10 +474,7 @@ fn a_shaken_block_with_damping_is_pushed_by_its_mass_times_the_acceleration() {
 }
 
 fn neo_hookean(modulus: f64) -> Law {
-    Law::Hyperelastic {
-        id: "neo-hookean",
-        parameters: Parameters::new(modulus, 0.3),
-    }
+    Law::hyperelastic("neo-hookean", Parameters::new(modulus, 0.3))
 }
 
 /// Newton's second law for the motion that a first-order method makes, to its last digits: a table pushes with the force that changes the momentum of the nodes which move by
@@ -566,15 +530,11 @@ fn jerks_of_a_support_reach_a_damped_body_by_every_law_as_by_the_linear_one() {
     let mesh = structured::cube(2, 0.1, Split::Mirrored).unwrap();
     let soft = linear(YOUNGS_MODULUS, 0.3);
     let problem = |law, positions: &[[f64; 3]]| Problem {
-        moves: vec![Moving {
-            on: face(&mesh, 2, 0.0),
-            axes: [true; 3],
-            courses: Course::along(&[0.0, 0.004, 0.0091, 0.0133], positions),
-        }],
-        damping: Rayleigh {
-            mass: 0.0,
-            stiffness: 2e-3,
-        },
+        moves: vec![Moving::new(
+            face(&mesh, 2, 0.0),
+            Course::along(&[0.0, 0.004, 0.0091, 0.0133], positions),
+        )],
+        damping: Rayleigh::new(0.0, 2e-3),
         ..body(law)
     };
     let way = [[0.0; 3], [0.0; 3], [1e-7, 0.0, 2e-7], [0.0, 1e-7, 2e-7]];

@@ -16,11 +16,7 @@ pub(crate) fn held_cube(cells: usize, split: Split) -> Model {
 }
 
 pub(crate) fn body(mesh: &TetMesh, held: &str) -> Model {
-    let problem = Problem {
-        regions: vec![Region::new(TISSUE, 1060.0)],
-        fixed: vec![Fixed::new(held)],
-        ..Problem::default()
-    };
+    let problem = Problem::of([Region::new(TISSUE, 1060.0)]).with_fixed(Fixed::at(held));
     Model::build(mesh, &problem).unwrap()
 }
 

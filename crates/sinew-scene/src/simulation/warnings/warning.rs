@@ -2,10 +2,12 @@
 
 use std::fmt;
 
+use serde::{Serialize, Serializer};
+
 use crate::number::short;
 
 /// Something about a scene that runs, and may not be what its author meant. It prints as one line.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Warning {
     /// Its kind.
     pub kind: WarningKind,
@@ -133,6 +135,13 @@ pub enum WarningKind {
     FarProbe,
     /// No probe.
     NoProbe,
+}
+
+/// Serializes as its id.
+impl Serialize for WarningKind {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.id())
+    }
 }
 
 impl WarningKind {

@@ -60,24 +60,19 @@ impl Block {
 
     pub(crate) fn problem(&self) -> Problem {
         let is_carried = self.carried_at != [0.0; 3];
-        let bottom = Fixed::new("bottom");
-        let moving = Moving {
-            on: "bottom".into(),
-            axes: [true; 3],
-            courses: vec![Course::at_velocity(self.carried_at)],
-        };
-        let law = match self.law {
-            None => Law::linear(E, self.nu),
-            Some(id) => Law::Hyperelastic {
-                id,
-                parameters: Parameters::new(E, self.nu),
-            },
-        };
+        let bottom = Fixed::at("bottom");
+        let moving = Moving::new("bottom", [Course::at_velocity(self.carried_at)]);
         Problem {
-            regions: vec![Region {
-                element: self.element,
-                ..Region::new(law, DENSITY)
-            }],
+            regions: vec![
+                Region::new(
+                    match self.law {
+                        None => Law::linear(E, self.nu),
+                        Some(id) => Law::hyperelastic(id, Parameters::new(E, self.nu)),
+                    },
+                    DENSITY,
+                )
+                .with_element(self.element),
+            ],
             damping: self.damping,
             fixed: match self.is_held && !is_carried {
                 true => vec![bottom],
