@@ -60,12 +60,15 @@ pub fn loads(model: &Model) -> Vec<f64> {
 }
 
 /// The equilibrium (m) of a model under its loads.
+///
+/// # Errors
+/// [`LabError`].
 pub fn equilibrium(model: &Model) -> Result<Vec<f64>, LabError> {
     Ok(static_solution(model, &loads(model))?)
 }
 
 /// K u (N).
-pub fn stiffness_times(model: &Model, u: &[f64]) -> Vec<f64> {
+pub(crate) fn stiffness_times(model: &Model, u: &[f64]) -> Vec<f64> {
     let mut force = vec![0.0; u.len()];
     model.operators().stiffness().multiply(u, &mut force);
     force

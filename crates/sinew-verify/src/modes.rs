@@ -7,6 +7,9 @@ use sinew_integrators::{Combination, Factor};
 use crate::error::LabError;
 
 /// The lowest angular frequency (rad/s) of a system that is held, with a mass of its own: `multiply(x, out)` writes `out = M x`.
+///
+/// # Errors
+/// [`LabError`].
 pub fn lowest_omega(
     system: &dyn LinearSystem,
     multiply: impl FnMut(&[f64], &mut [f64]),
@@ -15,6 +18,9 @@ pub fn lowest_omega(
 }
 
 /// The lowest angular frequency (rad/s) of a system with its lumped mass.
+///
+/// # Errors
+/// [`LabError`].
 pub fn lowest_omega_lumped(system: &dyn LinearSystem) -> Result<f64, LabError> {
     lowest_omega(system, |x, out| {
         for ((out, x), mass) in out.iter_mut().zip(x).zip(system.mass()) {
@@ -24,7 +30,7 @@ pub fn lowest_omega_lumped(system: &dyn LinearSystem) -> Result<f64, LabError> {
 }
 
 /// The largest eigenvalue of `K^-1 S` for a symmetric positive semidefinite S: `multiply(x, out)` writes `out = S x`.
-pub fn largest_beside_stiffness(
+pub(crate) fn largest_beside_stiffness(
     system: &dyn LinearSystem,
     multiply: impl FnMut(&[f64], &mut [f64]),
 ) -> Result<f64, LabError> {

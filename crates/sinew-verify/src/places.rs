@@ -6,14 +6,14 @@ use crate::error::LabError;
 use crate::vector::{difference, norm};
 
 /// The nodes at places for which `belongs` holds.
-pub fn nodes_where(mesh: &TetMesh, belongs: impl Fn([f64; 3]) -> bool) -> Vec<u32> {
+pub(crate) fn nodes_where(mesh: &TetMesh, belongs: impl Fn([f64; 3]) -> bool) -> Vec<u32> {
     let nodes = (0..).zip(&mesh.points);
     let nodes = nodes.filter_map(|(node, point)| belongs(*point).then_some(node));
     nodes.collect()
 }
 
 /// The node at a place (m).
-pub fn node_at(points: &[[f64; 3]], place: [f64; 3]) -> Result<u32, LabError> {
+pub(crate) fn node_at(points: &[[f64; 3]], place: [f64; 3]) -> Result<u32, LabError> {
     let is_there = |point: &[f64; 3]| norm(difference(*point, place)) <= 1e-9;
     let node = points.iter().position(is_there);
     node.map(|node| node as u32)
@@ -21,6 +21,9 @@ pub fn node_at(points: &[[f64; 3]], place: [f64; 3]) -> Result<u32, LabError> {
 }
 
 /// The triangles of a group all of whose corners are at places for which `belongs` holds.
+///
+/// # Errors
+/// [`LabError`].
 pub fn triangles_where(
     mesh: &TetMesh,
     group: &str,
@@ -37,7 +40,7 @@ pub fn triangles_where(
 }
 
 /// One flag per node: true if it is on the surface of a box that the mesh fills.
-pub fn on_surface(mesh: &TetMesh) -> Vec<bool> {
+pub(crate) fn on_surface(mesh: &TetMesh) -> Vec<bool> {
     let (low, high) = mesh.bounding_box();
     let is_end = |point: &[f64; 3], axis: usize| {
         let size = high[axis] - low[axis];

@@ -58,6 +58,9 @@ pub struct Specimen {
 
 impl Specimen {
     /// A body at rest.
+    ///
+    /// # Errors
+    /// [`LabError`].
     pub fn new(mesh: &TetMesh, problem: &Problem) -> Result<Self, LabError> {
         let model = Model::build(mesh, problem)?;
         let start = State::at_rest(model.dofs());
@@ -77,12 +80,18 @@ impl Specimen {
     }
 
     /// The displacement (m) at rest under all loads at their full value.
+    ///
+    /// # Errors
+    /// [`StaticError`].
     pub fn equilibrium(&self) -> Result<Vec<f64>, StaticError> {
         let loads: Vec<usize> = (0..self.model.operators().loads().len()).collect();
         static_solution_under(&self.model, &self.model.full_loads(&loads))
     }
 
     /// Displacements (m) at so many equal instants of `steps` steps each, and the work of all of them.
+    ///
+    /// # Errors
+    /// [`StepError`].
     pub fn track(
         &self,
         integrator: &mut dyn Integrator,
@@ -102,6 +111,9 @@ impl Specimen {
     }
 
     /// The same by central difference.
+    ///
+    /// # Errors
+    /// [`StepError`].
     pub fn by_central_difference(
         &self,
         dt: f64,
@@ -135,6 +147,9 @@ pub fn relative_error(found: &[Vec<f64>], exact: &[Vec<f64>]) -> f64 {
 }
 
 /// A cube that is stretched by half along z at the volume of rest, and let go.
+///
+/// # Errors
+/// [`LabError`].
 pub fn release(cells: usize, law: Law, element: Element) -> Result<Specimen, LabError> {
     let mesh = block([cells; 3], [EDGE; 3], Split::Mirrored)?;
     let specimen = Specimen::new(&mesh, &standing(law, element))?;
@@ -147,6 +162,9 @@ pub fn release(cells: usize, law: Law, element: Element) -> Result<Specimen, Lab
 
 /// A column that is spun about its axis, by so much at the top (1/s), after Bonet, Gil, Lee and others (Comput. Methods Appl. Mech. Eng. 283,
 /// 2015).
+///
+/// # Errors
+/// [`LabError`].
 pub fn spun_column(
     cells: [usize; 3],
     size: [f64; 3],
@@ -163,6 +181,9 @@ pub fn spun_column(
 }
 
 /// A cube with mass damping (1/s) under a force of 12 N on its top, spread by the trapezoidal rule, that follows a ramp.
+///
+/// # Errors
+/// [`LabError`].
 pub fn pressed(
     cells: usize,
     law: Law,

@@ -168,9 +168,8 @@ impl Varied {
         let methods = methods();
         for &value in self.values.iter().step_by(every) {
             let mut longer = map.clone();
-            let mut add = || -> Result<(), LabError> {
-                Ok(longer.add(value, &mut self.case(value)?, &methods)?)
-            };
+            let mut add =
+                || -> Result<(), LabError> { longer.add(value, &mut self.case(value)?, &methods) };
             match add() {
                 Ok(()) => map = longer,
                 Err(error) => missing.push(Missing {

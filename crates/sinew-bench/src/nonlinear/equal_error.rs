@@ -188,7 +188,7 @@ impl Shape {
             Self::Cantilever => block([cells, cells, 10 * cells], [0.1, 0.1, 1.0], Split::Kuhn),
             Self::HeldCube => block([cells; 3], [0.1; 3], Split::Kuhn),
         };
-        Ok(mesh.map_err(LabError::from)?)
+        mesh.map_err(LabError::from)
     }
 
     /// Traction on the top (Pa): strains of a thousandth.

@@ -87,6 +87,9 @@ impl Tet10 {
     }
 
     /// The body of this material with all nodes held at places for which `is_held` holds.
+    ///
+    /// # Errors
+    /// [`LabError`].
     pub fn held(
         &self,
         tissue: Tissue,
@@ -148,6 +151,9 @@ pub struct HeldTet10 {
 
 impl HeldTet10 {
     /// The displacement (m) of each node under a force (N) on each.
+    ///
+    /// # Errors
+    /// [`LabError`].
     pub fn equilibrium(&self, force: &[[f64; 3]]) -> Result<Vec<[f64; 3]>, LabError> {
         let acting: Vec<f64> = self.moving.iter().flat_map(|node| force[*node]).collect();
         let solution = static_solution(&self.system, &acting)?;
@@ -159,6 +165,9 @@ impl HeldTet10 {
     }
 
     /// The lowest angular frequency (rad/s).
+    ///
+    /// # Errors
+    /// [`LabError`].
     pub fn lowest_omega(&self) -> Result<f64, LabError> {
         lowest_omega(&self.system, |x, out| self.mass.multiply(x, out))
     }

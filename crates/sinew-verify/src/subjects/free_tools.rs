@@ -403,13 +403,15 @@ fn askew_at_rest() -> Result<Vec<f64>, LabError> {
     let way = through(&[(0.0, start), (0.2, end)], [0.0; 3])?;
     let pressed = settled(ball(way, BODY)?)?;
     let (there, report) = (pose(&pressed), pressed.tools.report(&pressed.state, 0));
-    let (mut off, mut twisted) = (0.0_f64, 0.0_f64);
-    for axis in 0..3 {
-        let pulled = BODY.coupling * (there.position()[axis] - end[axis]);
-        off = off.max((pulled - report.force[axis]).abs());
-        let turned = BODY.rotational_coupling * there.rotation_vector()[axis];
-        twisted = twisted.max((turned - report.torque[axis]).abs());
-    }
+    let (place, turn) = (there.position(), there.rotation_vector());
+    let off = (0..3).fold(0.0, |off: f64, axis| {
+        let pulled = BODY.coupling * (place[axis] - end[axis]);
+        off.max((pulled - report.force[axis]).abs())
+    });
+    let twisted = (0..3).fold(0.0, |off: f64, axis| {
+        let turned = BODY.rotational_coupling * turn[axis];
+        off.max((turned - report.torque[axis]).abs())
+    });
     let [x, y, _] = there.position();
     let rows = [
         (0.0, [x, y, EDGE + 0.0125], [0.0; 3]),

@@ -47,15 +47,14 @@ impl Scene {
 
     fn specimen(self) -> Result<Specimen, LabError> {
         let law = tissue::soft();
-        let specimen = match self {
+        match self {
             Self::Release => tissue::release(6, law, Element::P1),
             Self::Twist => {
                 let problem = tissue::standing(law, Element::P1);
                 tissue::spun_column([3, 3, 18], COLUMN, 75.0, &problem)
             }
             Self::Push => tissue::pressed(6, law, Element::P1, 10.0, Ramp::Sin2 { rise: 0.2 }),
-        };
-        Ok(specimen?)
+        }
     }
 }
 
