@@ -272,7 +272,7 @@ impl Fibres {
         Tensor::outer(along, along).scaled(N::of(4.0) * at.viscosity)
     }
 
-    /// A node's own block of [`Self::semidefinite_tangent`], for each m^3.
+    /// A node's own block of the semidefinite tangent, for each m^3.
     #[inline(always)]
     pub fn node_block<N: Number>(&self, at: &FibrePoint<N>, gradient: [N; 3]) -> Tensor<N> {
         let [first, second] = at.derivatives;
