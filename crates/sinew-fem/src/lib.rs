@@ -85,6 +85,7 @@ pub mod hyperelastic;
 mod in_place;
 mod large;
 mod law;
+mod law_registry;
 mod loads;
 mod lumped;
 mod material;

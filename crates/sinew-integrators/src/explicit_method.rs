@@ -6,7 +6,7 @@ use sinew_cnn::{Physics, Program};
 use sinew_core::spectrum::Spectrum;
 use sinew_core::{Fact, OptionError, Options, Properties, SetupError, StableStep, State, System};
 
-use crate::explicit::GuardOption;
+use crate::guard_option::GuardOption;
 use crate::method::{ConservedEnergy, Method};
 use crate::option_help::OptionHelp;
 use crate::scheme::{Scheme, SetUp};

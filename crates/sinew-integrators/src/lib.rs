@@ -18,6 +18,7 @@ pub mod explicit;
 mod explicit_method;
 mod exponential;
 mod frame;
+mod guard_option;
 #[cfg(feature = "implicit")]
 pub mod implicit;
 mod limits;

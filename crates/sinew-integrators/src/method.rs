@@ -4,8 +4,8 @@ use sinew_core::{Fact, OptionError, Options};
 
 use sinew_machines::Settings;
 
-use crate::explicit::GuardOption;
 use crate::frame::Frame;
+use crate::guard_option::GuardOption;
 use crate::option_help::{OptionHelp, OptionLabel};
 use crate::scheme::Scheme;
 use crate::stepper::Stepper;

@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
-use crate::check::{TetShape, tet_corners};
 pub use crate::data_range::DataRange;
 use crate::mesh::Mesh;
+use crate::tet_shape::{TetShape, tet_corners};
 
 /// Summary of a mesh. [`MeshInfo::to_json`] gives the fields under their names.
 #[derive(Debug, Clone, PartialEq)]

@@ -54,6 +54,7 @@ mod reading;
 mod selection;
 pub mod structured;
 mod tet_mesh;
+mod tet_shape;
 mod unstructured;
 pub mod vector;
 mod vtk;

@@ -13,31 +13,34 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-mod boxed;
+pub(crate) mod boxed;
 #[cfg(any(test, feature = "conformance"))]
 pub mod conformance;
-mod corotational;
+pub(crate) mod corotational;
 mod decomposition;
 mod deformation;
 pub mod fibres;
-mod law;
-mod law_error;
-mod mooney_rivlin;
-mod neo_hookean;
-mod neo_hookean_iso;
-mod neo_hookean_log;
-mod parameters;
+pub(crate) mod law;
+pub(crate) mod law_error;
+pub(crate) mod mooney_rivlin;
+pub(crate) mod neo_hookean;
+pub(crate) mod neo_hookean_iso;
+pub(crate) mod neo_hookean_log;
+pub(crate) mod parameters;
 mod projection;
 pub mod prony;
-mod registry;
 mod samples;
-mod stable_neo_hookean;
-mod stable_neo_hookean_log;
-mod stvk;
-mod tensor;
+pub(crate) mod stable_neo_hookean;
+pub(crate) mod stable_neo_hookean_log;
+pub(crate) mod stvk;
+pub(crate) mod tensor;
 mod viscous;
-mod yeoh;
+pub(crate) mod yeoh;
 
+pub use crate::law_registry::{
+    Hyperelastic, KnownLaw, MakeBoxed, RegisterError, known_law, known_laws, register,
+    register_boxed,
+};
 pub use boxed::{Boxed, PointLaw};
 pub use corotational::Corotational;
 pub use decomposition::SingularValues;
@@ -51,10 +54,6 @@ pub use neo_hookean_log::NeoHookeanLog;
 pub use parameters::{LawParameter, LawValues, ParameterError, Parameters, Presence, Range};
 pub(crate) use projection::semidefinite;
 pub use projection::{Linearised, Projection, TangentKind};
-pub use registry::{
-    Hyperelastic, KnownLaw, MakeBoxed, RegisterError, known_law, known_laws, register,
-    register_boxed,
-};
 pub use samples::sample_deformations;
 pub use stable_neo_hookean::StableNeoHookean;
 pub use stable_neo_hookean_log::StableNeoHookeanLog;

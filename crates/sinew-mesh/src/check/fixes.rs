@@ -2,10 +2,10 @@
 
 use std::collections::HashSet;
 
-use super::shape::{TetShape, tet_corners};
 use crate::cell_type::CellType;
 use crate::mesh::{CellBlock, Mesh};
 use crate::physical_tags::PhysicalTags;
+use crate::tet_shape::{TetShape, tet_corners};
 
 impl Mesh {
     /// Turns inverted tetrahedra (4 and 10 nodes) the right way round: exchanges two corners, the nodes on the edges between

@@ -1,12 +1,11 @@
 //! Checks whether a mesh is fit for simulation: its cells, nodes and groups.
 
 mod fixes;
-mod shape;
 
 use std::collections::{BTreeMap, HashSet};
 use std::fmt;
 
-pub(crate) use shape::{TetShape, tet_corners};
+use crate::tet_shape::{TetShape, tet_corners};
 
 use crate::bounds::Bounds;
 use crate::joints::{Joints, Sets, Surfaces};

@@ -1,6 +1,5 @@
 //! Connections between the tetrahedra of a mesh, real and apparent.
 
-mod faces;
 mod findings;
 mod lying;
 mod merge;
@@ -14,12 +13,11 @@ use std::collections::BTreeSet;
 pub use findings::JointFinding;
 pub use places::Places;
 
-pub(crate) use faces::for_each_face;
 pub(crate) use sets::Sets;
 pub(crate) use surfaces::Surfaces;
 
 use crate::tet_mesh::TetMesh;
-use faces::is_sound;
+use crate::tet_mesh::faces::is_sound;
 use lying::is_within;
 use surfaces::{middle, parts};
 

@@ -2,13 +2,13 @@
 
 use std::collections::HashMap;
 
-use super::faces::{Owner, for_each_face, is_sound};
 use super::lying;
 use super::place::same_places;
 use super::places::Places;
 use super::sets::Sets;
 use crate::bounds::Bounds;
-use crate::check::TetShape;
+use crate::tet_mesh::faces::{Owner, for_each_face, is_sound};
+use crate::tet_shape::TetShape;
 
 /// Distance of places that are one but for rounding, as a share of the width of the mesh.
 const ROUNDING: f64 = 1e-9;

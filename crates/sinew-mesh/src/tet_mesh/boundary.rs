@@ -1,7 +1,7 @@
 //! The boundary of a mesh or of a part of it.
 
+use super::faces::for_each_face;
 use super::{Group, GroupMembers, TetMesh};
-use crate::joints::for_each_face;
 
 impl TetMesh {
     /// The triangles that bound all tetrahedra, or those of a volume group: the faces of exactly one of them.

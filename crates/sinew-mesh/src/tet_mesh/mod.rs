@@ -8,6 +8,7 @@ mod collect_groups;
 mod cut;
 mod cut_faces;
 mod error;
+pub(crate) mod faces;
 mod find_data;
 mod find_group;
 mod from_mesh;

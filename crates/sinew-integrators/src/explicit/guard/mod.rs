@@ -3,7 +3,6 @@
 mod bound;
 mod limits;
 mod load_work;
-mod option;
 
 use sinew_cnn::Program;
 use sinew_core::spectrum::Spectrum;
@@ -15,9 +14,9 @@ use sinew_core::{
 use crate::Stepper;
 
 use super::substeps::{Substeps, whole};
+pub use crate::guard_option::{Guard, GuardOption};
 use bound::{LEAST_ROOM, room};
 use limits::Limits;
-pub use option::{Guard, GuardOption};
 
 /// Most substeps of a step if none is stable: a light cell's limit would ask for millions.
 const MOST_PARTS_BY_SIZE: u32 = 1000;

@@ -3,20 +3,22 @@
 use std::fmt;
 use std::sync::{Arc, PoisonError, RwLock};
 
-use super::boxed::PointLaw;
-use super::corotational::Corotational;
-use super::law::{HyperelasticLaw, NodeBlock};
-use super::law_error::LawError;
-use super::mooney_rivlin::MooneyRivlin;
-use super::neo_hookean::NeoHookean;
-use super::neo_hookean_iso::NeoHookeanIso;
-use super::neo_hookean_log::NeoHookeanLog;
-use super::parameters::{LawParameter, LawValues, ParameterError, Parameters, engineering};
-use super::stable_neo_hookean::StableNeoHookean;
-use super::stable_neo_hookean_log::StableNeoHookeanLog;
-use super::stvk::Stvk;
-use super::tensor::Tensor;
-use super::yeoh::Yeoh;
+use crate::hyperelastic::boxed::PointLaw;
+use crate::hyperelastic::corotational::Corotational;
+use crate::hyperelastic::law::{HyperelasticLaw, NodeBlock};
+use crate::hyperelastic::law_error::LawError;
+use crate::hyperelastic::mooney_rivlin::MooneyRivlin;
+use crate::hyperelastic::neo_hookean::NeoHookean;
+use crate::hyperelastic::neo_hookean_iso::NeoHookeanIso;
+use crate::hyperelastic::neo_hookean_log::NeoHookeanLog;
+use crate::hyperelastic::parameters::{
+    LawParameter, LawValues, ParameterError, Parameters, engineering,
+};
+use crate::hyperelastic::stable_neo_hookean::StableNeoHookean;
+use crate::hyperelastic::stable_neo_hookean_log::StableNeoHookeanLog;
+use crate::hyperelastic::stvk::Stvk;
+use crate::hyperelastic::tensor::Tensor;
+use crate::hyperelastic::yeoh::Yeoh;
 use crate::large::{Compiled, Own};
 
 /// A law by its values, whose type is not known: loops are compiled for it nevertheless, and chosen once for a region.
@@ -322,7 +324,7 @@ impl Hyperelastic {
         self.0.node_block(h, gradient)
     }
 
-    /// [`super::sample_deformations`] of the law.
+    /// [`crate::hyperelastic::sample_deformations`] of the law.
     #[must_use]
     pub fn samples(&self) -> Vec<[Tensor<f64>; 2]> {
         self.0.samples()

@@ -1,6 +1,6 @@
 //! Faces of tetrahedra, each with all that have it.
 
-use crate::tet_mesh::OUTWARD_FACES;
+use super::surface::OUTWARD_FACES;
 
 /// A face as one of its tetrahedra has it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
