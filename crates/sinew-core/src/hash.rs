@@ -32,6 +32,7 @@ impl Hash {
     }
 
     /// The hash of some bytes.
+    #[cfg(any(test, feature = "serde"))]
     #[must_use]
     pub(crate) fn of(bytes: &[u8]) -> u64 {
         let mut hash = Self::new();

@@ -1,6 +1,6 @@
 //! Inputs from outside, known only while a simulation runs.
 
-use crate::channel_record::{Between, InputError, Record, check_finite};
+use crate::channel_record::{Between, InputError, Record};
 use crate::force_record::{ForceInputError, ForceRecord};
 use crate::load::Load;
 use crate::ramp::{Channel, Ramp, RampError};
@@ -77,7 +77,7 @@ impl Inputs {
     #[cfg(feature = "serde")]
     pub(crate) fn add_line_from(&mut self, t: f64, value: f64) -> Result<Channel, InputError> {
         let channel = self.channels.len() as u32;
-        check_finite(channel, t, value)?;
+        crate::channel_record::check_finite(channel, t, value)?;
         Ok(self.push(Record::line(t, value)))
     }
 

@@ -36,8 +36,11 @@ pub enum InputBytesError {
 pub struct SavedInputs {
     channels: Vec<Ramp>,
     /// Sets of forces (N) on degrees of freedom, with the time (s) from which and until which they act.
-    forces: Vec<(f64, f64, Vec<(u32, f64)>)>,
+    forces: Vec<(f64, f64, Entries)>,
 }
+
+/// Degrees of freedom with a force (N) on each.
+type Entries = Vec<(u32, f64)>;
 
 impl SavedInputs {
     /// What inputs were given so far.
