@@ -43,7 +43,7 @@ pub struct SavedInputs {
 type Entries = Vec<(u32, f64)>;
 
 impl SavedInputs {
-    /// What inputs were given so far.
+    /// The values that inputs were given so far.
     #[must_use]
     pub fn of(inputs: &Inputs) -> Self {
         let forces = inputs.forces().map(|load| {

@@ -17,7 +17,7 @@ pub struct SavedBody {
     marks: Marks,
 }
 
-/// What cuts made of another body, or of none.
+/// A refusal of the cuts of another body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("these are not the cuts of this body")]
 pub struct SavedBodyError;

@@ -159,7 +159,7 @@ pub struct HeldParts {
 }
 
 impl HeldParts {
-    /// Those of a body; `None` where nothing is held or moved.
+    /// The parts of a body that are held or moved; `None` if there are none.
     ///
     /// # Errors
     /// [`ReactionError`] as [`SceneBody::held_parts`].

@@ -26,7 +26,7 @@ pub struct Saved {
     commanded: Option<Commanded>,
 }
 
-/// What commands to a world left.
+/// The effects of commands to a world.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct Commanded {
     inputs: SavedInputs,
