@@ -35,6 +35,12 @@ pub fn soft() -> Law {
     law("neo-hookean", YOUNGS_MODULUS, 0.45)
 }
 
+/// Tetrahedra whose volume is averaged over patches, and nine tenths of their shear over edges.
+pub const EDGES: Element = Element::FbarEdge {
+    edge_share: 0.9,
+    patch: None,
+};
+
 /// A body that stands on its bottom, which is held.
 pub fn standing(law: Law, element: Element) -> Problem {
     Problem {

@@ -95,6 +95,9 @@ pub enum CommandError {
         /// The names of all loads.
         known: Vec<String>,
     },
+    /// The id of a tool or a load of another world.
+    #[error("this id is that of a tool or a load of another world: ask this one by the name")]
+    ForeignId,
     /// A pose that is no place.
     #[error(
         "pose of \"{tool}\": {value}: expected finite numbers, at most {most:e} m or rad in size"

@@ -290,10 +290,10 @@ impl World {
         &self.body
     }
 
-    /// The body with loads that follow inputs.
-    fn driven(&self) -> Result<Arc<SceneBody>, DrivenLoadError> {
+    /// A body of the scene with loads that follow inputs.
+    fn driven(&self, undriven: &SceneBody) -> Result<Arc<SceneBody>, DrivenLoadError> {
         let channels: Vec<Channel> = self.loads.iter().map(|load| load.channel).collect();
-        Ok(Arc::new(self.undriven.with_driven_loads(&channels)?))
+        Ok(Arc::new(undriven.with_driven_loads(&channels)?))
     }
 
     /// External inputs as given so far.

@@ -55,8 +55,8 @@ pub enum CuttingError {
 
 /// Cuts the body of a scene while it moves: by the blade and the tool that the scene names, and by sheets from outside.
 ///
-/// A blade is followed over each step in the configuration at the step's beginning. If the body changes, so does the
-/// scene: [`Cutter::follow`] returns the body to continue with, and transfers the state to it.
+/// A blade is followed over each step in the configuration at the step's beginning. If it cuts,
+/// [`Cutter::follow`] returns the body to continue with, and transfers the state to it.
 ///
 /// ```
 /// use sinew_core::{Inputs, System};

@@ -2,12 +2,11 @@
 
 use sinew_core::Ramp;
 use sinew_core::vectors::largest;
-use sinew_fem::Element;
 
 use crate::check::{Asked, Check, Source};
 use crate::error::LabError;
 use crate::subject::Subject;
-use crate::tissue::{self, Specimen, relative_error, rotation_of_top};
+use crate::tissue::{self, EDGES, Specimen, relative_error, rotation_of_top};
 
 pub(super) const SUBJECT: Subject = Subject {
     id: "incompressible",
@@ -17,11 +16,6 @@ pub(super) const SUBJECT: Subject = Subject {
            nu = .495, rho = 1100 kg/m3, spun by 105/s, followed by central difference beyond its farthest turn.",
     checks,
     quoted: &[],
-};
-
-const EDGES: Element = Element::FbarEdge {
-    edge_share: 0.9,
-    patch: None,
 };
 
 fn checks() -> Vec<Check> {

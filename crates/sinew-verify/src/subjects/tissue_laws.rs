@@ -12,7 +12,7 @@ use sinew_mesh::structured::{Split, cube};
 use crate::check::{Asked, Check, Source};
 use crate::error::LabError;
 use crate::subject::Subject;
-use crate::tissue::{self, COLUMN, EDGE, Specimen, YOUNGS_MODULUS};
+use crate::tissue::{self, COLUMN, EDGE, EDGES, Specimen, YOUNGS_MODULUS};
 use crate::vector::{cross, difference, dot};
 
 pub(super) const SUBJECT: Subject = Subject {
@@ -22,11 +22,6 @@ pub(super) const SUBJECT: Subject = Subject {
            a step, beyond the work of a constant load. Forces and own blocks are beside second computations, over the size of what is summed up.",
     checks,
     quoted: &[],
-};
-
-const EDGES: Element = Element::FbarEdge {
-    edge_share: 0.9,
-    patch: None,
 };
 
 fn checks() -> Vec<Check> {

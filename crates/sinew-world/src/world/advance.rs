@@ -245,7 +245,7 @@ impl World {
         self.topology_epoch += 1;
         self.body = Arc::clone(&self.undriven);
         if drives_loads {
-            let driven = self.driven();
+            let driven = self.driven(&self.undriven);
             self.body = driven.map_err(|error| WorldStepError::Driven(error.to_string()))?;
         }
         self.method.stable_step = OnceCell::new();

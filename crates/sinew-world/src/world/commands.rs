@@ -161,7 +161,7 @@ impl World {
     ) -> Result<(), CommandError> {
         let tool = self.tools.get(tool.0).map(|tool| Arc::clone(&tool.name));
         self.command(Command::Pose {
-            tool: tool.ok_or(CommandError::Follows)?,
+            tool: tool.ok_or_else(|| self.foreign_id())?,
             position,
             rotation_vector,
         })
@@ -174,9 +174,16 @@ impl World {
     pub fn scale_load(&mut self, load: LoadId, factor: f64) -> Result<(), CommandError> {
         let load = self.loads.get(load.0).map(|load| Arc::clone(&load.name));
         self.command(Command::LoadFactor {
-            load: load.ok_or(CommandError::Follows)?,
+            load: load.ok_or_else(|| self.foreign_id())?,
             factor,
         })
+    }
+
+    fn foreign_id(&self) -> CommandError {
+        match self.follows {
+            true => CommandError::Follows,
+            false => CommandError::ForeignId,
+        }
     }
 
     /// The tool of a name.
@@ -228,7 +235,7 @@ impl World {
 
     /// The body with loads that follow inputs, and the method, after a check that it can take a step.
     fn driven_method(&self) -> Result<(Arc<SceneBody>, Method), CommandError> {
-        let driven = self.driven()?;
+        let driven = self.driven(&self.undriven)?;
         let (id, options) = &self.method.asked;
         let mut method = Method::new(&self.scene, id, options, self.method.dt)?;
         let mut state = self.state.clone();

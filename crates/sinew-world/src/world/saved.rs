@@ -97,47 +97,41 @@ impl World {
     /// # Errors
     /// [`RestoreError`] for what another scene left; the world stays as it was.
     pub fn restore(&mut self, saved: &Saved) -> Result<(), RestoreError> {
-        let before = self.save();
-        let failure = self.failure.take();
+        if saved.commanded.is_some() == self.follows {
+            return Err(RestoreError::OtherWorld);
+        }
+        let before = self.cutter.as_ref().map(Cutter::save);
         let restored = self.take_saved(saved);
-        if restored.is_err() {
-            self.take_saved(&before)?;
-            self.failure = failure;
+        // All else is replaced once nothing can be refused.
+        if restored.is_err()
+            && let (Some(cutter), Some(before)) = (&mut self.cutter, &before)
+        {
+            cutter.restore(before, self.scene.body())?;
         }
         restored
     }
 
     fn take_saved(&mut self, saved: &Saved) -> Result<(), RestoreError> {
-        if saved.commanded.is_some() == self.follows {
-            return Err(RestoreError::OtherWorld);
-        }
         let cut = match (&mut self.cutter, &saved.cuts) {
             (Some(cutter), Some(cuts)) => cutter.restore(cuts, self.scene.body())?,
             (None, None) => None,
             _ => return Err(RestoreError::OtherScene),
         };
         let undriven = cut.map_or_else(|| Arc::clone(self.scene.body()), Arc::new);
-        let was_driven = self.drives_loads();
+        let drives_loads = (saved.commanded.as_ref()).is_some_and(|kept| kept.drives_loads);
         let is_same = Arc::ptr_eq(&undriven, &self.undriven);
-        if !is_same {
-            self.undriven = undriven;
-            self.topology_epoch += 1;
-        }
-        let drives_loads = saved
-            .commanded
-            .as_ref()
-            .is_some_and(|kept| kept.drives_loads);
         // Methods need not be set up again for the body that they know.
-        if !(is_same && drives_loads == was_driven) {
-            self.body = match drives_loads {
-                true => self.driven()?,
-                false => Arc::clone(&self.undriven),
-            };
-        }
-        let state = saved.state.restore(self.body.system())?;
+        let body = match drives_loads {
+            _ if is_same && drives_loads == self.drives_loads() => Arc::clone(&self.body),
+            true => self.driven(&undriven)?,
+            false => Arc::clone(&undriven),
+        };
+        let state = saved.state.restore(body.system())?;
         if let Some(commanded) = &saved.commanded {
             self.restore_commanded(commanded)?;
         }
+        (self.body, self.undriven) = (body, undriven);
+        self.topology_epoch += u64::from(!is_same);
         self.method.stable_step.take();
         self.state = state;
         self.reached = self.state.t();

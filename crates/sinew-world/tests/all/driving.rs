@@ -3,7 +3,7 @@
 use crate::common::{CUBE, scene, session};
 use sinew_core::{LinearModel, LinearOperators, Load, Options, Ramp, Run, State, simulate};
 use sinew_testkit::scenes::ROLLED;
-use sinew_world::{Command, World, WorldStepError};
+use sinew_world::{Command, CommandError, World, WorldStepError};
 
 fn steps(session: &mut World, count: usize) {
     for _ in 0..count {
@@ -46,6 +46,22 @@ fn without_commands_it_is_the_run_of_the_scene() {
     assert!(*session.state() == expected);
     let tools = simulation.model().tools().unwrap();
     assert!(tools.report(&expected, 0).contacts > 0, "the ball touches");
+}
+
+#[test]
+fn ids_of_another_world_are_refused_as_such() {
+    let whole = session(CUBE);
+    let (plate, load) = (whole.tool("plate").unwrap(), whole.load("gravity").unwrap());
+    let (head, run) = (
+        CUBE.split("[[load]]\ngroup = \"sides\"").next().unwrap(),
+        &CUBE[CUBE.find("[run]").unwrap()..],
+    );
+    let mut bare = session(&format!("{head}{run}"));
+    let steered = bare.steer(plate, [0.0; 3], [0.0; 3]);
+    assert!(matches!(steered, Err(CommandError::ForeignId)));
+    let scaled = bare.scale_load(load, 0.5);
+    assert!(matches!(scaled, Err(CommandError::ForeignId)));
+    assert!(bare.log().entries().is_empty());
 }
 
 #[test]

@@ -12,7 +12,7 @@ use crate::hard::mark::Asked;
 use crate::hard::methods::{cut, energy_of};
 use crate::results::Mark;
 use sinew_verify::LabError;
-use sinew_verify::tissue::{self, Specimen, YOUNGS_MODULUS};
+use sinew_verify::tissue::{self, EDGES, Specimen, YOUNGS_MODULUS};
 
 const CELLS: usize = 4;
 
@@ -20,11 +20,6 @@ const CELLS: usize = 4;
 const DURATION: f64 = 0.3;
 const INSTANTS: usize = 30;
 const FINE: f64 = 5e-5;
-
-const EDGES: Element = Element::FbarEdge {
-    edge_share: 0.9,
-    patch: None,
-};
 
 fn specimen(nu: f64, element: Element, ramp: Ramp) -> Result<Specimen, LabError> {
     let law = tissue::law("neo-hookean", YOUNGS_MODULUS, nu);
