@@ -1,14 +1,16 @@
 //! Properties of materials that differ from tetrahedron to tetrahedron.
 
+use std::fmt;
+use std::ops::Deref;
 use std::sync::Arc;
 
 use sinew_mesh::{TetData, TetMesh};
 
+use crate::Problem;
 use crate::error::{Cause, FemError, Item};
 use crate::from_mesh::{DataError, FromMesh};
 use crate::shares::Shares;
-use crate::tissue::unit;
-use crate::{Problem, Region};
+use crate::tissue::{Direction, Tissue, unit};
 
 /// Properties per tetrahedron, read from the mesh's data and checked.
 #[derive(Debug, Default)]
@@ -25,10 +27,34 @@ pub(crate) struct RegionByTet {
     pub(crate) moduli: [f64; 2],
     /// The stiffness of each tetrahedron, of the largest.
     pub(crate) shares: Shares,
-    /// The direction of fibres as unit vectors.
-    pub(crate) directions: Option<Arc<[[f64; 3]]>>,
+    /// The direction of each family of fibres as unit vectors; `None` where it is the same in all tetrahedra.
+    pub(crate) directions: Vec<Option<UnitVectors>>,
     /// The least and the largest factor of the density.
     pub(crate) densities: [f64; 2],
+}
+
+/// Unit vectors in each tetrahedron of a mesh.
+#[derive(Clone)]
+pub(crate) struct UnitVectors(Arc<[[f64; 3]]>);
+
+impl From<Vec<[f64; 3]>> for UnitVectors {
+    fn from(all: Vec<[f64; 3]>) -> Self {
+        Self(all.into())
+    }
+}
+
+impl Deref for UnitVectors {
+    type Target = [[f64; 3]];
+
+    fn deref(&self) -> &[[f64; 3]] {
+        &self.0
+    }
+}
+
+impl fmt::Debug for UnitVectors {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("of each tetrahedron")
+    }
 }
 
 impl Default for RegionByTet {
@@ -36,7 +62,7 @@ impl Default for RegionByTet {
         Self {
             moduli: [1.0; 2],
             shares: Shares::default(),
-            directions: None,
+            directions: Vec::new(),
             densities: [1.0; 2],
         }
     }
@@ -54,12 +80,12 @@ impl ByTet {
             regions,
             densities: None,
         };
-        let (mut moduli, mut directions) = (None, None);
+        let mut moduli = None;
+        let mut directions: [Option<Vec<[f64; 3]>>; Tissue::MOST_FAMILIES] = Default::default();
         for (index, region) in problem.regions.iter().enumerate() {
             let FromMesh {
                 youngs_modulus,
                 density,
-                direction,
             } = &region.from_mesh;
             let members = Members {
                 mesh,
@@ -91,15 +117,15 @@ impl ByTet {
                     .positive(name, (region.density, expected), all)
                     .map_err(at("density"))?;
             }
-            if let Some(name) = direction {
-                let all = directions.get_or_insert_with(|| vec![[0.0; 3]; mesh.tets.len()]);
-                members
-                    .directions(region, name, all)
-                    .map_err(at("direction"))?;
+            for (family, all) in region.tissue.fibres.iter().zip(&mut directions) {
+                if let Direction::Data(name) = &family.direction {
+                    let all = all.get_or_insert_with(|| vec![[0.0; 3]; mesh.tets.len()]);
+                    members.directions(name, all).map_err(at("direction"))?;
+                }
             }
         }
         let moduli: Option<Arc<[f64]>> = moduli.map(Arc::from);
-        let directions: Option<Arc<[[f64; 3]]>> = directions.map(Arc::from);
+        let directions = directions.map(|all| all.map(UnitVectors::from));
         for ((index, region), of_region) in
             problem.regions.iter().enumerate().zip(&mut by_tet.regions)
         {
@@ -111,9 +137,13 @@ impl ByTet {
             if let (Some(_), Some(all)) = (&region.from_mesh.youngs_modulus, &moduli) {
                 of_region.shares = Shares::new(Arc::clone(all), members.tets());
             }
-            if region.from_mesh.direction.is_some() {
-                of_region.directions.clone_from(&directions);
-            }
+            let families = region.tissue.fibres.iter().zip(&directions);
+            of_region.directions = families
+                .map(|(family, all)| match family.direction {
+                    Direction::Everywhere(_) => None,
+                    Direction::Data(_) => all.clone(),
+                })
+                .collect();
         }
         Ok(by_tet)
     }
@@ -200,16 +230,7 @@ impl<'a> Members<'a> {
     }
 
     /// Writes directions as unit vectors.
-    fn directions(
-        self,
-        region: &Region,
-        name: &str,
-        out: &mut [[f64; 3]],
-    ) -> Result<(), DataError> {
-        if region.tissue.fibres.is_none() {
-            let name = name.to_owned();
-            return Err(DataError::NoFibres { name });
-        }
+    fn directions(self, name: &str, out: &mut [[f64; 3]]) -> Result<(), DataError> {
         let data = self.data(name, 3)?;
         for tet in self.tets() {
             if let [x, y, z] = *values(data, tet) {

@@ -13,7 +13,7 @@ pub(crate) fn numbers(problem: &Problem) -> Result<(), FemError> {
         require(item, "density", density, expected, density > 0.0)?;
         region.law.check(item)?;
         region.element.check(item)?;
-        region.tissue.check(&region.from_mesh, item)?;
+        region.tissue.check(item)?;
         let [at_once, _] = region.tissue.moduli(&region.law);
         match at_once.of_large_deformation() {
             Some(Ok(law)) => region.tissue.check_with(&law, item)?,

@@ -86,6 +86,14 @@ pub enum Cause {
     /// An element on a network of springs.
     #[error("a network of springs has no element: expected none but p1")]
     ElementOnSprings,
+    /// More families of fibres than a region may have.
+    #[error("{found} families of fibres: expected at most {most}")]
+    Families {
+        /// Number of families.
+        found: usize,
+        /// The most there may be.
+        most: usize,
+    },
     /// Fibres without a direction.
     #[error("direction = [0, 0, 0]: expected a vector that is not 0")]
     NoDirection,

@@ -9,14 +9,12 @@ pub struct FromMesh {
     pub youngs_modulus: Option<String>,
     /// Factor of the density: with 1 kg/m^3 there, the data are densities.
     pub density: Option<String>,
-    /// The direction of the fibres, in place of [`crate::FibreFamily::direction`]; lengths do not matter.
-    pub direction: Option<String>,
 }
 
 impl FromMesh {
     /// True if the region takes nothing from the mesh.
     #[must_use]
-    pub fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         *self == Self::default()
     }
 }
@@ -74,12 +72,6 @@ pub enum DataError {
         tag: u64,
         /// The vector.
         found: [f64; 3],
-    },
-    /// A direction for a region that has no fibres.
-    #[error("data \"{name}\" are a direction, and the region has no fibres")]
-    NoFibres {
-        /// Name of the data.
-        name: String,
     },
 }
 

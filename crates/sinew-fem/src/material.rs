@@ -1,12 +1,11 @@
 //! The mechanics of the laws: stiffness, stress and springs of tetrahedra.
 
-use std::fmt;
 use std::sync::Arc;
 
 use sinew_core::Hash;
 use sinew_mesh::TetMesh;
 
-use crate::by_tet::RegionByTet;
+use crate::by_tet::{RegionByTet, UnitVectors};
 use crate::error::{Cause, FemError, Item};
 use crate::graph::Graph;
 use crate::hyperelastic::Hyperelastic;
@@ -38,8 +37,9 @@ enum Kind {
         law: Hyperelastic,
         element: Element,
         tissue: Tissue,
-        /// The direction of the fibres in each tetrahedron of the mesh, as unit vectors; `None` where all have that of `tissue`.
-        directions: Option<Directions>,
+        /// The direction of each family of fibres in each tetrahedron of the mesh; `None` where all have that of
+        /// `tissue`.
+        directions: Vec<Option<UnitVectors>>,
     },
     Springs {
         youngs_modulus: f64,
@@ -77,7 +77,7 @@ impl Material {
                     law: law.map_err(|error| FemError::new(Item::Mesh, error.into()))?,
                     element: region.element,
                     tissue: region.tissue.clone(),
-                    directions: by_tet.directions.clone().map(Directions),
+                    directions: by_tet.directions.clone(),
                 }
             }
             Law::Springs {
@@ -115,9 +115,9 @@ impl Material {
             Kind::Continuum { lame, .. } => p_wave_and_shear(*lame),
             Kind::Hyperelastic { law, tissue, .. } => {
                 let (compression, shear) = p_wave_and_shear(law.lame());
-                let fibres = tissue.fibres.as_ref();
-                let along = fibres.map_or(0.0, |family| modulus_along(family, tissue));
-                (compression + along, shear)
+                let families = tissue.fibres.iter();
+                let along = families.map(|family| modulus_along(family, tissue));
+                (compression + along.sum::<f64>(), shear)
             }
             // nu = 1/4 and thus lambda = mu for any springs (Cauchy's relations).
             Kind::Springs { youngs_modulus, .. } => (1.2 * youngs_modulus, 0.4 * youngs_modulus),
@@ -152,7 +152,7 @@ impl Material {
                     edge_share: element.edge_share(),
                     tissue,
                     shares: &self.shares,
-                    directions: directions.as_ref().map(|Directions(all)| &**all),
+                    directions,
                 };
                 Some((law.compiled(), stated))
             }
@@ -227,14 +227,15 @@ impl Material {
                 if let Kind::Hyperelastic {
                     tissue, directions, ..
                 } = &self.kind
-                    && let Some(family) = &tissue.fibres
                 {
-                    let modulus = modulus_along(family, tissue);
-                    let direction = match directions {
-                        Some(Directions(all)) => all[tet],
-                        None => family.unit_direction(),
-                    };
-                    add_fibres(&mut matrix, &vertices, (family, direction), modulus);
+                    for (family, directions) in tissue.fibres.iter().zip(directions) {
+                        let modulus = modulus_along(family, tissue);
+                        let direction = match directions {
+                            Some(all) => all[tet],
+                            None => family.direction.unit(),
+                        };
+                        add_fibres(&mut matrix, &vertices, (family, direction), modulus);
+                    }
                 }
                 Some(matrix)
             }
@@ -305,23 +306,11 @@ impl Material {
         hash.add(format!("{:?}", self.kind).as_bytes());
         let mut add = |numbers: &[f64]| numbers.iter().for_each(|x| hash.add(&x.to_le_bytes()));
         add(self.shares.values());
-        if let Kind::Hyperelastic {
-            directions: Some(Directions(all)),
-            ..
-        } = &self.kind
-        {
-            add(all.as_flattened());
+        if let Kind::Hyperelastic { directions, .. } = &self.kind {
+            for all in directions.iter().flatten() {
+                add(all.as_flattened());
+            }
         }
-    }
-}
-
-/// Unit vectors in each tetrahedron of a mesh.
-#[derive(Clone)]
-struct Directions(Arc<[[f64; 3]]>);
-
-impl fmt::Debug for Directions {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("of each tetrahedron")
     }
 }
 

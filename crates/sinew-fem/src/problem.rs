@@ -124,6 +124,12 @@ impl Region {
         self
     }
 
+    /// True if any property is taken from the mesh's data.
+    #[must_use]
+    pub fn takes_data(&self) -> bool {
+        !self.from_mesh.is_empty() || self.tissue.takes_data()
+    }
+
     /// Sets the properties that come from the mesh's data.
     #[must_use]
     pub fn with_from_mesh(mut self, from_mesh: FromMesh) -> Self {

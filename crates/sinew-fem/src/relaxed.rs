@@ -50,7 +50,7 @@ mod tests {
         let term = |share, time| Term { share, time };
         let terms = vec![term(0.3, 0.05), term(0.2, 0.5)];
         Tissue {
-            fibres: None,
+            fibres: Vec::new(),
             memory: Some(Memory {
                 terms,
                 part,

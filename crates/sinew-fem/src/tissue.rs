@@ -3,7 +3,6 @@
 use std::fmt;
 
 use crate::error::{Cause, FemError, Item};
-use crate::from_mesh::FromMesh;
 use crate::hyperelastic::fibres::Fibres;
 use crate::hyperelastic::prony::{self, Term};
 use crate::number::require_finite;
@@ -11,8 +10,8 @@ use crate::number::require_finite;
 /// Additions to an isotropic law; only laws of large deformation take any of them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Tissue {
-    /// Fibres that stiffen it where they are stretched.
-    pub fibres: Option<FibreFamily>,
+    /// Families of fibres that stiffen it where they are stretched, up to [`Tissue::MOST_FAMILIES`].
+    pub fibres: Vec<FibreFamily>,
     /// The part of its stress that relaxes.
     pub memory: Option<Memory>,
 }
@@ -22,8 +21,23 @@ pub struct Tissue {
 pub struct FibreFamily {
     /// The law of the fibres' stress.
     pub fibres: Fibres,
-    /// Their direction at rest, of any length but 0, unless the mesh's data give it ([`crate::FromMesh`]).
-    pub direction: [f64; 3],
+    /// Their direction at rest.
+    pub direction: Direction,
+}
+
+/// A direction in the material at rest; its length does not matter.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Direction {
+    /// A vector that is not 0, the same in the whole region.
+    Everywhere([f64; 3]),
+    /// The name of the mesh's data ([`sinew_mesh::TetMesh::data`]) that give each tetrahedron its own.
+    Data(String),
+}
+
+impl From<[f64; 3]> for Direction {
+    fn from(vector: [f64; 3]) -> Self {
+        Self::Everywhere(vector)
+    }
 }
 
 /// Stress that relaxes, by a Prony series, see [`crate::hyperelastic::prony`].
@@ -58,20 +72,33 @@ pub enum Moduli {
 }
 
 impl Tissue {
+    /// The most families of fibres.
+    pub const MOST_FAMILIES: usize = 4;
+
     /// True if there are no additions.
     #[must_use]
     pub fn is_plain(&self) -> bool {
         *self == Self::default()
     }
 
+    /// True if a direction is taken from the mesh's data.
+    pub(crate) fn takes_data(&self) -> bool {
+        let mut families = self.fibres.iter();
+        families.any(|family| matches!(family.direction, Direction::Data(_)))
+    }
+
     /// Refuses numbers outside their ranges.
-    pub(crate) fn check(&self, from_mesh: &FromMesh, item: Item) -> Result<(), FemError> {
-        let family = self.fibres.as_ref();
-        let family = family.filter(|_| from_mesh.direction.is_none());
-        if let Some(FibreFamily { direction, .. }) = family {
-            require_finite(item, "direction", direction)?;
-            if unit(*direction).is_none() {
-                return Err(FemError::new(item, Cause::NoDirection));
+    pub(crate) fn check(&self, item: Item) -> Result<(), FemError> {
+        let (found, most) = (self.fibres.len(), Self::MOST_FAMILIES);
+        if found > most {
+            return Err(FemError::new(item, Cause::Families { found, most }));
+        }
+        for family in &self.fibres {
+            if let Direction::Everywhere(direction) = &family.direction {
+                require_finite(item, "direction", direction)?;
+                if unit(*direction).is_none() {
+                    return Err(FemError::new(item, Cause::NoDirection));
+                }
             }
         }
         if let Some(Memory { terms, .. }) = &self.memory {
@@ -106,9 +133,21 @@ impl Memory {
 }
 
 impl FibreFamily {
-    /// The direction as a unit vector.
-    pub(crate) fn unit_direction(&self) -> [f64; 3] {
-        unit(self.direction).unwrap_or_default()
+    /// Fibres of this law along a direction.
+    #[must_use]
+    pub fn new(fibres: Fibres, direction: impl Into<Direction>) -> Self {
+        let direction = direction.into();
+        Self { fibres, direction }
+    }
+}
+
+impl Direction {
+    /// The vector with length 1; 0 where data give it.
+    pub(crate) fn unit(&self) -> [f64; 3] {
+        match self {
+            Self::Everywhere(vector) => unit(*vector).unwrap_or_default(),
+            Self::Data(_) => [0.0; 3],
+        }
     }
 }
 
@@ -126,8 +165,16 @@ pub(crate) fn unit(vector: [f64; 3]) -> Option<[f64; 3]> {
 
 impl fmt::Display for FibreFamily {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let [x, y, z] = self.direction;
-        write!(f, "fibres along [{x}, {y}, {z}], {}", self.fibres)
+        write!(f, "fibres along {}, {}", self.direction, self.fibres)
+    }
+}
+
+impl fmt::Display for Direction {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Everywhere([x, y, z]) => write!(f, "[{x}, {y}, {z}]"),
+            Self::Data(name) => write!(f, "the mesh's data `{name}`"),
+        }
     }
 }
 

@@ -15,13 +15,14 @@ use super::wanted::Wanted;
 use crate::hyperelastic::fibres::FibrePoint;
 use crate::hyperelastic::prony::first_piola;
 use crate::hyperelastic::{Deformation, Tensor, dot};
+use crate::tissue::Tissue;
 
 /// The stress beside the law's in the tetrahedra of a chunk, compiled once for all laws.
 pub(super) struct StressBeside<'a, T> {
     pub(super) region: &'a HyperelasticRegion,
     pub(super) rest: &'a Rest<T>,
-    /// The directions of fibres, where there are any.
-    pub(super) directions: Option<&'a Directions<T>>,
+    /// The directions of each family of fibres.
+    pub(super) directions: &'a [Directions<T>],
     pub(super) relaxing: &'a Relaxing<'a, T>,
     /// Places of the chunk's tetrahedra.
     pub(super) slots: &'a Range<usize>,
@@ -54,13 +55,13 @@ impl<T: Vectors> WithReal<T> for StressBeside<'_, T> {
             };
             let deformation = Deformation::of(gradient);
             let (mut stress, mut density) = (Tensor::zero(), N::of(0.0));
-            if let (Some(own), Some(directions)) = (&self.region.fibres, self.directions) {
-                let fibres = &own.fibres;
-                require_fibres(own, &deformation, |lane| rest.tag(first + lane))?;
+            let families = &self.region.fibres;
+            require_fibres(families, &deformation, |lane| rest.tag(first + lane))?;
+            for (RegionFibres { fibres, .. }, directions) in families.iter().zip(self.directions) {
                 let at = fibres.at(&deformation, directions.of::<N>(first));
-                stress = fibres.stress(&at).scaled(factor);
+                stress = stress.plus(factor, fibres.stress(&at));
                 if self.with_energy {
-                    density = factor * fibres.energy(&at);
+                    density = factor.mul_add(fibres.energy(&at), density);
                 }
             }
             require_memory(self.relaxing, &deformation, |lane| rest.tag(first + lane))?;
@@ -91,7 +92,7 @@ pub(super) fn carried_energy<N: Number>(deformation: &Deformation<N>, carried: [
 
 /// The tangent of the stress beside the law's in tetrahedra side by side; empty if absent.
 pub(super) struct TangentBeside<'a, N> {
-    fibres: Option<(&'a RegionFibres, FibrePoint<N>)>,
+    fibres: [Option<(&'a RegionFibres, FibrePoint<N>)>; Tissue::MOST_FAMILIES],
     factor_of_fibres: f64,
     /// R (Pa).
     carried: Option<Tensor<N>>,
@@ -108,11 +109,12 @@ impl<'a, N: Number<Real = f64>> TangentBeside<'a, N> {
         deformation: &Deformation<N>,
         wanted: Wanted,
     ) -> Self {
-        let fibres = region.fibres.as_ref().map(|fibres| {
-            let at = fibres.at(first, deformation);
-            let idle_count = wanted.idle_fibres_count();
-            (fibres, if idle_count { at.as_if_pulled() } else { at })
-        });
+        let idle_count = wanted.idle_fibres_count();
+        let mut fibres = [const { None }; Tissue::MOST_FAMILIES];
+        for (point, family) in fibres.iter_mut().zip(&region.fibres) {
+            let at = family.at(first, deformation);
+            *point = Some((family, if idle_count { at.as_if_pulled() } else { at }));
+        }
         let is_exact = wanted.kind() == TangentKind::Exact;
         Self {
             fibres,
@@ -126,7 +128,7 @@ impl<'a, N: Number<Real = f64>> TangentBeside<'a, N> {
     #[inline(always)]
     pub(super) fn with(&self, stress: Tensor<N>, change: Tensor<N>) -> Tensor<N> {
         let mut stress = stress;
-        if let Some((RegionFibres { fibres, .. }, at)) = &self.fibres {
+        for (RegionFibres { fibres, .. }, at) in self.fibres.iter().flatten() {
             let tangent = match self.wanted {
                 Wanted::Viscosity | Wanted::MostViscous => fibres.viscous_stress(at, change),
                 Wanted::Stiffest | Wanted::Kind(TangentKind::Exact) => fibres.tangent(at, change),
@@ -152,7 +154,7 @@ pub(super) fn block_beside<N: Number<Real = f64>>(
     (wanted, gradient): (Wanted, [N; 3]),
 ) -> Tensor<N> {
     let mut block = carried_block(relaxing, (Points::Tets, first), gradient);
-    if let Some(fibres) = &region.fibres {
+    for fibres in &region.fibres {
         let at = fibres.at(first, deformation).as_if_pulled();
         let own = match wanted.is_viscosity() {
             true => fibres.fibres.viscous_block(&at, gradient),

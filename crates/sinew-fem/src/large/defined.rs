@@ -27,11 +27,11 @@ pub(super) fn require_law<L: HyperelasticLaw, N: Number>(
 /// [`require_law`] for fibres.
 #[inline(always)]
 pub(super) fn require_fibres<N: Number>(
-    fibres: &RegionFibres,
+    fibres: &[RegionFibres],
     deformation: &Deformation<N>,
     tag: impl Fn(usize) -> u64,
 ) -> Result<(), EvaluationError> {
-    if fibres.admits(deformation) {
+    if fibres.iter().all(|family| family.admits(deformation)) {
         return Ok(());
     }
     let ratios = lanes(deformation.volume_ratio);

@@ -50,7 +50,7 @@ impl RegionFibres {
             fibres: family.fibres.scaled(factor),
             directions: match directions {
                 Some(all) => each(all),
-                None => Directions::Same(family.unit_direction()),
+                None => Directions::Same(family.direction.unit()),
             },
         }
     }

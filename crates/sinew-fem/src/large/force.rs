@@ -298,7 +298,7 @@ impl<T: Vectors, L: HyperelasticLaw> Sweep<'_, T, L> {
         let work = StressBeside {
             region: self.region,
             rest: &self.numbers.rest,
-            directions: self.numbers.directions.as_ref(),
+            directions: &self.numbers.directions,
             relaxing: &self.relaxing,
             slots,
             displacement: self.places.displacement,
@@ -321,7 +321,7 @@ impl<T: Vectors, L: HyperelasticLaw> Sweep<'_, T, L> {
         let slots = region.chunks[chunk].slots.clone();
         let (is_smoothed, has_edges) = (region.is_smoothed(), !region.edges_of.is_empty());
         let is_relaxing = self.relaxing.is_there();
-        let has_beside = region.fibres.is_some() || is_relaxing;
+        let has_beside = !region.fibres.is_empty() || is_relaxing;
         if has_beside {
             found.energy_of_sets += self.beside(&slots)?;
         }

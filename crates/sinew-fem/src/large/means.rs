@@ -130,8 +130,5 @@ pub(super) fn require<L: HyperelasticLaw, N: Number>(
     let tag = |lane: usize| region.rest.tag(first + lane);
     require_law(law, deformation, tag)?;
     require_memory(relaxing, deformation, tag)?;
-    match &region.fibres {
-        Some(own) => require_fibres(own, deformation, tag),
-        None => Ok(()),
-    }
+    require_fibres(&region.fibres, deformation, tag)
 }

@@ -331,17 +331,17 @@ mod tests {
     ];
 
     /// Without and with fibres and memory.
-    fn tissues() -> [Tissue; 4] {
+    fn tissues() -> [Tissue; 5] {
         let exponential = Stiffening::Exponential {
             k1: 1000.0,
             k2: 2.0,
             dispersion: 0.1,
         };
         let fibrous = |stiffening| Tissue {
-            fibres: Some(FibreFamily {
-                fibres: Fibres::new(stiffening).unwrap(),
-                direction: [1.0, 2.0, -1.0],
-            }),
+            fibres: vec![FibreFamily::new(
+                Fibres::new(stiffening).unwrap(),
+                [1.0, 2.0, -1.0],
+            )],
             ..Tissue::default()
         };
         let term = |share, time| Term { share, time };
@@ -354,6 +354,12 @@ mod tests {
             Tissue::default(),
             fibrous(Stiffening::Quadratic { eta: 2000.0 }),
             fibrous(exponential),
+            Tissue {
+                fibres: [[1.0, 2.0, -1.0], [0.0, 1.0, 3.0], [1.0, 0.0, 0.0]]
+                    .map(|along| FibreFamily::new(Fibres::new(exponential).unwrap(), along))
+                    .into(),
+                ..Tissue::default()
+            },
             Tissue {
                 memory: Some(memory),
                 ..Tissue::default()
@@ -387,7 +393,7 @@ mod tests {
             edge_share: element.edge_share(),
             tissue,
             shares: &shares,
-            directions: is_uneven.then_some(&directions),
+            directions: &vec![is_uneven.then(|| directions.into()); tissue.fibres.len()],
         };
         let regions = std::iter::once((law.compiled(), region, tets.as_slice()));
         LargeDeformation::new(mesh, &smoothing, regions).unwrap()

@@ -10,6 +10,7 @@ use super::fibres::{Directions, RegionFibres};
 use super::memory::RegionMemory;
 use super::rest::Rest;
 use super::stiffness::Stiffness;
+use crate::by_tet::UnitVectors;
 use crate::hyperelastic::Tensor;
 use crate::shares::Shares;
 use crate::smoothing::{Average, Sets, Smoothing};
@@ -25,8 +26,9 @@ pub(crate) struct RegionLaw<'a> {
     pub(crate) tissue: &'a Tissue,
     /// The stiffness of each tetrahedron of the mesh over that of the law.
     pub(crate) shares: &'a Shares,
-    /// The direction of fibres in each tetrahedron of the mesh, as unit vectors; `None` where all have that of the tissue.
-    pub(crate) directions: Option<&'a [[f64; 3]]>,
+    /// The direction of each family of fibres in each tetrahedron of the mesh; `None` where all have that of the
+    /// tissue.
+    pub(crate) directions: &'a [Option<UnitVectors>],
 }
 
 /// A region of hyperelastic tetrahedra, with its own numbering.
@@ -34,7 +36,8 @@ pub(crate) struct RegionLaw<'a> {
 pub(crate) struct HyperelasticRegion {
     /// Factors of its energies; `None` where all tetrahedra are equally stiff.
     stiffness: Option<Arc<Stiffness>>,
-    pub(super) fibres: Option<RegionFibres>,
+    /// Families of fibres.
+    pub(super) fibres: Vec<RegionFibres>,
     pub(super) memory: Option<RegionMemory>,
     pub(super) rest: Arc<Rest>,
     /// Place of its first tetrahedron among those of all such regions.
@@ -112,9 +115,13 @@ impl HyperelasticRegion {
         });
         Self {
             stiffness,
-            fibres: tissue.fibres.as_ref().map(|family| {
-                RegionFibres::new(family, tissue.factor_of_fibres(), slots, directions)
-            }),
+            fibres: {
+                let factor = tissue.factor_of_fibres();
+                let families = tissue.fibres.iter().zip(directions);
+                let made = families
+                    .map(|(family, all)| RegionFibres::new(family, factor, slots, all.as_deref()));
+                made.collect()
+            },
             memory: tissue.memory.as_ref().map(|memory| {
                 let points = [rest.count(), edge_volumes.len()];
                 RegionMemory::new(memory, mu, kept.variables, points)
@@ -141,7 +148,10 @@ impl HyperelasticRegion {
             edge_volumes: Arc::clone(&self.edge_volumes),
             patch_volumes: Arc::clone(&self.patch_volumes),
             stiffness: self.stiffness.clone(),
-            directions: self.fibres.as_ref().map(|fibres| fibres.directions.clone()),
+            directions: {
+                let families = self.fibres.iter();
+                families.map(|family| family.directions.clone()).collect()
+            },
         }
     }
 
@@ -210,7 +220,7 @@ impl HyperelasticRegion {
 
     /// True if there is stress beside the law's: that of fibres, or the remainder of earlier stress.
     pub(super) fn has_beside(&self) -> bool {
-        self.fibres.is_some() || self.memory.is_some()
+        !self.fibres.is_empty() || self.memory.is_some()
     }
 
     /// True if tetrahedra take any mean with others.
@@ -254,8 +264,8 @@ pub(super) struct Numbers<T> {
     pub(super) patch_volumes: Arc<[T]>,
     /// Factors of the law's energies; `None` where all tetrahedra are equally stiff.
     pub(super) stiffness: Option<Arc<Stiffness<T>>>,
-    /// The directions of fibres; `None` without fibres.
-    pub(super) directions: Option<Directions<T>>,
+    /// The directions of each family of fibres.
+    pub(super) directions: Vec<Directions<T>>,
 }
 
 impl Numbers<f64> {
@@ -267,7 +277,7 @@ impl Numbers<f64> {
             edge_volumes: rounded(&self.edge_volumes),
             patch_volumes: rounded(&self.patch_volumes),
             stiffness: self.stiffness.as_ref().map(|own| Arc::new(own.rounded())),
-            directions: self.directions.as_ref().map(Directions::rounded),
+            directions: self.directions.iter().map(Directions::rounded).collect(),
         }
     }
 }

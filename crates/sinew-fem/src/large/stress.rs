@@ -57,7 +57,7 @@ impl Cauchy<'_> {
             }
             stress = stress.plus(region.edge_share / 6.0, own);
         }
-        if let Some(fibres) = &region.fibres {
+        for fibres in &region.fibres {
             is_defined &= fibres.admits(&at.deformation);
             let own = fibres.fibres.stress(&fibres.at(tet, &at.deformation));
             stress = stress.plus(relaxing.factor_of_fibres(), own);

@@ -53,7 +53,7 @@ impl Wanted {
     /// True if stress beside the law's contributes.
     pub(super) fn has_beside(self, region: &HyperelasticRegion) -> bool {
         match self.is_viscosity() {
-            true => region.fibres.is_some(),
+            true => !region.fibres.is_empty(),
             false => region.has_beside(),
         }
     }

@@ -8,7 +8,9 @@ use sinew_core::CountingAllocator;
 use sinew_core::{Batch, ElementPrecision, Equations, Inputs, State, StepError, System};
 use sinew_fem::hyperelastic::Parameters;
 use sinew_fem::hyperelastic::fibres::{Fibres, Stiffening};
-use sinew_fem::{Course, Element, FibreFamily, Fixed, Law, Model, Moving, Problem, Region};
+use sinew_fem::{
+    Course, Direction, Element, FibreFamily, Fixed, Law, Model, Moving, Problem, Region,
+};
 use sinew_machines::{FastMachine, Layout};
 use sinew_mesh::structured::{Split, cube};
 use sinew_mesh::{TetData, TetMesh};
@@ -56,12 +58,11 @@ fn models(mesh: &TetMesh) -> Vec<(String, Model)> {
     let mut uneven = problem(law("neo-hookean"), EDGES);
     let region = &mut uneven.regions[0];
     region.law.set_youngs_modulus(1.0);
-    region.tissue.fibres = Some(FibreFamily {
-        fibres: Fibres::new(Stiffening::Quadratic { eta: 2000.0 }).unwrap(),
-        direction: [0.0; 3],
-    });
+    region.tissue.fibres = vec![FibreFamily::new(
+        Fibres::new(Stiffening::Quadratic { eta: 2000.0 }).unwrap(),
+        Direction::Data("along".to_owned()),
+    )];
     region.from_mesh.youngs_modulus = Some("E".to_owned());
-    region.from_mesh.direction = Some("along".to_owned());
     problems.push(("with moduli and fibres by data".into(), uneven));
     let mesh = with_data(mesh);
     let models = problems.into_iter();

@@ -174,6 +174,22 @@ impl<'a> Table<'a> {
         Ok(tables)
     }
 
+    /// The table that a key holds, or the tables of its list; none where it is left out.
+    pub(crate) fn table_or_list<P>(
+        &self,
+        key: &Key<Inner, P>,
+    ) -> Result<Vec<Table<'a>>, SceneError> {
+        match self.given(key.name) {
+            Some(value) if matches!(value.get_ref(), DeValue::Array(_)) => {
+                self.items(key.name, value, key.values.table)
+            }
+            _ => Ok(self
+                .table_of(key.name, key.values.table)?
+                .into_iter()
+                .collect()),
+        }
+    }
+
     fn items(
         &self,
         key: &'static str,

@@ -380,8 +380,19 @@ pub(crate) struct Inner {
     pub(crate) expected: &'static str,
     /// The table.
     pub(crate) table: &'static TableDescription,
-    /// True if there may be several, each under its own `[[..]]`.
-    pub(crate) several: bool,
+    /// Number of tables that a key may have.
+    pub(crate) tables: Tables,
+}
+
+/// A number of tables.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Tables {
+    /// One.
+    One,
+    /// Any number, each under its own `[[..]]`.
+    Several,
+    /// One, or a list of some.
+    OneOrList,
 }
 
 impl Inner {
@@ -390,7 +401,7 @@ impl Inner {
         Self {
             expected,
             table,
-            several: false,
+            tables: Tables::One,
         }
     }
 
@@ -399,7 +410,19 @@ impl Inner {
         Self {
             expected,
             table,
-            several: true,
+            tables: Tables::Several,
+        }
+    }
+
+    /// One table, or a list of tables.
+    pub(crate) const fn one_or_list(
+        expected: &'static str,
+        table: &'static TableDescription,
+    ) -> Self {
+        Self {
+            expected,
+            table,
+            tables: Tables::OneOrList,
         }
     }
 }
@@ -410,9 +433,12 @@ impl Kind for Inner {
     }
 
     fn shape(&self) -> Shape {
-        match self.several {
-            true => Shape::Tables(self.table),
-            false => Shape::Table(self.table),
+        match self.tables {
+            Tables::One => Shape::Table(self.table),
+            Tables::Several => Shape::Tables(self.table),
+            Tables::OneOrList => {
+                Shape::Either(vec![Shape::Table(self.table), Shape::Tables(self.table)])
+            }
         }
     }
 }

@@ -2,7 +2,8 @@
 
 use sinew_core::Ramp;
 use sinew_fem::{
-    Course, FromMesh, Law, LoadFacts, LoadKind, LoadSpec, ModelReport, Region, RegionFacts,
+    Course, FibreFamily, FromMesh, Law, LoadFacts, LoadKind, LoadSpec, ModelReport, Region,
+    RegionFacts,
 };
 use sinew_mesh::GroupMembers;
 use sinew_mesh::structured::Split;
@@ -156,7 +157,6 @@ fn material(region: &Region, facts: &RegionFacts) -> Vec<String> {
     let FromMesh {
         youngs_modulus,
         density,
-        direction,
     } = &region.from_mesh;
     let by_data = [("E", youngs_modulus), ("density", density)];
     let by_data = by_data.into_iter().filter_map(|(what, name)| {
@@ -172,10 +172,7 @@ fn material(region: &Region, facts: &RegionFacts) -> Vec<String> {
             region.element, facts.patches
         ));
     }
-    lines.extend(region.tissue.fibres.iter().map(|family| match direction {
-        Some(name) => format!("fibres along the mesh's data `{name}`, {}", family.fibres),
-        None => family.to_string(),
-    }));
+    lines.extend(region.tissue.fibres.iter().map(FibreFamily::to_string));
     lines.extend(memory(region, facts));
     lines.extend(facts.network.map(|network| {
         let share = |modulus: f64| short(modulus / facts.mean_youngs_modulus);

@@ -49,6 +49,8 @@ pub(super) const REGION: TableDescription = TableDescription {
          prony = [[0.3, 0.05], [0.2, 0.5]]\nviscous_part = \"deviatoric\"\nmoduli = \"longterm\"\n",
         "[[region]]\ndensity = 1060.0\nmodel = \"neo-hookean\"\nyoungs_modulus = { data = \"stiffness\" }\npoissons_ratio = 0.45\n\
          fibres = { direction = { data = \"along\" }, eta = 2000.0 }\n",
+        "[[region]]\ndensity = 1060.0\nmodel = \"neo-hookean-iso\"\nyoungs_modulus = 9000.0\npoissons_ratio = 0.49\n\
+         fibres = [{ direction = [0.0, 0.875, 0.485], k1 = 2363.2, k2 = 0.8393 }, { direction = [0.0, 0.875, -0.485], k1 = 2363.2, k2 = 0.8393 }]\n",
     ],
 };
 
@@ -275,8 +277,8 @@ fn read(table: &Table<'_>, selections: &mut Selections) -> Result<Region, SceneE
         MaterialModel::Springs => Element::P1,
         MaterialModel::Linear | MaterialModel::Hyperelastic(_) => element(table)?,
     };
-    let (tissue, direction) = match model {
-        MaterialModel::Springs | MaterialModel::Linear => (Tissue::default(), None),
+    let tissue = match model {
+        MaterialModel::Springs | MaterialModel::Linear => Tissue::default(),
         MaterialModel::Hyperelastic(law) => tissue::read(table, law)?,
     };
     Ok(Region {
@@ -288,7 +290,6 @@ fn read(table: &Table<'_>, selections: &mut Selections) -> Result<Region, SceneE
         from_mesh: FromMesh {
             youngs_modulus: modulus_data,
             density: density_data,
-            direction,
         },
     })
 }

@@ -5,9 +5,9 @@ use std::ops::Bound;
 use sinew_fem::hyperelastic::KnownLaw;
 use sinew_fem::hyperelastic::fibres::{Fibres, Stiffening};
 use sinew_fem::hyperelastic::prony::Term;
-use sinew_fem::{FibreFamily, Memory, Moduli, Tissue, ViscousPart};
+use sinew_fem::{Direction, FibreFamily, Memory, Moduli, Tissue, ViscousPart};
 
-use super::from_mesh::{self, OrData};
+use super::from_mesh::{self, Given, OrData};
 use super::model::{MODEL, alternatives, isochoric, laws};
 use crate::decode::{
     Condition, Flag, Inner, Key, Needs, Number, Optional, Or, Pairs, Table, TableDescription,
@@ -17,9 +17,10 @@ use crate::error::{Fault, SceneError};
 
 pub(super) const FIBRES_OF_REGION: Key<Inner, Optional> = Key::optional(
     "fibres",
-    "Fibres that stiffen the tissue where they are stretched. Young's modulus and Poisson's ratio are then those across them.",
-    Inner::one(
-        "a table such as { direction = [0.0, 0.0, 1.0], eta = 2000.0 }",
+    "Fibres that stiffen the tissue where they are stretched: a family, or a list of up to four. Young's modulus and Poisson's ratio are then those \
+     of the tissue without them, as it is across a family.",
+    Inner::one_or_list(
+        "a table such as { direction = [0.0, 0.0, 1.0], eta = 2000.0 }, or a list of up to four",
         &FIBRES,
     ),
     "the same in all directions",
@@ -44,6 +45,7 @@ const FIBRES: TableDescription = TableDescription {
         "{ direction = [1.0, 1.0, 0.0], k1 = 1000.0, k2 = 2.0, dispersion = 0.1 }",
         "{ direction = [1.0, 0.0, 0.0], eta = 2000.0, split = true }",
         "{ direction = { data = \"along\" }, eta = 2000.0 }",
+        "{ direction = [1.0, 1.0, 0.0], k1 = 1000.0, k2 = 2.0, split = true }",
     ],
 };
 
@@ -95,12 +97,11 @@ const DISPERSION: Key<Number, Or<f64>> = Key::or(
 
 const SPLIT: Key<Flag, Or<bool>> = Key::or(
     "split",
-    "Whether the fibres feel J^(-2/3) I4, J being the ratio of volumes, and not I4 itself. Then a body that grows alike in all directions does not stretch \
-     them; for comparison with programs that do so.",
+    "Whether the fibres feel J^(-2/3) I4, J being the ratio of volumes, and not I4 itself, and J^(-2/3) I1 likewise. Then a body that grows alike in all directions \
+     does not stretch them; for comparison with programs that do so.",
     Flag,
     false,
-)
-.only(&[Condition::with(ETA.name, "goes with `eta` only")]);
+);
 
 pub(super) const PRONY: Key<Pairs, Optional> = Key::optional(
     "prony",
@@ -146,16 +147,17 @@ pub(super) const MODULI: Key<Words<Moduli>, Or<Moduli>> = Key::or(
 )
 .only(&[Condition::with(PRONY.name, "goes with `prony` only")]);
 
-/// Reads the tissue in the table of a region with this law of large deformation, and the name of the data that contain
-/// the direction of fibres.
-pub(super) fn read(
-    region: &Table<'_>,
-    law: &KnownLaw,
-) -> Result<(Tissue, Option<String>), SceneError> {
-    let fibres = region.table(&FIBRES_OF_REGION)?;
-    let (fibres, data) = fibres.as_ref().map(fibre_family).transpose()?.unzip();
-    let memory = memory(region, law)?;
-    Ok((Tissue { fibres, memory }, data.flatten()))
+/// Reads the tissue in the table of a region with this law of large deformation.
+pub(super) fn read(region: &Table<'_>, law: &KnownLaw) -> Result<Tissue, SceneError> {
+    let tables = region.table_or_list(&FIBRES_OF_REGION)?;
+    if region.has(FIBRES_OF_REGION.name) && !(1..=Tissue::MOST_FAMILIES).contains(&tables.len()) {
+        let expected = "one to four families";
+        return Err(region.value_misfit(FIBRES_OF_REGION.name, expected));
+    }
+    Ok(Tissue {
+        fibres: tables.iter().map(fibre_family).collect::<Result<_, _>>()?,
+        memory: memory(region, law)?,
+    })
 }
 
 fn memory(region: &Table<'_>, law: &KnownLaw) -> Result<Option<Memory>, SceneError> {
@@ -181,9 +183,12 @@ fn memory(region: &Table<'_>, law: &KnownLaw) -> Result<Option<Memory>, SceneErr
     }))
 }
 
-fn fibre_family(table: &Table<'_>) -> Result<(FibreFamily, Option<String>), SceneError> {
+fn fibre_family(table: &Table<'_>) -> Result<FibreFamily, SceneError> {
     table.check_conditions()?;
-    let (direction, data) = from_mesh::read(table, &DIRECTION)?.or([0.0; 3]);
+    let direction = match from_mesh::read(table, &DIRECTION)? {
+        Given::Everywhere(vector) => Direction::Everywhere(vector),
+        Given::Data(name) => Direction::Data(name),
+    };
     let key = table.exactly_one()?;
     let stiffening = match table.read(&ETA)? {
         Some(eta) => Stiffening::Quadratic { eta },
@@ -196,9 +201,8 @@ fn fibre_family(table: &Table<'_>) -> Result<(FibreFamily, Option<String>), Scen
     let fibres = Fibres::new(stiffening);
     let fibres = fibres.map_err(|error| table.place().value_fault(key, error.into()))?;
     let is_split = table.read(&SPLIT)?;
-    let family = FibreFamily {
+    Ok(FibreFamily {
         fibres: if is_split { fibres.split() } else { fibres },
         direction,
-    };
-    Ok((family, data))
+    })
 }

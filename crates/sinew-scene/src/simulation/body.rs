@@ -2,7 +2,9 @@
 
 use std::sync::{Arc, OnceLock};
 
-use sinew_fem::{Cause, Course, CutModel, CutModelError, FemError, Item, Model, Moving, On};
+use sinew_fem::{
+    Cause, Course, CutModel, CutModelError, FemError, Item, Model, Moving, On, Region,
+};
 
 use super::cut_plan::CutPlan;
 use super::meshed::SelectedMesh;
@@ -27,11 +29,7 @@ pub(super) fn build(
         warnings: mesh_warnings,
         selected,
     } = selected;
-    if problem
-        .regions
-        .iter()
-        .all(|region| region.from_mesh.is_empty())
-    {
+    if !problem.regions.iter().any(Region::takes_data) {
         mesh.data = Vec::new();
     }
     let mesh = Arc::new(mesh);

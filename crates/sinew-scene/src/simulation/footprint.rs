@@ -1,7 +1,7 @@
 //! The memory that a scene needs, before it is built.
 
 use serde::{Deserialize, Serialize};
-use sinew_fem::{Law, On};
+use sinew_fem::{Law, On, Region};
 use sinew_mesh::TetMesh;
 
 use crate::scene::Body;
@@ -40,8 +40,7 @@ impl Footprint {
         let pattern = blocks * size_of::<u32>() + (cells + 1) * size_of::<usize>();
         let vector = 3 * cells * size_of::<f64>();
         let matrix_bytes = matrices * blocks * BLOCK + pattern + vector;
-        let mut regions = body.problem.regions.iter();
-        let takes_data = regions.any(|region| !region.from_mesh.is_empty());
+        let takes_data = body.problem.regions.iter().any(Region::takes_data);
         let data = mesh.data.iter().filter(|_| takes_data);
         let data: usize = data.map(|data| data.values.len()).sum();
         // Corners, tags and region of each tetrahedron; position and tag of each node; data, and the values derived

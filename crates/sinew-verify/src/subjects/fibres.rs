@@ -18,7 +18,7 @@ pub(super) const SUBJECT: Subject = Subject {
     id: "fibres",
     title: "Fibres",
     says: "A family of fibres in the law `neo-hookean` with E = 3500 Pa, nu = .45: quadratic, eta = 2000 Pa, or exponential, k1 = 1000 Pa, k2 = 2. \
-           Stresses P (Pa) at the stretches at which nothing pulls from the sides; what is left there is a row of its own.",
+           Stresses P (Pa) at the stretches at which nothing pulls from the sides; what is left there is a row of its own. Then two families, the law of Holzapfel, Gasser and Ogden.",
     checks,
     quoted: &[],
 };
@@ -194,7 +194,107 @@ fn checks() -> Vec<Check> {
     ];
     let oblique = oblique.map(|(name, stiffening)| (name, stiffening, [half, half, 0.0], shear));
     checks.extend(uniaxial.chain(oblique).map(in_bodies));
+    checks.extend(TWO_FAMILIES.map(two_families));
     checks
+}
+
+/// Fibres in a body: their energy, direction and whether they are freed of volume change.
+type Family = (Stiffening, [f64; 3], bool);
+
+/// Stretches along the axes, and whether fibres are freed of volume change.
+const TWO_FAMILIES: [(&str, [f64; 3], bool); 4] = [
+    ("around and along", [0.7, 1.25, 1.15], false),
+    ("around and along", [0.7, 1.25, 1.15], true),
+    ("around alone", [0.9, 1.3, 0.95], false),
+    ("around alone", [0.9, 1.3, 0.95], true),
+];
+
+/// The media of a rabbit's carotid artery (Holzapfel, Gasser and Ogden, Journal of Elasticity 61, 2000, table 2): c, k1 (Pa), k2, and the angle
+/// (degrees) of the fibres to the circumference.
+const MEDIA: [f64; 4] = [3000.0, 2363.2, 0.8393, 29.0];
+
+/// The law of Holzapfel, Gasser and Ogden as two families in `neo-hookean-iso`, y around the artery and z along it.
+fn two_families((name, stretches, is_split): (&'static str, [f64; 3], bool)) -> Check {
+    let [c, k1, k2, angle] = MEDIA;
+    let (sine, cosine) = angle.to_radians().sin_cos();
+    let dispersion = 0.0;
+    let kind = Stiffening::Exponential { k1, k2, dispersion };
+    let families: Vec<Family> = [sine, -sine]
+        .map(|along| (kind, [0.0, cosine, along], is_split))
+        .into();
+    let freed = if is_split {
+        ", freed of volume change"
+    } else {
+        ""
+    };
+    let figures = [
+        (
+            "P through the wall, off its closed form over the largest P",
+            Asked::at_most(1e-12),
+        ),
+        ("P around", Asked::at_most(1e-12)),
+        ("P along", Asked::at_most(1e-12)),
+    ];
+    // mu = c, E = 2 mu (1 + nu).
+    let poissons_ratio = 0.49;
+    let youngs_modulus = 2.0 * c * (1.0 + poissons_ratio);
+    let source = Source::ClosedForm("principal stresses by derivatives of the energy by hand");
+    Check::several(
+        format!("two families at +-29 degrees, {name}{freed}"),
+        figures,
+        source,
+        move |_| {
+            let [x, y, z] = stretches;
+            let h = Tensor([
+                [x - 1.0, 0.0, 0.0],
+                [0.0, y - 1.0, 0.0],
+                [0.0, 0.0, z - 1.0],
+            ]);
+            let j = x * y * z;
+            let scale = j.powf(-2.0 / 3.0);
+            let i1 = x * x + y * y + z * z;
+            let kappa = youngs_modulus / (3.0 * (1.0 - 2.0 * poissons_ratio));
+            let i4 = y * y * cosine * cosine + z * z * sine * sine;
+            let shares = [0.0, cosine * cosine, sine * sine];
+            let (measure, factor) = if is_split {
+                (scale * i4 - 1.0, scale)
+            } else {
+                (i4 - 1.0, 1.0)
+            };
+            let slope = 2.0 * k1 * measure * (k2 * measure * measure).exp();
+            let expected = [0, 1, 2].map(|i| {
+                let stretch = stretches[i];
+                let matrix = c * scale * (stretch - i1 / (3.0 * stretch));
+                let volume = kappa * (j - 1.0) * j / stretch;
+                let freed = if is_split { i4 / (3.0 * stretch) } else { 0.0 };
+                matrix + volume + 2.0 * slope * factor * (shares[i] * stretch - freed)
+            });
+            let law = law("neo-hookean-iso", youngs_modulus, poissons_ratio);
+            let mut worst = vec![0.0_f64; 3];
+            for element in ELEMENTS {
+                let mut problem = of_law(law.clone(), element);
+                problem.regions[0].tissue.fibres = made(&families)?;
+                let body = Uniform::new(&problem, h)?;
+                let (_, force) = body.forces()?;
+                let size = expected.iter().fold(0.0_f64, |size, p| size.max(p.abs()));
+                for (end, worst) in worst.iter_mut().enumerate() {
+                    let found = body.at_end(&force, end, end) / (EDGE * EDGE);
+                    *worst = worst.max((found - expected[end]).abs() / size);
+                }
+            }
+            Ok(worst)
+        },
+    )
+}
+
+fn made(families: &[Family]) -> Result<Vec<FibreFamily>, LabError> {
+    let made = families.iter().map(|(kind, direction, is_split)| {
+        let fibres = Fibres::new(*kind).map_err(LawError::from)?;
+        let fibres = if *is_split { fibres.split() } else { fibres };
+        // Vectors of any length.
+        Ok(FibreFamily::new(fibres, direction.map(|x| 7.0 * x)))
+    });
+    made.collect()
 }
 
 /// A uniform deformation in bodies of every element, whose fibres are given by a vector of any length.
@@ -217,10 +317,7 @@ fn in_bodies((name, stiffening, direction, h): (&str, Stiffening, [f64; 3], Tens
             let mut worst = vec![0.0_f64; 3];
             for element in ELEMENTS {
                 let mut problem = of_law(law("neo-hookean", YOUNGS_MODULUS, 0.45), element);
-                problem.regions[0].tissue.fibres = Some(FibreFamily {
-                    fibres: Fibres::new(stiffening).map_err(LawError::from)?,
-                    direction: direction.map(|x| 7.0 * x),
-                });
+                problem.regions[0].tissue.fibres = made(&[(stiffening, direction, false)])?;
                 let body = Uniform::new(&problem, h)?;
                 let (_, force) = body.forces()?;
                 let (area, size) = (EDGE * EDGE, p.largest());

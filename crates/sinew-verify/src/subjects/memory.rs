@@ -237,10 +237,10 @@ fn relaxing(
     });
     if with_fibres {
         let fibres = Fibres::new(Stiffening::Quadratic { eta: 2000.0 });
-        problem.regions[0].tissue.fibres = Some(FibreFamily {
-            fibres: fibres.map_err(LawError::from)?,
-            direction: [1.0, 0.0, 2.0],
-        });
+        problem.regions[0].tissue.fibres = vec![FibreFamily::new(
+            fibres.map_err(LawError::from)?,
+            [1.0, 0.0, 2.0],
+        )];
     }
     let body = Uniform::new(&problem, STRAINED)?;
     let mut state = State::at_rest(body.u.len());

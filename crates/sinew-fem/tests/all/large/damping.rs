@@ -34,10 +34,10 @@ fn fibrous(id: &'static str, element: Element) -> Problem {
         dispersion: 0.1,
     };
     problem.regions[0].tissue = Tissue {
-        fibres: Some(FibreFamily {
-            fibres: Fibres::new(stiffening).unwrap(),
-            direction: [3.0, -1.0, 2.0],
-        }),
+        fibres: vec![FibreFamily::new(
+            Fibres::new(stiffening).unwrap(),
+            [3.0, -1.0, 2.0],
+        )],
         ..Tissue::default()
     };
     problem
@@ -201,7 +201,7 @@ fn products_matrices_and_own_blocks_of_damping_are_one() {
         model.add_viscosity(&trial, 1.0, &mut own).unwrap();
         let mut blocks = vec![0.0; 3 * u.len()];
         model.add_viscous_blocks(&trial, 1.0, &mut blocks).unwrap();
-        let is_fibrous = problem.regions[0].tissue.fibres.is_some();
+        let is_fibrous = !problem.regions[0].tissue.fibres.is_empty();
         for (cell, block) in blocks.chunks_exact(9).enumerate() {
             let own = own.block(cell, cell).unwrap();
             let off = block.iter().zip(own).map(|(a, b)| a - b);

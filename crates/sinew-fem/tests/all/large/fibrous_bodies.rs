@@ -23,27 +23,42 @@ const DISPERSED: Stiffening = Stiffening::Exponential {
 
 /// E = 3500 Pa, nu = .45.
 fn with_fibres(id: &'static str, fibres: Fibres, direction: [f64; 3]) -> Problem {
+    with_families(id, vec![FibreFamily::new(fibres, direction)])
+}
+
+fn with_families(id: &'static str, fibres: Vec<FibreFamily>) -> Problem {
     let mut problem = body(Law::hyperelastic(id, Parameters::new(3500.0, 0.45)));
-    problem.regions[0].tissue = Tissue {
-        fibres: Some(FibreFamily { fibres, direction }),
-        ..Tissue::default()
-    };
+    problem.regions[0].tissue.fibres = fibres;
     problem
 }
 
-/// Laws with and without a meaning when inverted, with one that has a rotation, and all families of fibres, on every element.
+/// Laws with and without a meaning when inverted, with one that has a rotation, and fibres of all kinds, of one family and
+/// of four, on every element.
 fn all() -> impl Iterator<Item = (String, Problem)> {
     let kinds = [QUADRATIC, DISPERSED].map(|kind| Fibres::new(kind).unwrap());
-    let families = [kinds[0], kinds[1], kinds[0].split()];
+    let kinds = [kinds[0], kinds[1], kinds[0].split(), kinds[1].split()];
+    let directions = [
+        [3.0, -1.0, 2.0],
+        [0.0, 1.0, 1.0],
+        [1.0, 0.0, 0.0],
+        [-1.0, 2.0, 0.0],
+    ];
+    let of = |kind: usize| FibreFamily::new(kinds[kind], directions[kind]);
+    let mut families: Vec<Vec<FibreFamily>> = kinds
+        .map(|kind| vec![FibreFamily::new(kind, directions[0])])
+        .into();
+    families.push([0, 1, 2, 3].map(of).into());
     let laws = ["neo-hookean", "corotational"];
-    let cases = laws
-        .into_iter()
-        .flat_map(move |law| families.map(|f| (law, f)));
-    cases.flat_map(|(law, fibres)| {
-        ELEMENTS.map(|element| {
-            let mut problem = with_fibres(law, fibres, [3.0, -1.0, 2.0]);
-            problem.regions[0].element = element;
-            (format!("{law}, {fibres}, {element}"), problem)
+    laws.into_iter().flat_map(move |law| {
+        let cases = families.clone().into_iter();
+        cases.flat_map(move |fibres| {
+            let said: Vec<String> = fibres.iter().map(FibreFamily::to_string).collect();
+            let said = said.join(", ");
+            ELEMENTS.map(|element| {
+                let mut problem = with_families(law, fibres.clone());
+                problem.regions[0].element = element;
+                (format!("{law}, {said}, {element}"), problem)
+            })
         })
     })
 }
@@ -228,6 +243,26 @@ fn fibres_freed_of_volume_change_refuse_what_is_inverted_by_name_also_with_laws_
 }
 
 #[test]
+fn two_families_of_half_the_modulus_along_one_direction_are_one() {
+    let mesh = uneven_cube();
+    for kind in [QUADRATIC, DISPERSED] {
+        let whole = Fibres::new(kind).unwrap();
+        let half = || FibreFamily::new(whole.scaled(0.5), [3.0, -1.0, 2.0]);
+        let one = build(&mesh, &with_fibres("neo-hookean", whole, [3.0, -1.0, 2.0]));
+        let two = build(&mesh, &with_families("neo-hookean", vec![half(), half()]));
+        let u = bent(&mesh, &one, 0.6);
+        let w = waves(u.len(), 1.3);
+        let [of_one, of_two] = [&one, &two].map(|model| elastic(model, &u));
+        at_most("energy", (of_two.0 / of_one.0 - 1.0).abs(), 1e-14);
+        at_most("forces", relative_difference(&of_two.1, &of_one.1), 1e-14);
+        let [of_one, of_two] = [&one, &two].map(|model| product(model, TangentKind::Exact, &u, &w));
+        at_most("tangent", relative_difference(&of_two, &of_one), 1e-14);
+        let bounds = [&one, &two].map(|model| model.spectrum(None).unwrap().omega_max);
+        at_most("spectrum", (bounds[1] / bounds[0] - 1.0).abs(), 1e-12);
+    }
+}
+
+#[test]
 fn fibres_without_a_direction_or_beside_another_law_are_refused() {
     let mesh = structured::cube(1, 0.1, Split::Kuhn).unwrap();
     let fibres = Fibres::new(QUADRATIC).unwrap();
@@ -237,6 +272,10 @@ fn fibres_without_a_direction_or_beside_another_law_are_refused() {
     let mut linear = with_fibres("neo-hookean", fibres, [1.0; 3]);
     linear.regions[0].law = crate::common::linear(3500.0, 0.45);
     assert_eq!(refused(&linear), Cause::TissueOfSmallStrain);
+    let families = vec![FibreFamily::new(fibres, [1.0; 3]); 5];
+    let (found, most) = (5, Tissue::MOST_FAMILIES);
+    let five = with_families("neo-hookean", families);
+    assert_eq!(refused(&five), Cause::Families { found, most });
     let endless = with_fibres("neo-hookean", fibres, [f64::INFINITY, 0.0, 0.0]);
     assert!(matches!(
         refused(&endless),

@@ -40,10 +40,10 @@ fn of(id: &'static str, element: Element, memory: Option<Memory>) -> Problem {
 }
 
 fn with_fibres(mut problem: Problem) -> Problem {
-    problem.regions[0].tissue.fibres = Some(FibreFamily {
-        fibres: Fibres::new(Stiffening::Quadratic { eta: 2000.0 }).unwrap(),
-        direction: [1.0, 0.0, 2.0],
-    });
+    problem.regions[0].tissue.fibres = vec![FibreFamily::new(
+        Fibres::new(Stiffening::Quadratic { eta: 2000.0 }).unwrap(),
+        [1.0, 0.0, 2.0],
+    )];
     problem
 }
 

@@ -13,8 +13,8 @@ use sinew_fem::hyperelastic::Hyperelastic;
 use sinew_fem::hyperelastic::fibres::{Fibres, Stiffening};
 use sinew_fem::hyperelastic::prony::Term;
 use sinew_fem::{
-    Element, FibreFamily, FromMesh, Law, LoadKind, Memory, Model, Moduli, Problem, SpringRule,
-    ViscousPart,
+    Direction, Element, FibreFamily, FromMesh, Law, LoadKind, Memory, Model, Moduli, Problem,
+    Region, SpringRule, ViscousPart,
 };
 use sinew_mesh::structured::{self, Split};
 use sinew_mesh::{Group, GroupMembers, TetData, TetMesh};
@@ -24,11 +24,13 @@ fn large(id: &'static str, youngs_modulus: f64, nu: f64) -> Law {
     Law::hyperelastic(id, parameters)
 }
 
-fn fibres(direction: [f64; 3]) -> Option<FibreFamily> {
-    Some(FibreFamily {
-        fibres: Fibres::new(Stiffening::Quadratic { eta: 2000.0 }).unwrap(),
-        direction,
-    })
+fn along() -> Direction {
+    Direction::Data("along".to_owned())
+}
+
+fn fibres(direction: impl Into<Direction>) -> Vec<FibreFamily> {
+    let fibres = Fibres::new(Stiffening::Quadratic { eta: 2000.0 }).unwrap();
+    vec![FibreFamily::new(fibres, direction)]
 }
 
 fn memory(part: ViscousPart) -> Option<Memory> {
@@ -204,14 +206,13 @@ fn data_that_are_the_same_everywhere_give_the_bits_of_numbers() {
         let region = &mut problem.regions[0];
         region.law = of_one;
         region.density = 1.0;
-        let has_fibres = region.tissue.fibres.is_some();
+        let has_fibres = !region.tissue.fibres.is_empty();
         region.from_mesh = FromMesh {
             youngs_modulus: named("E"),
             density: named("rho"),
-            direction: has_fibres.then(|| "along".to_owned()),
         };
         if has_fibres {
-            region.tissue.fibres = fibres([0.0; 3]);
+            region.tissue.fibres = fibres(along());
         }
         let model = build(&mesh, &problem);
         assert!(
@@ -281,8 +282,8 @@ fn forces_are_the_slope_of_the_energy_and_tangents_that_of_the_forces() {
         let element = problem.regions[0].element;
         let mut uneven = by_data(problem.regions[0].law.clone(), element);
         uneven.regions[0].tissue = problem.regions[0].tissue.clone();
-        if uneven.regions[0].tissue.fibres.is_some() {
-            uneven.regions[0].from_mesh.direction = named("along");
+        for family in &mut uneven.regions[0].tissue.fibres {
+            family.direction = along();
         }
         let model = build(&mesh, &uneven);
         let state = used(&mesh, &model);
@@ -569,8 +570,7 @@ fn fibres_that_turn_through_a_bar_have_the_bits_of_regions_with_a_direction_each
         problem.regions[0].tissue.memory = memory;
         let mut in_layers = problem.clone();
         let whole = in_layers.regions.remove(0);
-        problem.regions[0].tissue.fibres = fibres([0.0; 3]);
-        problem.regions[0].from_mesh.direction = named("along");
+        problem.regions[0].tissue.fibres = fibres(along());
         let mut cut = mesh.clone();
         for number in 0..10 {
             let tets = (0u32..).zip(&layer).filter(|(_, of)| **of == number);
@@ -608,8 +608,7 @@ fn another_distribution_is_another_body() {
     let mut turned = mesh.clone();
     turned.data[1].values[4] += 1e-9;
     let mut problem = by_data(large("neo-hookean", 1.0, 0.45), Element::P1);
-    problem.regions[0].tissue.fibres = fibres([0.0; 3]);
-    problem.regions[0].from_mesh.direction = named("along");
+    problem.regions[0].tissue.fibres = fibres(along());
     let of = |mesh: &TetMesh| (&build(mesh, &problem) as &dyn System).fingerprint();
     assert_eq!(of(&mesh), of(&mesh.clone()));
     assert_ne!(of(&mesh), of(&swapped));
@@ -668,11 +667,19 @@ fn data_that_cannot_give_a_property_are_refused_by_name_and_tag() {
     add(&mut mesh, "twice", |_| [2.0]);
     let last = mesh.data.len() - 1;
     mesh.data[last].step = 3;
-    let said = |mesh: &TetMesh, from_mesh: FromMesh, has_fibres: bool| {
+    let refused = |mesh: &TetMesh, change: &dyn Fn(&mut Region)| {
         let mut problem = body(large("neo-hookean", 1.0, 0.45));
-        problem.regions[0].from_mesh = from_mesh;
-        problem.regions[0].tissue.fibres = has_fibres.then(|| fibres([0.0; 3])).flatten();
+        change(&mut problem.regions[0]);
         Model::build(mesh, &problem).unwrap_err().to_string()
+    };
+    let said = |mesh: &TetMesh, from_mesh: FromMesh| {
+        refused(mesh, &|region| region.from_mesh = from_mesh.clone())
+    };
+    let along = |name: &str| {
+        let direction = Direction::Data(name.to_owned());
+        refused(&mesh, &|region| {
+            region.tissue.fibres = fibres(direction.clone())
+        })
     };
     let young = |name: &str| FromMesh {
         youngs_modulus: named(name),
@@ -682,53 +689,45 @@ fn data_that_cannot_give_a_property_are_refused_by_name_and_tag() {
         density: named(name),
         ..FromMesh::default()
     };
-    let direction = |name: &str| FromMesh {
-        direction: named(name),
-        ..FromMesh::default()
-    };
     assert_eq!(
-        said(&mesh, young("e"), false),
+        said(&mesh, young("e")),
         "region 1: youngs_modulus: no data of tetrahedra are named \"e\"; there are \"E\" (a number), \"along\" (3 numbers), \
          \"endless\" (3 numbers), \"holes\" (a number), \"negative\" (a number), \"twice\" (a number), \"zero\" (a number)"
     );
     assert_eq!(
-        said(&uneven_cube(), young("E"), false),
+        said(&uneven_cube(), young("E")),
         "region 1: youngs_modulus: no data of tetrahedra are named \"E\"; the mesh has none"
     );
     assert_eq!(
-        said(&mesh, young("twice"), false),
+        said(&mesh, young("twice")),
         "region 1: youngs_modulus: 2 data of tetrahedra are named \"twice\" (time steps 0, 3): keep one of them, or give each a \
          name of its own"
     );
     assert_eq!(
-        said(&mesh, density("along"), false),
+        said(&mesh, density("along")),
         "region 1: density: data \"along\" are 3 numbers for each tetrahedron: expected a number"
     );
     assert_eq!(
-        said(&mesh, direction("E"), true),
+        along("E"),
         "region 1: direction: data \"E\" are a number for each tetrahedron: expected 3 numbers"
     );
     assert_eq!(
-        said(&mesh, young("holes"), false),
+        said(&mesh, young("holes")),
         "region 1: youngs_modulus: data \"holes\" have no value for 18 of the region's tetrahedra (first: 105)"
     );
     assert_eq!(
-        said(&mesh, young("negative"), false),
+        said(&mesh, young("negative")),
         "region 1: youngs_modulus: data \"negative\" are -2 in tetrahedron 108: expected a finite modulus above 0 Pa"
     );
     assert_eq!(
-        said(&mesh, density("zero"), false),
+        said(&mesh, density("zero")),
         "region 1: density: data \"zero\" are 0 in tetrahedron 109: expected a finite density above 0 kg/m3"
     );
     assert_eq!(
-        said(&mesh, direction("along"), true),
+        along("along"),
         "region 1: direction: data \"along\" are [0.0, 0.0, 0.0] in tetrahedron 106: expected a finite vector that is not 0"
     );
-    assert!(said(&mesh, direction("endless"), true).contains("[1.0, 0.0, inf] in tetrahedron 107"));
-    assert_eq!(
-        said(&mesh, direction("along"), false),
-        "region 1: direction: data \"along\" are a direction, and the region has no fibres"
-    );
+    assert!(along("endless").contains("[1.0, 0.0, inf] in tetrahedron 107"));
 }
 
 /// Invalid values outside a region do not affect it.

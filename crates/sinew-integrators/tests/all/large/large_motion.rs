@@ -65,10 +65,10 @@ impl Scene {
             dispersion: 0.0,
         };
         region.tissue = Tissue {
-            fibres: Some(FibreFamily {
-                fibres: Fibres::new(stiffening).unwrap(),
-                direction: [0.0, 0.0, 1.0],
-            }),
+            fibres: vec![FibreFamily::new(
+                Fibres::new(stiffening).unwrap(),
+                [0.0, 0.0, 1.0],
+            )],
             ..Tissue::default()
         };
         self.model = self.model.with_problem(&self.problem).unwrap();

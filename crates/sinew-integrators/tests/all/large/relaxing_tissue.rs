@@ -123,10 +123,10 @@ fn a_run_that_goes_on_from_bytes_has_the_bits_of_one_that_never_ended() {
         ("implicit-euler", &Options::new()),
     ] {
         let mut problem = pulled(&mesh, Element::Fbar { patch: None });
-        problem.regions[0].tissue.fibres = Some(FibreFamily {
-            fibres: Fibres::new(Stiffening::Quadratic { eta: 2000.0 }).unwrap(),
-            direction: [0.0, 0.0, 1.0],
-        });
+        problem.regions[0].tissue.fibres = vec![FibreFamily::new(
+            Fibres::new(Stiffening::Quadratic { eta: 2000.0 }).unwrap(),
+            [0.0, 0.0, 1.0],
+        )];
         problem.loads[0].kind = LoadKind::Traction([0.0, 0.0, 500.0]);
         let model = Model::build(&mesh, &problem).unwrap();
         let (mut integrator, mut state) = (build(id, options), at_rest(&model));

@@ -65,10 +65,10 @@ fn problems() -> Vec<(&'static str, Problem)> {
     pressed.loads[0].kind = LoadKind::FollowingPressure(300.0);
     pressed.fixed.push(held("top", [false, true, false]));
     let mut fibrous = one("neo-hookean", EDGES);
-    fibrous.regions[0].tissue.fibres = Some(FibreFamily {
-        fibres: Fibres::new(Stiffening::Quadratic { eta: 2000.0 }).unwrap(),
-        direction: [0.0, 1.0, 2.0],
-    });
+    fibrous.regions[0].tissue.fibres = vec![FibreFamily::new(
+        Fibres::new(Stiffening::Quadratic { eta: 2000.0 }).unwrap(),
+        [0.0, 1.0, 2.0],
+    )];
     let two_laws = problem(vec![
         region(law("mooney-rivlin"), Element::P1, Some("high")),
         region(law("neo-hookean-log"), EDGES, Some("low")),
