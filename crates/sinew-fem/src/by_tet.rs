@@ -10,7 +10,7 @@ use crate::Problem;
 use crate::error::{Cause, FemError, Item};
 use crate::from_mesh::{DataError, FromMesh};
 use crate::shares::Shares;
-use crate::tissue::{Direction, Tissue, unit};
+use crate::tissue::{Direction, Tissue, frame, unit};
 
 /// Properties per tetrahedron, read from the mesh's data and checked.
 #[derive(Debug, Default)]
@@ -29,8 +29,53 @@ pub(crate) struct RegionByTet {
     pub(crate) shares: Shares,
     /// The direction of each family of fibres as unit vectors; `None` where it is the same in all tetrahedra.
     pub(crate) directions: Vec<Option<UnitVectors>>,
+    /// The material's axes, where its law has some.
+    pub(crate) axes: Option<Axes>,
     /// The least and the largest factor of the density.
     pub(crate) densities: [f64; 2],
+}
+
+/// Three perpendicular unit vectors in the material at rest, the third the cross product of the others.
+pub(crate) type Frame = [[f64; 3]; 3];
+
+/// The axes of a material.
+#[derive(Clone)]
+pub(crate) enum Axes {
+    /// The same in the whole region.
+    Everywhere(Frame),
+    /// Those of each tetrahedron of the mesh.
+    Each(Arc<[Frame]>),
+}
+
+impl Axes {
+    /// The axes of coordinates.
+    pub(crate) const COORDINATES: Self =
+        Self::Everywhere([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);
+
+    /// The axes in a tetrahedron.
+    pub(crate) fn of(&self, tet: usize) -> Frame {
+        match self {
+            Self::Everywhere(frame) => *frame,
+            Self::Each(all) => all[tet],
+        }
+    }
+
+    /// All numbers.
+    pub(crate) fn values(&self) -> &[f64] {
+        match self {
+            Self::Everywhere(frame) => frame.as_flattened(),
+            Self::Each(all) => all.as_flattened().as_flattened(),
+        }
+    }
+}
+
+impl fmt::Debug for Axes {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Everywhere(frame) => frame.fmt(f),
+            Self::Each(_) => f.write_str("of each tetrahedron"),
+        }
+    }
 }
 
 /// Unit vectors in each tetrahedron of a mesh.
@@ -63,6 +108,7 @@ impl Default for RegionByTet {
             moduli: [1.0; 2],
             shares: Shares::default(),
             directions: Vec::new(),
+            axes: None,
             densities: [1.0; 2],
         }
     }
@@ -122,6 +168,9 @@ impl ByTet {
                     let all = all.get_or_insert_with(|| vec![[0.0; 3]; mesh.tets.len()]);
                     members.directions(name, all).map_err(at("direction"))?;
                 }
+            }
+            if let Some(axes) = &region.tissue.axes {
+                of_region.axes = Some(members.axes(axes).map_err(at("axes"))?);
             }
         }
         let moduli: Option<Arc<[f64]>> = moduli.map(Arc::from);
@@ -243,6 +292,34 @@ impl<'a> Members<'a> {
             }
         }
         Ok(())
+    }
+
+    /// The axes by their first two directions.
+    fn axes(self, directions: &[Direction; 2]) -> Result<Axes, DataError> {
+        let mut all = Vec::new();
+        for direction in directions {
+            all.push(match direction {
+                Direction::Everywhere(_) => vec![direction.unit(); self.mesh.tets.len()],
+                Direction::Data(name) => {
+                    let mut vectors = vec![[0.0; 3]; self.mesh.tets.len()];
+                    self.directions(name, &mut vectors)?;
+                    vectors
+                }
+            });
+        }
+        if let [Direction::Everywhere(first), Direction::Everywhere(second)] = directions {
+            // Checked before.
+            return Ok(Axes::Everywhere(frame(*first, *second).unwrap_or_default()));
+        }
+        let mut frames = vec![Frame::default(); self.mesh.tets.len()];
+        for tet in self.tets() {
+            let parallel = || DataError::Parallel {
+                tag: self.tag(tet),
+                found: [all[0][tet], all[1][tet]],
+            };
+            frames[tet] = frame(all[0][tet], all[1][tet]).ok_or_else(parallel)?;
+        }
+        Ok(Axes::Each(frames.into()))
     }
 
     fn tag(self, tet: usize) -> u64 {

@@ -16,7 +16,7 @@ pub(crate) fn numbers(problem: &Problem) -> Result<(), FemError> {
         region.tissue.check(item)?;
         let [at_once, _] = region.tissue.moduli(&region.law);
         match at_once.of_large_deformation() {
-            Some(Ok(law)) => region.tissue.check_with(&law, item)?,
+            Some(Ok(law)) => region.tissue.check_with(&law, region.element, item)?,
             // The law as it is stated has been checked.
             Some(Err(_)) => {
                 let poissons_ratio = at_once.poissons_ratio().unwrap_or(f64::NAN);

@@ -94,9 +94,30 @@ pub enum Cause {
         /// The most there may be.
         most: usize,
     },
-    /// Fibres without a direction.
-    #[error("direction = [0, 0, 0]: expected a vector that is not 0")]
-    NoDirection,
+    /// A direction without length.
+    #[error("{quantity} = [0, 0, 0]: expected a vector that is not 0")]
+    NoDirection {
+        /// Name of the quantity.
+        quantity: &'static str,
+    },
+    /// Axes whose first two directions are parallel.
+    #[error("the first two axes are parallel: expected directions that are not")]
+    ParallelAxes,
+    /// Axes for a law that is alike in all directions.
+    #[error("the law `{law}` is alike in all directions: expected no axes")]
+    NeedlessAxes {
+        /// The law's id.
+        law: &'static str,
+    },
+    /// Axes that differ between the tetrahedra of an edge on an element that averages over edges.
+    #[error(
+        "the axes of the law `{law}` differ from tetrahedron to tetrahedron, and the element averages over the tetrahedra of an edge: expected p1 \
+         or fbar, or the same axes everywhere"
+    )]
+    AxesOnEdges {
+        /// The law's id.
+        law: &'static str,
+    },
     /// Data of the mesh that cannot give a property.
     #[error("{quantity}: {error}")]
     Data {

@@ -61,6 +61,17 @@ pub enum DataError {
         /// The values that fit.
         expected: &'static str,
     },
+    /// Axes whose first two directions are parallel.
+    #[error(
+        "the first two axes are {:?} and {:?} in tetrahedron {tag}: expected directions that are not parallel",
+        found[0], found[1]
+    )]
+    Parallel {
+        /// Element tag.
+        tag: u64,
+        /// Unit vectors.
+        found: [[f64; 3]; 2],
+    },
     /// A direction without length, or that is not finite.
     #[error(
         "data \"{name}\" are {found:?} in tetrahedron {tag}: expected a finite vector that is not 0"

@@ -4,7 +4,8 @@ use std::fmt::{self, Write};
 
 use crate::error::{Cause, FemError, Item};
 use crate::hyperelastic::{
-    Hyperelastic, KnownLaw, LawError, LawParameter, ParameterError, Parameters, known_law,
+    Hyperelastic, KnownLaw, LawError, LawParameter, Orthotropic, ParameterError, Parameters,
+    known_law,
 };
 use crate::number::require;
 
@@ -18,7 +19,7 @@ pub enum Law {
         /// Poisson's ratio, in (-1, 1/2).
         poissons_ratio: f64,
     },
-    /// An isotropic solid under large deformation, see [`crate::hyperelastic`].
+    /// A solid under large deformation, see [`crate::hyperelastic`].
     Hyperelastic {
         /// Id of the law, one of [`crate::hyperelastic::known_laws`].
         id: &'static str,
@@ -163,6 +164,13 @@ impl Law {
         }
     }
 
+    /// The constants at small strain in the axes of a material that has some; `None` for other laws.
+    #[must_use]
+    pub fn orthotropic(&self) -> Option<Orthotropic> {
+        let law = self.of_large_deformation()?.ok()?;
+        law.has_axes().then(|| Orthotropic::of(&law)).flatten()
+    }
+
     /// The law ready for computation; `None` unless it is of large deformation.
     pub(crate) fn of_large_deformation(&self) -> Option<Result<Hyperelastic, LawError>> {
         match self {
@@ -247,7 +255,7 @@ fn hyperelastic_with_modulus(id: &str, parameters: &Parameters, modulus: &str) -
     let [_, nu] = constants(id, parameters);
     let stated = parameters.stated();
     let mut text = match (stated, Hyperelastic::new(id, parameters)) {
-        ([None, _], Ok(law)) => {
+        ([None, _] | [_, None], Ok(law)) => {
             let (lambda, mu) = law.lame();
             let bulk = lambda + 2.0 / 3.0 * mu;
             format!(

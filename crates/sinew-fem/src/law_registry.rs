@@ -5,6 +5,7 @@ use std::sync::{Arc, PoisonError, RwLock};
 
 use crate::hyperelastic::boxed::PointLaw;
 use crate::hyperelastic::corotational::Corotational;
+use crate::hyperelastic::fung::Fung;
 use crate::hyperelastic::law::{HyperelasticLaw, NodeBlock};
 use crate::hyperelastic::law_error::LawError;
 use crate::hyperelastic::mooney_rivlin::MooneyRivlin;
@@ -48,6 +49,7 @@ laws! {
     NeoHookeanIso,
     StableNeoHookeanLog,
     Yeoh,
+    Fung,
 }
 
 /// The laws that the program has added.
@@ -88,6 +90,7 @@ pub fn register_boxed(
         parameters,
         weakness: None,
         has_isochoric_part: false,
+        has_axes: false,
         make: Make::Boxed(make),
     })
 }
@@ -125,6 +128,7 @@ pub struct KnownLaw {
     parameters: &'static [LawParameter],
     weakness: Option<[&'static str; 2]>,
     has_isochoric_part: bool,
+    has_axes: bool,
     make: Make,
 }
 
@@ -150,6 +154,7 @@ impl KnownLaw {
             parameters: L::PARAMETERS,
             weakness: L::WEAKNESS,
             has_isochoric_part: L::HAS_ISOCHORIC_PART,
+            has_axes: L::HAS_AXES,
             make: Make::Compiled(|values| Ok(Hyperelastic::of(L::from_values(values)?))),
         }
     }
@@ -182,6 +187,12 @@ impl KnownLaw {
     #[must_use]
     pub fn has_isochoric_part(&self) -> bool {
         self.has_isochoric_part
+    }
+
+    /// True if the material has axes, which a region then states.
+    #[must_use]
+    pub fn has_axes(&self) -> bool {
+        self.has_axes
     }
 
     /// The law with these parameters.
@@ -291,6 +302,18 @@ impl Hyperelastic {
     #[must_use]
     pub fn has_isochoric_part(&self) -> bool {
         self.0.has_isochoric_part()
+    }
+
+    /// True if the material has axes; stresses and tangents here are those in the axes of coordinates.
+    #[must_use]
+    pub fn has_axes(&self) -> bool {
+        self.0.has_axes()
+    }
+
+    /// The least and the largest shear modulus (Pa) at small strain.
+    #[must_use]
+    pub fn shear_moduli(&self) -> [f64; 2] {
+        self.0.shear_moduli()
     }
 
     /// The tangent that own blocks of nodes belong to.

@@ -126,5 +126,5 @@ pub use on::On;
 pub use problem::{LoadKind, LoadSpec, Problem, Rayleigh, Region};
 pub use report::{LoadFacts, ModelReport, MoveFacts, RegionFacts};
 pub use springs::NetworkModulus;
-pub use tissue::{Direction, FibreFamily, Memory, Moduli, Tissue, ViscousPart};
+pub use tissue::{Direction, FibreFamily, Memory, Moduli, Tissue, ViscousPart, are_parallel};
 pub use vector_error::{ForceError, SupportMotionError};

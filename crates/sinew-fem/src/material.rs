@@ -5,14 +5,14 @@ use std::sync::Arc;
 use sinew_core::Hash;
 use sinew_mesh::TetMesh;
 
-use crate::by_tet::{RegionByTet, UnitVectors};
+use crate::by_tet::{Axes, Frame, RegionByTet, UnitVectors};
 use crate::error::{Cause, FemError, Item};
 use crate::graph::Graph;
-use crate::hyperelastic::Hyperelastic;
+use crate::hyperelastic::{Hyperelastic, Tensor};
 use crate::large::{Compiled, RegionLaw};
 use crate::network::Network;
 use crate::shares::Shares;
-use crate::smoothing::SmoothedStrain;
+use crate::smoothing::{Average, SmoothedStrain};
 use crate::springs::Spring;
 use crate::tissue::{FibreFamily, Tissue};
 use crate::{Element, Law, Region, SpringRule, springs, stress, tetra};
@@ -40,6 +40,8 @@ enum Kind {
         /// The direction of each family of fibres in each tetrahedron of the mesh; `None` where all have that of
         /// `tissue`.
         directions: Vec<Option<UnitVectors>>,
+        /// The axes, where the law has some.
+        axes: Option<Axes>,
     },
     Springs {
         youngs_modulus: f64,
@@ -72,9 +74,12 @@ impl Material {
                 element: region.element,
             },
             Law::Hyperelastic { id, parameters } => {
-                let law = Hyperelastic::new(id, &parameters);
+                let law = Hyperelastic::new(id, &parameters)
+                    .map_err(|error| FemError::new(Item::Mesh, error.into()))?;
+                let of_coordinates = || law.has_axes().then_some(Axes::COORDINATES);
                 Kind::Hyperelastic {
-                    law: law.map_err(|error| FemError::new(Item::Mesh, error.into()))?,
+                    axes: by_tet.axes.clone().or_else(of_coordinates),
+                    law,
                     element: region.element,
                     tissue: region.tissue.clone(),
                     directions: by_tet.directions.clone(),
@@ -114,7 +119,9 @@ impl Material {
         let (compression, shear) = match &self.kind {
             Kind::Continuum { lame, .. } => p_wave_and_shear(*lame),
             Kind::Hyperelastic { law, tissue, .. } => {
-                let (compression, shear) = p_wave_and_shear(law.lame());
+                let (compression, mu) = p_wave_and_shear(law.lame());
+                let [shear, largest] = law.shear_moduli();
+                let compression = compression + 4.0 / 3.0 * (largest - mu);
                 let families = tissue.fibres.iter();
                 let along = families.map(|family| modulus_along(family, tissue));
                 (compression + along.sum::<f64>(), shear)
@@ -146,6 +153,7 @@ impl Material {
                 element,
                 tissue,
                 directions,
+                axes,
             } => {
                 let stated = RegionLaw {
                     mu: law.lame().1,
@@ -153,6 +161,7 @@ impl Material {
                     tissue,
                     shares: &self.shares,
                     directions,
+                    axes: axes.as_ref(),
                 };
                 Some((law.compiled(), stated))
             }
@@ -196,6 +205,30 @@ impl Material {
         [0.0, share * mu]
     }
 
+    /// Adds to the stiffness of [`Material::averaged_over_edge`] that by which a law with axes differs, of `share` of the
+    /// volume.
+    pub(crate) fn add_anisotropy_of_edge(
+        &self,
+        mesh: &TetMesh,
+        tets: &[u32],
+        (average, share): (&Average, f64),
+        matrix: &mut [f64],
+    ) {
+        if let (
+            Kind::Hyperelastic {
+                law,
+                axes: Some(axes),
+                ..
+            },
+            Some(first),
+        ) = (&self.kind, tets.first())
+        {
+            let share = share * self.element().edge_share() * self.share_of(mesh, tets);
+            let law = (law, axes.of(*first as usize));
+            add_anisotropy(matrix, (&average.gradients, share * average.volume), law);
+        }
+    }
+
     /// Lame's constants (Pa) that act on the mean strain of a patch of some tetrahedra.
     pub(crate) fn averaged_over_patch(&self, mesh: &TetMesh, tets: &[u32]) -> [f64; 2] {
         let (lambda, _) = self.lame().unwrap_or_default();
@@ -225,9 +258,20 @@ impl Material {
                 let vertices = tetra::vertices(points, *nodes);
                 let mut matrix = tetra::stiffness(&vertices, own_lambda, own_mu)?;
                 if let Kind::Hyperelastic {
-                    tissue, directions, ..
+                    law,
+                    tissue,
+                    directions,
+                    axes,
+                    ..
                 } = &self.kind
                 {
+                    if let Some(axes) = axes {
+                        let gradients = tetra::gradients(&vertices)?;
+                        let own = (1.0 - element.edge_share()) * share;
+                        let volume = own * tetra::signed_volume(&vertices);
+                        let law = (law, axes.of(tet));
+                        add_anisotropy(&mut matrix, (&gradients, volume), law);
+                    }
                     for (family, directions) in tissue.fibres.iter().zip(directions) {
                         let modulus = modulus_along(family, tissue);
                         let direction = match directions {
@@ -263,6 +307,10 @@ impl Material {
         match &self.kind {
             Kind::Continuum { .. } | Kind::Hyperelastic { .. } => {
                 let (lambda, mu) = self.lame().unwrap_or_default();
+                let mu = match &self.kind {
+                    Kind::Hyperelastic { law, .. } => law.shear_moduli()[1],
+                    _ => mu,
+                };
                 tetra::largest_frequency(vertices, [share * lambda, share * mu], density)
             }
             Kind::Springs {
@@ -306,10 +354,14 @@ impl Material {
         hash.add(format!("{:?}", self.kind).as_bytes());
         let mut add = |numbers: &[f64]| numbers.iter().for_each(|x| hash.add(&x.to_le_bytes()));
         add(self.shares.values());
-        if let Kind::Hyperelastic { directions, .. } = &self.kind {
+        if let Kind::Hyperelastic {
+            directions, axes, ..
+        } = &self.kind
+        {
             for all in directions.iter().flatten() {
                 add(all.as_flattened());
             }
+            axes.iter().for_each(|axes| add(axes.values()));
         }
     }
 }
@@ -334,6 +386,36 @@ fn add_fibres(
     for (row, of_row) in matrix.chunks_exact_mut(12).zip(rate) {
         for (entry, of_column) in row.iter_mut().zip(rate) {
             *entry += stiffness * of_row * of_column;
+        }
+    }
+}
+
+/// Adds the stiffness at rest, of a volume (m^3) with these gradients (1/m) of the shape functions, by which a law with
+/// axes differs from one with its constants (lambda, mu).
+fn add_anisotropy(
+    matrix: &mut [f64],
+    (gradients, volume): (&[[f64; 3]], f64),
+    (law, axes): (&Hyperelastic, Frame),
+) {
+    let (lambda, mu) = law.lame();
+    let axes = Tensor(axes);
+    let stress = |change: Tensor<f64>| {
+        let in_axes = (axes * change).times_transposed(axes);
+        let whole = axes.transposed_times(law.tangent(Tensor::zero(), in_axes) * axes);
+        let isotropic = Tensor::diagonal(lambda * change.trace());
+        whole - isotropic.plus(2.0 * mu, change.symmetric())
+    };
+    let columns = 3 * gradients.len();
+    for (b, gradient) in gradients.iter().enumerate() {
+        for k in 0..3 {
+            let mut moved = [0.0; 3];
+            moved[k] = volume;
+            let stress = stress(Tensor::outer(moved, *gradient));
+            for (a, gradient) in gradients.iter().enumerate() {
+                for (i, force) in stress.on(*gradient).into_iter().enumerate() {
+                    matrix[(3 * a + i) * columns + 3 * b + k] += force;
+                }
+            }
         }
     }
 }

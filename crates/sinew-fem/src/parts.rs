@@ -152,6 +152,10 @@ impl<'a> Parts<'a> {
         };
         average.over(self.mesh, members);
         average.stiffness(share, moduli, stiffness);
+        if let (Part::Edge(_), Some(first)) = (part, members.first()) {
+            let material = material(*first as usize);
+            material.add_anisotropy_of_edge(self.mesh, members, (average, share), stiffness);
+        }
     }
 }
 

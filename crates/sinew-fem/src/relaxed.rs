@@ -1,19 +1,35 @@
 //! Moduli of laws whose stress relaxes.
 
+use crate::element::Element;
 use crate::error::{Cause, FemError, Item};
 use crate::hyperelastic::{Hyperelastic, prony};
 use crate::law::Law;
-use crate::tissue::{Moduli, Tissue, ViscousPart};
+use crate::tissue::{Direction, Moduli, Tissue, ViscousPart};
 
 impl Tissue {
-    /// Refuses what does not go with a law.
-    pub(crate) fn check_with(&self, law: &Hyperelastic, item: Item) -> Result<(), FemError> {
+    /// Refuses additions that do not go with a law on an element.
+    pub(crate) fn check_with(
+        &self,
+        law: &Hyperelastic,
+        element: Element,
+        item: Item,
+    ) -> Result<(), FemError> {
         let part = self.memory.as_ref().map(|memory| memory.part);
         if part == Some(ViscousPart::Deviatoric) && !law.has_isochoric_part() {
             let cause = Cause::NoIsochoricPart { law: law.id() };
             return Err(FemError::new(item, cause));
         }
-        Ok(())
+        let Some(axes) = &self.axes else {
+            return Ok(());
+        };
+        let by_data = axes.iter().any(|axis| matches!(axis, Direction::Data(_)));
+        let (has_axes, law) = (law.has_axes(), law.id());
+        let cause = match has_axes {
+            false => Cause::NeedlessAxes { law },
+            true if by_data && element.edge_share() > 0.0 => Cause::AxesOnEdges { law },
+            true => return Ok(()),
+        };
+        Err(FemError::new(item, cause))
     }
 
     /// A law as it is stated with its instantaneous and with its long-term moduli; twice the same one if nothing relaxes.
@@ -50,12 +66,12 @@ mod tests {
         let term = |share, time| Term { share, time };
         let terms = vec![term(0.3, 0.05), term(0.2, 0.5)];
         Tissue {
-            fibres: Vec::new(),
             memory: Some(Memory {
                 terms,
                 part,
                 moduli,
             }),
+            ..Tissue::default()
         }
     }
 

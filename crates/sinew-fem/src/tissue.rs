@@ -2,6 +2,9 @@
 
 use std::fmt;
 
+use sinew_mesh::vector::cross;
+
+use crate::by_tet::Frame;
 use crate::error::{Cause, FemError, Item};
 use crate::hyperelastic::fibres::Fibres;
 use crate::hyperelastic::prony::{self, Term};
@@ -12,6 +15,9 @@ use crate::number::require_finite;
 pub struct Tissue {
     /// Families of fibres that stiffen it where they are stretched, up to [`Tissue::MOST_FAMILIES`].
     pub fibres: Vec<FibreFamily>,
+    /// The first two axes of a law that has some: the second is made perpendicular to the first, and the third is their
+    /// cross product. `None` for the axes of coordinates.
+    pub axes: Option<[Direction; 2]>,
     /// The part of its stress that relaxes.
     pub memory: Option<Memory>,
 }
@@ -83,8 +89,9 @@ impl Tissue {
 
     /// True if a direction is taken from the mesh's data.
     pub(crate) fn takes_data(&self) -> bool {
-        let mut families = self.fibres.iter();
-        families.any(|family| matches!(family.direction, Direction::Data(_)))
+        let families = self.fibres.iter().map(|family| &family.direction);
+        let mut directions = families.chain(self.axes.iter().flatten());
+        directions.any(|direction| matches!(direction, Direction::Data(_)))
     }
 
     /// Refuses numbers outside their ranges.
@@ -94,12 +101,15 @@ impl Tissue {
             return Err(FemError::new(item, Cause::Families { found, most }));
         }
         for family in &self.fibres {
-            if let Direction::Everywhere(direction) = &family.direction {
-                require_finite(item, "direction", direction)?;
-                if unit(*direction).is_none() {
-                    return Err(FemError::new(item, Cause::NoDirection));
-                }
-            }
+            family.direction.check("direction", item)?;
+        }
+        for axis in self.axes.iter().flatten() {
+            axis.check("axes", item)?;
+        }
+        if let Some([Direction::Everywhere(first), Direction::Everywhere(second)]) = &self.axes
+            && frame(*first, *second).is_none()
+        {
+            return Err(FemError::new(item, Cause::ParallelAxes));
         }
         if let Some(Memory { terms, .. }) = &self.memory {
             prony::check(terms).map_err(|error| FemError::new(item, Cause::Prony(error)))?;
@@ -142,6 +152,17 @@ impl FibreFamily {
 }
 
 impl Direction {
+    fn check(&self, quantity: &'static str, item: Item) -> Result<(), FemError> {
+        let Self::Everywhere(vector) = self else {
+            return Ok(());
+        };
+        require_finite(item, quantity, vector)?;
+        match unit(*vector) {
+            Some(_) => Ok(()),
+            None => Err(FemError::new(item, Cause::NoDirection { quantity })),
+        }
+    }
+
     /// The vector with length 1; 0 where data give it.
     pub(crate) fn unit(&self) -> [f64; 3] {
         match self {
@@ -161,6 +182,23 @@ pub(crate) fn unit(vector: [f64; 3]) -> Option<[f64; 3]> {
     let scaled = vector.map(|d| d / largest);
     let length = scaled.iter().map(|d| d * d).sum::<f64>().sqrt();
     Some(scaled.map(|d| d / length))
+}
+
+/// True if two vectors make no axes: they are parallel, or no directions.
+#[must_use]
+pub fn are_parallel(first: [f64; 3], second: [f64; 3]) -> bool {
+    frame(first, second).is_none()
+}
+
+/// Perpendicular unit vectors: along the first vector, along what is left of the second, and their cross product; `None`
+/// where the two are parallel, or not vectors.
+pub(crate) fn frame(first: [f64; 3], second: [f64; 3]) -> Option<Frame> {
+    let (first, second) = (unit(first)?, unit(second)?);
+    let along: f64 = first.iter().zip(second).map(|(a, b)| a * b).sum();
+    let rest = [0, 1, 2].map(|i| second[i] - along * first[i]);
+    let is_parallel = rest.iter().map(|d| d * d).sum::<f64>() < 1e-12;
+    let second = unit(rest).filter(|_| !is_parallel)?;
+    Some([first, second, cross(first, second)])
 }
 
 impl fmt::Display for FibreFamily {

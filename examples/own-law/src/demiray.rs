@@ -1,8 +1,7 @@
 //! The law of Demiray.
 
 use sinew_fem::hyperelastic::{
-    Bulk, Deformation, HyperelasticLaw, LawParameter, LawValues, NodeBlock, ParameterError, Point,
-    Range, Tensor,
+    Deformation, HyperelasticLaw, LawParameter, LawValues, ParameterError, Point, Range, Tensor,
 };
 use sinew_sparse::simd::Number;
 
@@ -33,7 +32,6 @@ impl HyperelasticLaw for Demiray {
         B,
     ];
     const DEFINED_WHEN_INVERTED: bool = false;
-    const NODE_BLOCK: NodeBlock = NodeBlock::Exact;
 
     /// `exp(b (I1 - 3))`.
     type Own<N: Number> = N;
@@ -83,21 +81,6 @@ impl HyperelasticLaw for Demiray {
             .plus(-over - twice * at.volume_change, at.cofactor_change(change))
             .plus(volume, at.cofactor);
         changed.scaled(N::of(self.mu))
-    }
-
-    /// `mu (exp (|g|^2 I + 2 b F g (F g)') + (1/J^2 - 2 b) c g (c g)') + modulus c g (c g)'`.
-    #[inline(always)]
-    fn node_block<N: Number>(&self, at: &Point<N, N>, bulk: Bulk<N>, g: [N; 3]) -> Tensor<N> {
-        let (mu, [x, y, z]) = (N::of(self.mu), g);
-        let (along, normal) = (at.gradient.on(g), at.cofactor.on(g));
-        let ratio = at.volume_ratio;
-        let of_volume = mu / (ratio * ratio) - N::of(2.0 * self.b) * mu + bulk.modulus;
-        Tensor::diagonal(mu * at.own * (x * x + y * y + z * z))
-            .plus(
-                mu * N::of(2.0 * self.b) * at.own,
-                Tensor::outer(along, along),
-            )
-            .plus(of_volume, Tensor::outer(normal, normal))
     }
 }
 

@@ -5,9 +5,8 @@ use std::fmt::Debug;
 use sinew_sparse::simd::Number;
 
 use super::deformation::Deformation;
-use super::law::{Bulk, HyperelasticLaw, NodeBlock, Point};
+use super::law::{HyperelasticLaw, Point};
 use super::parameters::{LawParameter, LawValues, ParameterError};
-use super::projection::semidefinite;
 use super::tensor::Tensor;
 
 /// A hyperelastic law of an isotropic material without a type of its own, such as one that a script states.
@@ -40,7 +39,7 @@ pub trait PointLaw: Debug + Send + Sync {
 pub struct Boxed<'a>(pub &'a dyn PointLaw);
 
 /// At most as many lanes as a vector has.
-const MOST_LANES: usize = 16;
+pub(super) const MOST_LANES: usize = 16;
 
 /// The tensor of a lane.
 fn lane_of<N: Number>(tensor: Tensor<N>, lane: usize) -> Tensor<f64> {
@@ -62,7 +61,6 @@ impl HyperelasticLaw for Boxed<'_> {
     const MEANING: &'static str = "is known at run time only";
     const PARAMETERS: &'static [LawParameter] = &[];
     const DEFINED_WHEN_INVERTED: bool = false;
-    const NODE_BLOCK: NodeBlock = NodeBlock::Majorant;
 
     type Own<N: Number> = ();
 
@@ -94,22 +92,5 @@ impl HyperelasticLaw for Boxed<'_> {
     fn tangent<N: Number>(&self, at: &Point<N, ()>, change: Tensor<N>) -> Tensor<N> {
         let h = at.displacement_gradient;
         by_lanes(|lane| self.0.tangent(lane_of(h, lane), lane_of(change, lane)))
-    }
-
-    /// The block of the local tangent with its negative eigenvalues put to 0, and that of the dilation.
-    #[inline(never)]
-    fn node_block<N: Number>(
-        &self,
-        at: &Point<N, ()>,
-        bulk: Bulk<N>,
-        gradient: [N; 3],
-    ) -> Tensor<N> {
-        let columns = Tensor::<N>::identity().0.map(|axis| {
-            let change = Tensor::outer(axis, gradient);
-            self.tangent(at, change).on(gradient)
-        });
-        let normal = at.cofactor.on(gradient);
-        let local = Tensor::from_columns(columns).symmetric();
-        semidefinite(local).plus(bulk.modulus, Tensor::outer(normal, normal))
     }
 }

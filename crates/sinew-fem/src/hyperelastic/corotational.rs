@@ -4,7 +4,7 @@ use sinew_sparse::simd::Number;
 
 use super::decomposition::rotation;
 use super::deformation::Deformation;
-use super::law::{Bulk, HyperelasticLaw, NodeBlock, Point};
+use super::law::{Bulk, HyperelasticLaw, Point};
 use super::parameters::{LawParameter, LawValues, ParameterError};
 use super::tensor::{Tensor, dot};
 
@@ -82,7 +82,6 @@ impl HyperelasticLaw for Corotational {
     const PARAMETERS: &'static [LawParameter] = LawParameter::MODULI;
     const OWN_DILATION: bool = true;
     const DEFINED_WHEN_INVERTED: bool = true;
-    const NODE_BLOCK: NodeBlock = NodeBlock::Majorant;
 
     type Own<N: Number> = Rotated<N>;
 

@@ -7,12 +7,13 @@ use sinew_sparse::simd::Number;
 
 use super::deformation::Deformation;
 use super::parameters::{LawParameter, LawValues, ParameterError, Parameters};
+use super::projection::semidefinite;
 use super::tensor::{Tensor, dot};
 
 /// Volume ratio J below which a law that is not defined for inverted elements is refused.
 pub const SMALLEST_VOLUME_RATIO: f64 = 1e-6;
 
-/// A hyperelastic law of an isotropic material.
+/// A hyperelastic law of a material that is alike in all directions, or has axes ([`Self::HAS_AXES`]).
 ///
 /// The energy density is `psi = psi_local(F) + lambda/2 theta(F)^2`: elements that do not lock average the dilation
 /// theta over patches of tetrahedra. So the local part has the whole shear modulus and the bulk modulus 2 mu/3 at small
@@ -42,7 +43,10 @@ pub trait HyperelasticLaw: Copy + Debug + Send + Sync {
     /// True if the local energy is an isochoric one, of F freed of volume change, and `mu/3 (J - 1)^2`.
     const HAS_ISOCHORIC_PART: bool = false;
     /// The tangent that its node blocks belong to.
-    const NODE_BLOCK: NodeBlock = NodeBlock::Exact;
+    const NODE_BLOCK: NodeBlock = NodeBlock::Majorant;
+    /// True if the material has axes: a region then states them, and loops give the law those of each tetrahedron
+    /// ([`Self::own_in`]).
+    const HAS_AXES: bool = false;
 
     /// Values cached per deformation gradient.
     type Own<N: Number>: Copy + Debug;
@@ -68,11 +72,24 @@ pub trait HyperelasticLaw: Copy + Debug + Send + Sync {
         Self::ID
     }
 
-    /// Lame's constants (lambda, mu) (Pa) at small strain.
+    /// Lame's constants (lambda, mu) (Pa) at small strain. Where the material has axes, mu is the mean of shear moduli
+    /// over all shears, and the bulk modulus `lambda + 2/3 mu` is exact; stiffness damping is that of these two.
     fn lame(&self) -> (f64, f64);
+
+    /// The least and the largest shear modulus (Pa) at small strain.
+    fn shear_moduli(&self) -> [f64; 2] {
+        [self.lame().1; 2]
+    }
 
     /// Computes the values that are cached per deformation gradient.
     fn own<N: Number>(&self, deformation: &Deformation<N>) -> Self::Own<N>;
+
+    /// [`Self::own`] in a material with these axes at rest, perpendicular unit vectors; [`Self::own`] is that of the
+    /// axes of coordinates.
+    #[inline(always)]
+    fn own_in<N: Number>(&self, deformation: &Deformation<N>, _axes: &Tensor<N>) -> Self::Own<N> {
+        self.own(deformation)
+    }
 
     /// The local energy density (J/m^3).
     fn energy<N: Number>(&self, at: &Point<N, Self::Own<N>>) -> N;
@@ -116,19 +133,41 @@ pub trait HyperelasticLaw: Copy + Debug + Send + Sync {
     }
 
     /// A node's own block by the gradient g of its shape function, for each m^3: `B_ik = g_J H_iJkL g_L`, of the local energy and `bulk`.
-    /// Symmetric and positive semidefinite in any state.
+    /// Symmetric and positive semidefinite in any state. As provided it is that of the tangent, the local part without its
+    /// negative eigenvalues; laws whose exact block is one at less cost override it.
+    #[inline(always)]
     fn node_block<N: Number>(
         &self,
         at: &Point<N, Self::Own<N>>,
         bulk: Bulk<N>,
         gradient: [N; 3],
-    ) -> Tensor<N>;
+    ) -> Tensor<N> {
+        let columns = Tensor::<N>::identity().0.map(|axis| {
+            let change = Tensor::outer(axis, gradient);
+            self.tangent(at, change).on(gradient)
+        });
+        let normal = self.dilation_gradient(at).on(gradient);
+        let local = Tensor::from_columns(columns).symmetric();
+        semidefinite(local).plus(bulk.modulus, Tensor::outer(normal, normal))
+    }
 
     /// The deformation with the values that the law caches for it.
     #[inline(always)]
     fn at<N: Number>(&self, displacement_gradient: Tensor<N>) -> Point<N, Self::Own<N>> {
         let deformation = Deformation::of(displacement_gradient);
         let own = self.own(&deformation);
+        Point { deformation, own }
+    }
+
+    /// [`Self::at`] in a material with these axes.
+    #[inline(always)]
+    fn at_in<N: Number>(
+        &self,
+        displacement_gradient: Tensor<N>,
+        axes: &Tensor<N>,
+    ) -> Point<N, Self::Own<N>> {
+        let deformation = Deformation::of(displacement_gradient);
+        let own = self.own_in(&deformation, axes);
         Point { deformation, own }
     }
 

@@ -3,7 +3,7 @@
 use sinew_sparse::simd::Number;
 
 use super::deformation::Deformation;
-use super::law::{Bulk, HyperelasticLaw, NodeBlock, Point, block_of};
+use super::law::{Bulk, HyperelasticLaw, Point, block_of};
 use super::parameters::{LawParameter, LawValues, ParameterError, Range};
 use super::tensor::Tensor;
 
@@ -103,7 +103,6 @@ impl HyperelasticLaw for MooneyRivlin {
     ];
     const DEFINED_WHEN_INVERTED: bool = false;
     const HAS_ISOCHORIC_PART: bool = true;
-    const NODE_BLOCK: NodeBlock = NodeBlock::Majorant;
 
     type Own<N: Number> = Isochoric<N>;
 

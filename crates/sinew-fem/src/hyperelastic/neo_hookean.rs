@@ -3,7 +3,7 @@
 use sinew_sparse::simd::Number;
 
 use super::deformation::Deformation;
-use super::law::{Bulk, HyperelasticLaw, Point, block_of};
+use super::law::{Bulk, HyperelasticLaw, NodeBlock, Point, block_of};
 use super::parameters::{LawParameter, LawValues, ParameterError};
 use super::tensor::Tensor;
 
@@ -25,6 +25,7 @@ impl HyperelasticLaw for NeoHookean {
     const MEANING: &'static str = "is the one to begin with";
     const PARAMETERS: &'static [LawParameter] = LawParameter::MODULI;
     const DEFINED_WHEN_INVERTED: bool = false;
+    const NODE_BLOCK: NodeBlock = NodeBlock::Exact;
 
     /// 1/J.
     type Own<N: Number> = N;

@@ -3,7 +3,7 @@
 use sinew_sparse::simd::Number;
 
 use super::deformation::Deformation;
-use super::law::{Bulk, HyperelasticLaw, NodeBlock, Point, block_of};
+use super::law::{Bulk, HyperelasticLaw, Point, block_of};
 use super::neo_hookean::NeoHookean;
 use super::parameters::{LawParameter, LawValues, ParameterError};
 use super::tensor::Tensor;
@@ -23,7 +23,6 @@ impl HyperelasticLaw for NeoHookeanLog {
     const PARAMETERS: &'static [LawParameter] = LawParameter::MODULI;
     const OWN_DILATION: bool = true;
     const DEFINED_WHEN_INVERTED: bool = false;
-    const NODE_BLOCK: NodeBlock = NodeBlock::Majorant;
 
     /// 1/J.
     type Own<N: Number> = N;

@@ -1,8 +1,10 @@
 //! Tangents by kind, and the projection that makes one positive semidefinite.
 
+use nalgebra::SMatrix;
 pub use sinew_core::TangentKind;
 use sinew_sparse::simd::Number;
 
+use super::boxed::MOST_LANES;
 use super::decomposition::SingularValues;
 use super::law::{Bulk, HyperelasticLaw, Point};
 use super::tensor::Tensor;
@@ -14,7 +16,7 @@ pub struct Linearised<'a, N: Number, L: HyperelasticLaw> {
     at: &'a Point<N, L::Own<N>>,
     bulk: Bulk<N>,
     /// `None` where the law's own form serves.
-    projection: Option<Projection<N>>,
+    projection: Option<Projected<N>>,
     is_exact: bool,
 }
 
@@ -28,7 +30,10 @@ impl<'a, N: Number, L: HyperelasticLaw> Linearised<'a, N, L> {
             law,
             at,
             bulk,
-            projection: Self::projects(law, kind).then(|| Projection::of(at.gradient, exact)),
+            projection: Self::projects(law, kind).then(|| match L::HAS_AXES {
+                false => Projected::Isotropic(Projection::of(at.gradient, exact)),
+                true => Projected::General(GeneralProjection::of(exact)),
+            }),
             is_exact: kind == TangentKind::Exact,
         }
     }
@@ -69,13 +74,63 @@ impl<'a, N: Number, L: HyperelasticLaw> Linearised<'a, N, L> {
     #[must_use]
     pub fn on(&self, change: Tensor<N>) -> Tensor<N> {
         if let Some(projection) = &self.projection {
-            return projection.on(change);
+            return match projection {
+                Projected::Isotropic(projection) => projection.on(change),
+                Projected::General(projection) => projection.on(change),
+            };
         }
         let frozen = match self.is_exact {
             true => None,
             false => self.law.frozen_tangent_with(self.at, self.bulk, change),
         };
         frozen.unwrap_or_else(|| self.law.tangent_with(self.at, self.bulk, change))
+    }
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Projected<N> {
+    Isotropic(Projection<N>),
+    General(GeneralProjection<N>),
+}
+
+/// The positive semidefinite tensor nearest to the tangent of any energy, by all nine eigenvalues.
+#[derive(Clone, Copy, Debug)]
+struct GeneralProjection<N>([Tensor<N>; 9]);
+
+impl<N: Number> GeneralProjection<N> {
+    #[inline(never)]
+    fn of(tangent: impl Fn(Tensor<N>) -> Tensor<N>) -> Self {
+        let mut rows = [Tensor::zero(); 9];
+        for (entry, row) in rows.iter_mut().enumerate() {
+            let mut unit = Tensor::zero();
+            unit.0[entry / 3][entry % 3] = N::of(1.0);
+            *row = tangent(unit);
+        }
+        let of_lane = |lane: usize| {
+            let matrix = SMatrix::<f64, 9, 9>::from_fn(|i, j| rows[i].0[j / 3][j % 3].lane(lane));
+            let mut eigen = (0.5 * (matrix + matrix.transpose())).symmetric_eigen();
+            eigen.eigenvalues.apply(|value| *value = value.max(0.0));
+            eigen.recompose()
+        };
+        let mut lanes = [SMatrix::<f64, 9, 9>::zeros(); MOST_LANES];
+        for (lane, matrix) in lanes.iter_mut().enumerate().take(N::LANES) {
+            *matrix = of_lane(lane);
+        }
+        for (i, row) in rows.iter_mut().enumerate() {
+            for (j, entry) in row.0.as_flattened_mut().iter_mut().enumerate() {
+                *entry = N::from_lanes(|lane| lanes[lane][(i, j)]);
+            }
+        }
+        Self(rows)
+    }
+
+    #[inline(always)]
+    fn on(&self, change: Tensor<N>) -> Tensor<N> {
+        let mut result = Tensor::zero();
+        for (entry, row) in result.0.as_flattened_mut().iter_mut().zip(&self.0) {
+            *entry = row.contracted(change);
+        }
+        result
     }
 }
 

@@ -3,7 +3,7 @@
 use sinew_sparse::simd::Number;
 
 use super::deformation::Deformation;
-use super::law::{Bulk, HyperelasticLaw, Point, block_of};
+use super::law::{Bulk, HyperelasticLaw, NodeBlock, Point, block_of};
 use super::parameters::{LawParameter, LawValues, ParameterError};
 use super::tensor::Tensor;
 
@@ -26,6 +26,7 @@ impl HyperelasticLaw for StableNeoHookean {
     const MEANING: &'static str = "also has a meaning where tetrahedra turn inside out";
     const PARAMETERS: &'static [LawParameter] = LawParameter::MODULI;
     const DEFINED_WHEN_INVERTED: bool = true;
+    const NODE_BLOCK: NodeBlock = NodeBlock::Exact;
 
     type Own<N: Number> = ();
 

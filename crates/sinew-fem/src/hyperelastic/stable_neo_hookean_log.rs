@@ -3,7 +3,7 @@
 use sinew_sparse::simd::Number;
 
 use super::deformation::Deformation;
-use super::law::{Bulk, HyperelasticLaw, Point, block_of};
+use super::law::{Bulk, HyperelasticLaw, NodeBlock, Point, block_of};
 use super::parameters::{LawParameter, LawValues, ParameterError};
 use super::tensor::Tensor;
 
@@ -40,6 +40,7 @@ impl HyperelasticLaw for StableNeoHookeanLog {
     const MEANING: &'static str = "is there for comparison with other programs";
     const PARAMETERS: &'static [LawParameter] = LawParameter::MODULI;
     const DEFINED_WHEN_INVERTED: bool = true;
+    const NODE_BLOCK: NodeBlock = NodeBlock::Exact;
 
     /// `1/(I1 + 1)`.
     type Own<N: Number> = N;

@@ -3,7 +3,7 @@
 use sinew_sparse::simd::Number;
 
 use super::deformation::Deformation;
-use super::law::{Bulk, HyperelasticLaw, NodeBlock, Point};
+use super::law::{Bulk, HyperelasticLaw, Point};
 use super::parameters::{LawParameter, LawValues, ParameterError};
 use super::tensor::{Tensor, dot};
 
@@ -28,7 +28,6 @@ impl HyperelasticLaw for Stvk {
     ]);
     const OWN_DILATION: bool = true;
     const DEFINED_WHEN_INVERTED: bool = true;
-    const NODE_BLOCK: NodeBlock = NodeBlock::Majorant;
 
     /// `2E`.
     type Own<N: Number> = Tensor<N>;

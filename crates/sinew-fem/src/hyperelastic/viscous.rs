@@ -3,7 +3,7 @@
 use sinew_sparse::simd::Number;
 
 use super::deformation::Deformation;
-use super::law::{Bulk, HyperelasticLaw, Point};
+use super::law::{Bulk, HyperelasticLaw, NodeBlock, Point};
 use super::parameters::{LawParameter, LawValues, ParameterError};
 use super::tensor::{Tensor, dot};
 
@@ -46,6 +46,7 @@ impl<L: HyperelasticLaw> HyperelasticLaw for Viscous<L> {
     const PARAMETERS: &'static [LawParameter] = L::PARAMETERS;
     const OWN_DILATION: bool = L::OWN_DILATION;
     const DEFINED_WHEN_INVERTED: bool = L::DEFINED_WHEN_INVERTED;
+    const NODE_BLOCK: NodeBlock = NodeBlock::Exact;
 
     type Own<N: Number> = L::Own<N>;
 
@@ -163,11 +164,6 @@ impl HyperelasticLaw for OfVolume {
 
     #[inline(always)]
     fn tangent<N: Number>(&self, _: &Point<N, ()>, _: Tensor<N>) -> Tensor<N> {
-        Tensor::zero()
-    }
-
-    #[inline(always)]
-    fn node_block<N: Number>(&self, _: &Point<N, ()>, _: Bulk<N>, _: [N; 3]) -> Tensor<N> {
         Tensor::zero()
     }
 }

@@ -3,7 +3,7 @@
 use sinew_sparse::simd::Number;
 
 use super::deformation::Deformation;
-use super::law::{Bulk, HyperelasticLaw, NodeBlock, Point, block_of};
+use super::law::{Bulk, HyperelasticLaw, Point, block_of};
 use super::mooney_rivlin::Isochoric;
 use super::parameters::{LawParameter, LawValues, ParameterError, Range};
 use super::tensor::Tensor;
@@ -70,7 +70,6 @@ impl HyperelasticLaw for Yeoh {
     };
     const DEFINED_WHEN_INVERTED: bool = false;
     const HAS_ISOCHORIC_PART: bool = true;
-    const NODE_BLOCK: NodeBlock = NodeBlock::Majorant;
 
     type Own<N: Number> = Isochoric<N>;
 

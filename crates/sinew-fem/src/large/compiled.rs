@@ -28,6 +28,11 @@ pub(crate) trait Compiled: Debug + Send + Sync {
 
     fn has_isochoric_part(&self) -> bool;
 
+    fn has_axes(&self) -> bool;
+
+    /// The least and the largest shear modulus (Pa) at small strain.
+    fn shear_moduli(&self) -> [f64; 2];
+
     /// The tangent that own blocks of nodes belong to.
     fn node_block_kind(&self) -> NodeBlock;
 
@@ -106,6 +111,14 @@ impl<T: Typed> Compiled for T {
 
     fn has_isochoric_part(&self) -> bool {
         <T::Law<'_> as HyperelasticLaw>::HAS_ISOCHORIC_PART
+    }
+
+    fn has_axes(&self) -> bool {
+        <T::Law<'_> as HyperelasticLaw>::HAS_AXES
+    }
+
+    fn shear_moduli(&self) -> [f64; 2] {
+        self.law().shear_moduli()
     }
 
     fn node_block_kind(&self) -> NodeBlock {

@@ -2,6 +2,7 @@
 
 use sinew_core::{AssemblyError, BlockMatrix, ElementStiffness, EvaluationError};
 
+use super::axes::point;
 use super::beside::TangentBeside;
 use super::means::{at_edges, means, require, take_dilation};
 use super::memory::Relaxing;
@@ -53,7 +54,8 @@ impl OnLaw for Tangents<'_, '_> {
         };
         if !region.is_smoothed() {
             for tet in rest.tets() {
-                let at = law.at(rest.gradient_of::<f64>(tet, &scratch.displacement));
+                let gradient = rest.gradient_of::<f64>(tet, &scratch.displacement);
+                let at = point(&law, gradient, region.axes.as_ref(), tet);
                 require(&law, region, &relaxing, &at.deformation, tet)?;
                 let left = left_of_tets(region, &relaxing, &law, &at, tet);
                 let own = OwnTangent::of(&law, &at, left, kind);
@@ -65,7 +67,7 @@ impl OnLaw for Tangents<'_, '_> {
         }
         means::<f64, L>(region, scratch, &law, &relaxing, false)?;
         for tet in rest.tets() {
-            let at = law.at(scratch.gradient(tet));
+            let at = point(&law, scratch.gradient(tet), region.axes.as_ref(), tet);
             let [dilation, _] = scratch.dilations[region.patch_of[tet] as usize];
             let left = left_of_smoothed(region, &relaxing, &law, &at, (tet, dilation));
             let own = OwnTangent::of(&law, &at, left, kind);

@@ -3,6 +3,7 @@
 use sinew_core::EvaluationError;
 use sinew_sparse::simd::Number;
 
+use super::axes::{point, point_at_edges};
 use super::chunks::LANES;
 use super::defined::{require_fibres, require_law, require_memory};
 use super::kept::{Rows, load, store};
@@ -27,7 +28,7 @@ pub(super) fn means<N: Number<Real = f64>, L: HyperelasticLaw>(
         let side_by_side = first..first + N::LANES;
         let gradient = rest.gradient_of::<N>(first, &scratch.displacement);
         store(gradient, &mut scratch.gradients[side_by_side.clone()]);
-        let at = law.at(gradient);
+        let at = point(law, gradient, region.axes.as_ref(), first);
         require(law, region, relaxing, &at.deformation, first)?;
         let [dilations, changes] = &mut scratch.dilations_of_tets;
         let volume = rest.volumes::<N>(first);
@@ -65,7 +66,8 @@ pub(super) fn at_edges<N: Number<Real = f64>, L: HyperelasticLaw>(
     gradients: &[Rows<f64>],
     relaxing: &Relaxing<'_>,
 ) -> Result<Point<N, L::Own<N>>, EvaluationError> {
-    let at = law.at(mean_at_edges::<N>(region, first, gradients));
+    let gradient = mean_at_edges::<N>(region, first, gradients);
+    let at = point_at_edges(law, gradient, region.axes.as_ref());
     let tag = |lane: usize| {
         let tets = region.edges.of(region.edge_at(first + lane));
         tets.first().map_or(0, |tet| region.rest.tag(*tet as usize))

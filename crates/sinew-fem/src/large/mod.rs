@@ -1,5 +1,6 @@
 //! Regions of hyperelastic tetrahedra: their forces, energy and tangent at any displacement.
 
+mod axes;
 mod beside;
 mod chunks;
 mod compiled;
@@ -394,6 +395,7 @@ mod tests {
             tissue,
             shares: &shares,
             directions: &vec![is_uneven.then(|| directions.into()); tissue.fibres.len()],
+            axes: None,
         };
         let regions = std::iter::once((law.compiled(), region, tets.as_slice()));
         LargeDeformation::new(mesh, &smoothing, regions).unwrap()

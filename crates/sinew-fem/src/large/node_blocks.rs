@@ -3,6 +3,7 @@
 use sinew_core::EvaluationError;
 use sinew_sparse::simd::{InstructionSet, Number, Vectors, WithReal};
 
+use super::axes::point;
 use super::beside::{block_beside, carried_block};
 use super::chunks::LANES;
 use super::kept::{load, store};
@@ -84,7 +85,7 @@ impl<L: HyperelasticLaw, const ALL: bool> WithReal<f64> for Sweep<'_, '_, L, ALL
             } else {
                 rest.gradient_of::<N>(first, &scratch.displacement)
             };
-            let at = law.at(gradient);
+            let at = point(law, gradient, region.axes.as_ref(), first);
             let left = if is_smoothed {
                 let patch = |lane: usize| region.patch_of[first + lane] as usize;
                 let dilation = N::from_lanes(|lane| scratch.dilations[patch(lane)][0]);

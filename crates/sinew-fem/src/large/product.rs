@@ -3,6 +3,7 @@
 use sinew_core::{EvaluationError, TangentKind};
 use sinew_sparse::simd::{InstructionSet, Number, Vectors, WithReal};
 
+use super::axes::point;
 use super::beside::TangentBeside;
 use super::chunks::LANES;
 use super::kept::{load, store};
@@ -128,7 +129,7 @@ impl<'a, L: HyperelasticLaw, const ALL: bool> Sweep<'a, L, ALL> {
                     rest.gradient_of(first, &scratch.change),
                 )
             };
-            let at = law.at(gradient);
+            let at = point(&law, gradient, region.axes.as_ref(), first);
             let mut dilation_change = N::of(0.0);
             let left = if is_smoothed {
                 let patch = |lane: usize| region.patch_of[first + lane] as usize;

@@ -5,12 +5,13 @@ use std::sync::{Arc, OnceLock};
 use sinew_mesh::TetMesh;
 use sinew_sparse::simd::{Number, Real};
 
+use super::axes::RegionAxes;
 use super::chunks::{Chunk, LANES, Slot};
 use super::fibres::{Directions, RegionFibres};
 use super::memory::RegionMemory;
 use super::rest::Rest;
 use super::stiffness::Stiffness;
-use crate::by_tet::UnitVectors;
+use crate::by_tet::{Axes, UnitVectors};
 use crate::hyperelastic::Tensor;
 use crate::shares::Shares;
 use crate::smoothing::{Average, Sets, Smoothing};
@@ -29,6 +30,8 @@ pub(crate) struct RegionLaw<'a> {
     /// The direction of each family of fibres in each tetrahedron of the mesh; `None` where all have that of the
     /// tissue.
     pub(crate) directions: &'a [Option<UnitVectors>],
+    /// The material's axes, where its law has some.
+    pub(crate) axes: Option<&'a Axes>,
 }
 
 /// A region of hyperelastic tetrahedra, with its own numbering.
@@ -38,6 +41,8 @@ pub(crate) struct HyperelasticRegion {
     stiffness: Option<Arc<Stiffness>>,
     /// Families of fibres.
     pub(super) fibres: Vec<RegionFibres>,
+    /// The material's axes, where its law has some.
+    pub(super) axes: Option<RegionAxes>,
     pub(super) memory: Option<RegionMemory>,
     pub(super) rest: Arc<Rest>,
     /// Place of its first tetrahedron among those of all such regions.
@@ -75,6 +80,7 @@ impl HyperelasticRegion {
             tissue,
             shares,
             directions,
+            axes,
         }: RegionLaw<'_>,
         (slots, chunks): (&[Slot], Vec<Chunk>),
         (first, kept): (usize, FirstPlaces),
@@ -122,6 +128,7 @@ impl HyperelasticRegion {
                     .map(|(family, all)| RegionFibres::new(family, factor, slots, all.as_deref()));
                 made.collect()
             },
+            axes: axes.map(|axes| RegionAxes::new(axes, slots)),
             memory: tissue.memory.as_ref().map(|memory| {
                 let points = [rest.count(), edge_volumes.len()];
                 RegionMemory::new(memory, mu, kept.variables, points)
@@ -152,6 +159,7 @@ impl HyperelasticRegion {
                 let families = self.fibres.iter();
                 families.map(|family| family.directions.clone()).collect()
             },
+            axes: self.axes.clone(),
         }
     }
 
@@ -266,6 +274,8 @@ pub(super) struct Numbers<T> {
     pub(super) stiffness: Option<Arc<Stiffness<T>>>,
     /// The directions of each family of fibres.
     pub(super) directions: Vec<Directions<T>>,
+    /// The material's axes, where its law has some.
+    pub(super) axes: Option<RegionAxes<T>>,
 }
 
 impl Numbers<f64> {
@@ -278,6 +288,7 @@ impl Numbers<f64> {
             patch_volumes: rounded(&self.patch_volumes),
             stiffness: self.stiffness.as_ref().map(|own| Arc::new(own.rounded())),
             directions: self.directions.iter().map(Directions::rounded).collect(),
+            axes: self.axes.as_ref().map(RegionAxes::rounded),
         }
     }
 }

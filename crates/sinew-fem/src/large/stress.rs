@@ -1,5 +1,6 @@
 //! Stresses of deformed tetrahedra.
 
+use super::axes::{point, point_at_edges};
 use super::memory::{Points, Relaxing};
 use super::product::{left_of_smoothed, left_of_tets};
 use super::region::HyperelasticRegion;
@@ -26,7 +27,7 @@ impl Cauchy<'_> {
         } = self;
         let rest = &region.rest;
         let gradient = |tet: usize| rest.gradient_by(tet, displacement);
-        let at = law.at(gradient(tet));
+        let at = point(&law, gradient(tet), region.axes.as_ref(), tet);
         let is_possible = |at: &Point<f64, L::Own<f64>>| {
             law.admits(&at.deformation) && relaxing.admits(&at.deformation)
         };
@@ -47,7 +48,8 @@ impl Cauchy<'_> {
         let mut stress = stress_at(&at, left);
         for edge in region.edges_of.get(tet).into_iter().flatten() {
             let edge = *edge as usize;
-            let at = law.at(region.mean_tensor(region.edges.of(edge), gradient));
+            let gradient = region.mean_tensor(region.edges.of(edge), gradient);
+            let at = point_at_edges(&law, gradient, region.axes.as_ref());
             is_defined &= is_possible(&at);
             let stiffness = region.stiffness_at_edges::<f64>(edge);
             let left = relaxing.left_of(stiffness, Bulk::none(), law.dilation(&at));

@@ -174,6 +174,18 @@ impl<'a> Table<'a> {
         Ok(tables)
     }
 
+    /// The tables of the list that a key of any kind holds.
+    pub(crate) fn tables_of(
+        &self,
+        key: &'static str,
+        description: &'static TableDescription,
+    ) -> Result<Vec<Table<'a>>, SceneError> {
+        match self.given(key) {
+            Some(value) => self.items(key, value, description),
+            None => Ok(Vec::new()),
+        }
+    }
+
     /// The table that a key holds, or the tables of its list; none where it is left out.
     pub(crate) fn table_or_list<P>(
         &self,

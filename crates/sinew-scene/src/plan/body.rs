@@ -1,6 +1,7 @@
 //! Sections about the body: mesh, materials, supports, loads, initial state and probes.
 
 use sinew_core::Ramp;
+use sinew_fem::hyperelastic::Orthotropic;
 use sinew_fem::{
     Course, FibreFamily, FromMesh, Law, LoadFacts, LoadKind, LoadSpec, ModelReport, Region,
     RegionFacts,
@@ -172,6 +173,7 @@ fn material(region: &Region, facts: &RegionFacts) -> Vec<String> {
             region.element, facts.patches
         ));
     }
+    lines.extend(axes(region));
     lines.extend(region.tissue.fibres.iter().map(FibreFamily::to_string));
     lines.extend(memory(region, facts));
     lines.extend(facts.network.map(|network| {
@@ -184,6 +186,32 @@ fn material(region: &Region, facts: &RegionFacts) -> Vec<String> {
         )
     }));
     lines
+}
+
+/// The axes of a law that has some, and its constants along them.
+fn axes(region: &Region) -> Vec<String> {
+    let Some(constants) = region.law.orthotropic() else {
+        return Vec::new();
+    };
+    let first = match &region.tissue.axes {
+        Some([first, second]) => format!("axes by {first} and {second}"),
+        None => "axes of coordinates".to_owned(),
+    };
+    let three = |numbers: [f64; 3]| numbers.map(short).join(", ");
+    let Orthotropic {
+        youngs_moduli,
+        shear_moduli,
+        poissons_ratios,
+    } = constants;
+    vec![
+        first,
+        format!(
+            "at rest along them: E = {} Pa, G12, G23, G31 = {} Pa, nu12, nu23, nu31 = {}",
+            three(youngs_moduli),
+            three(shear_moduli),
+            three(poissons_ratios)
+        ),
+    ]
 }
 
 /// The least and the largest value of what may differ from tetrahedron to tetrahedron.

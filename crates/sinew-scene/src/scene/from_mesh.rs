@@ -65,6 +65,12 @@ impl<V: Values> Values for OrData<V> {
     }
 }
 
+/// The names of the data in a list of tables.
+pub(super) fn names(table: &Table<'_>, key: &'static str) -> Result<Vec<String>, SceneError> {
+    let tables = table.tables_of(key, &DATA)?;
+    tables.iter().map(|data| data.read(&NAME)).collect()
+}
+
 /// The value of a key, or the name of the data in its place.
 pub(super) fn read<V: Values>(
     table: &Table<'_>,

@@ -36,7 +36,7 @@ pub(super) const LINEAR_MODEL: &str = "linear";
 pub(super) const MODEL: Key<ModelName> = Key::required(
     "model",
     "`\"linear\"`: an isotropic elastic solid at small strain and rotation. `\"springs\"`: springs along the edges of the mesh. \
-     All others are isotropic solids at any strain and rotation: ",
+     All others are solids at any strain and rotation, isotropic but those that have axes: ",
     ModelName,
 );
 
@@ -106,6 +106,7 @@ fn has(law: &KnownLaw, parameter: &LawParameter) -> bool {
 struct Models {
     laws: Vec<&'static str>,
     isochoric: Vec<&'static str>,
+    with_axes: Vec<&'static str>,
     solids: Vec<&'static str>,
     by_modulus: Vec<&'static str>,
     by_ratio: Vec<&'static str>,
@@ -164,6 +165,7 @@ impl Models {
         Self {
             laws: those(&[], &|_| true),
             isochoric: those(&[], &KnownLaw::has_isochoric_part),
+            with_axes: those(&[], &KnownLaw::has_axes),
             solids: those(&[LINEAR_MODEL], &|_| true),
             by_modulus: those(&[SPRINGS_MODEL, LINEAR_MODEL], &|law| {
                 has(law, &LawParameter::YOUNGS_MODULUS)
@@ -186,6 +188,11 @@ pub(super) fn laws() -> &'static [&'static str] {
 /// The laws that have an isochoric part.
 pub(super) fn isochoric() -> &'static [&'static str] {
     &Models::known().isochoric
+}
+
+/// The laws whose material has axes.
+pub(super) fn with_axes() -> &'static [&'static str] {
+    &Models::known().with_axes
 }
 
 /// The models that are solids.
@@ -240,7 +247,11 @@ fn examples(law: &'static KnownLaw) -> Vec<&'static str> {
         });
         let lines: String = lines.collect();
         let model = law.id();
-        let region = format!("[[region]]\ndensity = 1060.0\nmodel = \"{model}\"\n{lines}");
+        let axes = match law.has_axes() {
+            true => "axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]\n",
+            false => "",
+        };
+        let region = format!("[[region]]\ndensity = 1060.0\nmodel = \"{model}\"\n{lines}{axes}");
         &*region.leak()
     };
     (0..choices.max().unwrap_or(1)).map(region).collect()

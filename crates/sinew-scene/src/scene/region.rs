@@ -9,7 +9,7 @@ use super::from_mesh::{self, OrData};
 use super::group_name::GroupName;
 use super::model::{self, LawKeys, MODEL, MaterialModel, SPRINGS_MODEL};
 use super::selected::{Members, NOT_WHERE, OPTIONAL_GROUP, Selections, WHERE_OF_TETRAHEDRA};
-use super::tissue::{self, FIBRES_OF_REGION, MODULI, PRONY, VISCOUS_PART};
+use super::tissue::{self, AXES, FIBRES_OF_REGION, MODULI, PRONY, VISCOUS_PART};
 use crate::decode::{
     Condition, Count, Flag, Inner, Key, Needs, Number, Optional, Or, Place, Table,
     TableDescription, Words,
@@ -31,6 +31,7 @@ pub(super) const REGION: TableDescription = TableDescription {
         &ELEMENT,
         &EDGE_SHARE,
         &PATCH,
+        &AXES,
         &FIBRES_OF_REGION,
         &PRONY,
         &VISCOUS_PART,

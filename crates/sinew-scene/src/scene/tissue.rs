@@ -2,16 +2,20 @@
 
 use std::ops::Bound;
 
+use sinew_fem::are_parallel;
 use sinew_fem::hyperelastic::KnownLaw;
 use sinew_fem::hyperelastic::fibres::{Fibres, Stiffening};
 use sinew_fem::hyperelastic::prony::Term;
 use sinew_fem::{Direction, FibreFamily, Memory, Moduli, Tissue, ViscousPart};
 
+use toml::de::DeValue;
+
 use super::from_mesh::{self, Given, OrData};
-use super::model::{MODEL, alternatives, isochoric, laws};
+use super::model::{MODEL, alternatives, isochoric, laws, with_axes};
+use crate::decode::value::{Misfit, list};
 use crate::decode::{
-    Condition, Flag, Inner, Key, Needs, Number, Optional, Or, Pairs, Table, TableDescription,
-    Vector, Words,
+    Condition, Flag, Inner, Key, Kind, Needs, Number, Optional, Or, Pairs, Shape, Table,
+    TableDescription, Values, Vector, Words,
 };
 use crate::error::{Fault, SceneError};
 
@@ -32,6 +36,72 @@ pub(super) const FIBRES_OF_REGION: Key<Inner, Optional> = Key::optional(
 /// The model must be a law of large deformation.
 const fn of_large_deformation(reason: &'static str) -> Condition {
     Condition::among(MODEL.name, laws, reason)
+}
+
+pub(super) const AXES: Key<TwoDirections> = Key::required(
+    "axes",
+    "The first two axes of the material at rest: two directions, whose lengths do not matter. The second is made perpendicular to the first, and the \
+     third is their cross product. Data have three numbers for each tetrahedron, as the direction of fibres.",
+    TwoDirections,
+)
+.only(&[Condition::among(
+    MODEL.name,
+    with_axes,
+    "goes with laws that have axes only; this one is alike in all directions",
+)]);
+
+/// Two directions, each the same for all tetrahedra of a region or the name of data.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct TwoDirections;
+
+impl Kind for TwoDirections {
+    fn expected(&self) -> String {
+        "two directions that are not parallel, [[x, y, z], [x, y, z]], or [{ data = \"name\" }, { data = \"name\" }]".to_owned()
+    }
+
+    fn shape(&self) -> Shape {
+        Shape::List {
+            of: Box::new(DIRECTION.values.shape()),
+            least: 2,
+            most: Some(2),
+        }
+    }
+}
+
+impl Values for TwoDirections {
+    /// `None` for two tables.
+    type Read = Option<[[f64; 3]; 2]>;
+
+    fn read(&self, value: &DeValue<'_>) -> Result<Self::Read, Misfit> {
+        let DeValue::Array(items) = value else {
+            return Err(Misfit::Type);
+        };
+        if items.len() == 2
+            && items
+                .iter()
+                .all(|item| matches!(item.get_ref(), DeValue::Table(_)))
+        {
+            return Ok(None);
+        }
+        let vectors = list(value, |item| DIRECTION.values.0.read(item))?;
+        let [first, second] = vectors[..] else {
+            return Err(Misfit::Value);
+        };
+        match are_parallel(first, second) {
+            true => Err(Misfit::Value),
+            false => Ok(Some([first, second])),
+        }
+    }
+}
+
+fn axes(region: &Table<'_>) -> Result<[Direction; 2], SceneError> {
+    if let Some(vectors) = region.read(&AXES)? {
+        return Ok(vectors.map(Direction::Everywhere));
+    }
+    let names = from_mesh::names(region, AXES.name)?;
+    let names: Result<[String; 2], _> = names.try_into();
+    let names = names.map_err(|_| region.value_misfit(AXES.name, &AXES.values.expected()))?;
+    Ok(names.map(Direction::Data))
 }
 
 const FIBRES: TableDescription = TableDescription {
@@ -156,6 +226,7 @@ pub(super) fn read(region: &Table<'_>, law: &KnownLaw) -> Result<Tissue, SceneEr
     }
     Ok(Tissue {
         fibres: tables.iter().map(fibre_family).collect::<Result<_, _>>()?,
+        axes: law.has_axes().then(|| axes(region)).transpose()?,
         memory: memory(region, law)?,
     })
 }

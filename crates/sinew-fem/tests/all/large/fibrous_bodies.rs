@@ -268,7 +268,12 @@ fn fibres_without_a_direction_or_beside_another_law_are_refused() {
     let fibres = Fibres::new(QUADRATIC).unwrap();
     let refused = |problem: &Problem| Model::build(&mesh, problem).unwrap_err().cause().clone();
     let none = with_fibres("neo-hookean", fibres, [0.0; 3]);
-    assert_eq!(refused(&none), Cause::NoDirection);
+    assert_eq!(
+        refused(&none),
+        Cause::NoDirection {
+            quantity: "direction"
+        }
+    );
     let mut linear = with_fibres("neo-hookean", fibres, [1.0; 3]);
     linear.regions[0].law = crate::common::linear(3500.0, 0.45);
     assert_eq!(refused(&linear), Cause::TissueOfSmallStrain);

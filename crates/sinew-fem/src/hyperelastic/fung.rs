@@ -1,0 +1,314 @@
+//! The law of Fung, of a material with three axes.
+
+use nalgebra::Matrix3;
+use sinew_sparse::simd::Number;
+
+use super::deformation::Deformation;
+use super::law::{HyperelasticLaw, Point};
+use super::parameters::{LawParameter, LawValues, ParameterError, Range};
+use super::tensor::Tensor;
+
+/// `psi = c/2 (exp Q - 1) + kappa/2 (J - 1)^2`, with `Q = b11 E11^2 + b22 E22^2 + b33 E33^2 + 2 (b12 E11 E22 + b23 E22 E33
+/// + b31 E33 E11) + 2 (g12 E12^2 + g23 E23^2 + g31 E31^2)` of `E = (J^-2/3 C - I)/2` in the material's axes.
+///
+/// Fung, Fronek and Patitucci (American Journal of Physiology 237, 1979) and Chuong and Fung (Journal of Biomechanical
+/// Engineering 105, 1983), with all shears; the strain without change of volume after Flory (Transactions of the Faraday
+/// Society 57, 1961).
+///
+/// For arteries, skin and the wall of the heart, whose stiffness differs along three directions and grows exponentially
+/// with the strain. Not where elements may invert: refused at J <= 0. The form must be positive definite on strains that
+/// keep the volume, which makes the law stable at rest; far from rest it need not be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fung {
+    lambda: f64,
+    mu: f64,
+    shear_moduli: [f64; 2],
+    /// c/2 (Pa).
+    half: f64,
+    /// The form on E11, E22 and E33, symmetric.
+    normal: [[f64; 3]; 3],
+    /// g12, g23, g31.
+    shear: [f64; 3],
+}
+
+const C: LawParameter = LawParameter::number(
+    "c",
+    "c",
+    "The modulus c of c/2 (exp(Q) - 1), with Q a form in Green's strain E, freed of volume change, in the axes of the material.",
+    Range::above_zero("a finite modulus above 0 Pa"),
+    &[40000.0],
+)
+.unit("Pa");
+
+const B: LawParameter = LawParameter::number(
+    "b",
+    "b",
+    "The form Q = b11 E11^2 + b22 E22^2 + b33 E33^2 + 2 (b12 E11 E22 + b23 E22 E33 + b31 E33 E11) + 2 (g12 E12^2 + g23 E23^2 \
+     + g31 E31^2), as [b11, b22, b33, b12, b23, b31, g12, g23, g31]. At rest c/2 times it is the energy.",
+    Range::finite("a finite number"),
+    &[0.06, 0.045, 0.03, 0.006, 0.003, 0.009, 0.024, 0.018, 0.021],
+)
+.list(9, 9);
+
+/// The deformation as [`Fung`] needs it.
+#[derive(Clone, Copy, Debug)]
+pub struct Strained<N> {
+    /// The material's axes, by rows.
+    axes: Tensor<N>,
+    /// `J^-2/3`.
+    scale: N,
+    /// `1/J`.
+    over: N,
+    /// dQ/dE in the axes.
+    slope: Tensor<N>,
+    /// Q.
+    exponent: N,
+    /// `c/2 exp Q` (Pa).
+    grown: N,
+    /// `c/2 exp Q dQ/dE` in the axes of coordinates (Pa).
+    stress: Tensor<N>,
+    /// F'F.
+    squared: Tensor<N>,
+    /// The stress contracted with F'F, over 3 J (Pa).
+    pressure: N,
+}
+
+impl Fung {
+    /// dQ/dE of a strain in the axes.
+    #[inline(always)]
+    fn form<N: Number>(&self, strain: Tensor<N>) -> Tensor<N> {
+        let [[xx, xy, xz], [_, yy, yz], [.., zz]] = strain.0;
+        let twice = |numbers: [f64; 3]| numbers.map(|b| N::of(2.0 * b));
+        let row = |row: usize| {
+            let [x, y, z] = twice(self.normal[row]);
+            x.mul_add(xx, y.mul_add(yy, z * zz))
+        };
+        let [g12, g23, g31] = twice(self.shear);
+        let (xy, yz, zx) = (g12 * xy, g23 * yz, g31 * xz);
+        Tensor([[row(0), xy, zx], [xy, row(1), yz], [zx, yz, row(2)]])
+    }
+
+    /// Second derivative (Pa) of the local energy of volume, `mu/3 (J - 1)^2`.
+    #[inline(always)]
+    fn of_volume<N: Number>(&self) -> N {
+        N::of(2.0 / 3.0 * self.mu)
+    }
+
+    /// Eigenvalues of c/2 Q on strains that keep the volume, over their squares: the shear moduli (Pa) at small strain.
+    fn moduli(half: f64, normal: [[f64; 3]; 3], shear: [f64; 3]) -> [f64; 5] {
+        let normal = Matrix3::from_fn(|i, j| normal[i][j]);
+        let keeping = Matrix3::identity() - Matrix3::repeat(1.0 / 3.0);
+        let mut own: Vec<f64> = (keeping * normal * keeping)
+            .symmetric_eigenvalues()
+            .iter()
+            .copied()
+            .collect();
+        // One belongs to the change of volume, which is 0.
+        own.sort_by(|a, b| a.abs().total_cmp(&b.abs()));
+        let [_, first, second] = [own[0], own[1], own[2]];
+        let [x, y, z] = shear;
+        [first, second, x, y, z].map(|value| half * value)
+    }
+}
+
+impl HyperelasticLaw for Fung {
+    const ID: &'static str = "fung";
+    const MEANING: &'static str = "stiffens exponentially, differently along three axes";
+    const PARAMETERS: &'static [LawParameter] = &[C, B, LawParameter::BULK_MODULUS];
+    const DEFINED_WHEN_INVERTED: bool = false;
+    const HAS_ISOCHORIC_PART: bool = true;
+    const HAS_AXES: bool = true;
+
+    type Own<N: Number> = Strained<N>;
+
+    fn from_values(values: &LawValues<'_>) -> Result<Self, ParameterError> {
+        let [b11, b22, b33, b12, b23, b31, g12, g23, g31] = *values.numbers(&B) else {
+            return Err(B.refused(f64::NAN, "nine numbers"));
+        };
+        let half = 0.5 * values.number(&C);
+        let normal = [[b11, b12, b31], [b12, b22, b23], [b31, b23, b33]];
+        let shear = [g12, g23, g31];
+        let moduli = Self::moduli(half, normal, shear);
+        let least = moduli.into_iter().fold(f64::INFINITY, f64::min);
+        let largest = moduli.into_iter().fold(0.0, f64::max);
+        if least <= 1e-12 * largest {
+            let expected = "a form above 0 for every strain that keeps the volume, and this is its least value: enlarge b11, \
+                            b22, b33, or the g that is not above 0";
+            return Err(B.refused(least / half, expected));
+        }
+        let mu = moduli.iter().sum::<f64>() / 5.0;
+        Ok(Self {
+            lambda: values.lambda(mu)?,
+            mu,
+            shear_moduli: [least, largest],
+            half,
+            normal,
+            shear,
+        })
+    }
+
+    fn lame(&self) -> (f64, f64) {
+        (self.lambda, self.mu)
+    }
+
+    fn shear_moduli(&self) -> [f64; 2] {
+        self.shear_moduli
+    }
+
+    #[inline(always)]
+    fn own<N: Number>(&self, deformation: &Deformation<N>) -> Strained<N> {
+        self.own_in(deformation, &Tensor::identity())
+    }
+
+    #[inline(always)]
+    fn own_in<N: Number>(&self, deformation: &Deformation<N>, axes: &Tensor<N>) -> Strained<N> {
+        let volume = deformation.volume_change;
+        // `J^-2/3 - 1` without a difference of large numbers.
+        let shrink = (N::of(-2.0 / 3.0) * volume.ln_1p()).exp_m1();
+        let scale = shrink + N::of(1.0);
+        let half = N::of(0.5);
+        let twice_green = deformation.twice_green_strain();
+        let strain = Tensor::diagonal(half * shrink).plus(half * scale, twice_green);
+        let strain = (*axes * strain).times_transposed(*axes);
+        let slope = self.form(strain);
+        let exponent = half * slope.contracted(strain);
+        let grown = N::of(self.half) * exponent.exp();
+        let stress = axes.transposed_times(slope * *axes).scaled(grown);
+        let squared = twice_green + Tensor::identity();
+        let over = deformation.volume_ratio.recip();
+        Strained {
+            axes: *axes,
+            scale,
+            over,
+            slope,
+            exponent,
+            grown,
+            stress,
+            squared,
+            pressure: N::of(1.0 / 3.0) * over * stress.contracted(squared),
+        }
+    }
+
+    #[inline(always)]
+    fn energy<N: Number>(&self, at: &Point<N, Strained<N>>) -> N {
+        let volume = at.volume_change;
+        let local = N::of(self.half) * at.own.exponent.exp_m1();
+        (N::of(0.5) * self.of_volume::<N>() * volume).mul_add(volume, local)
+    }
+
+    /// `J^-2/3 (F S - (S : F'F)/(3 J) c) + 2/3 mu (J - 1) c` with `S = c/2 exp Q dQ/dE`.
+    #[inline(always)]
+    fn stress<N: Number>(&self, at: &Point<N, Strained<N>>) -> Tensor<N> {
+        let own = &at.own;
+        (at.gradient * own.stress)
+            .plus(-own.pressure, at.cofactor)
+            .scaled(own.scale)
+            .plus(self.of_volume::<N>() * at.volume_change, at.cofactor)
+    }
+
+    #[inline(always)]
+    fn tangent<N: Number>(&self, at: &Point<N, Strained<N>>, change: Tensor<N>) -> Tensor<N> {
+        let (own, f, c) = (&at.own, at.gradient, at.cofactor);
+        let volume = c.contracted(change);
+        // d(J^-2/3)/J^-2/3.
+        let relative = volume * own.over;
+        let shrink = N::of(-2.0 / 3.0) * relative;
+        let one_side = f.transposed_times(change);
+        let squared = one_side + one_side.transposed();
+        let strain = squared
+            .plus(shrink, own.squared)
+            .scaled(N::of(0.5) * own.scale);
+        let in_axes = (own.axes * strain).times_transposed(own.axes);
+        let exponent = own.slope.contracted(in_axes);
+        let slope = self.form(in_axes).scaled(own.grown);
+        let stress = own
+            .axes
+            .transposed_times(slope * own.axes)
+            .plus(exponent, own.stress);
+        let work = stress.contracted(own.squared) + own.stress.contracted(squared);
+        let pressure = N::of(1.0 / 3.0) * own.over * work - own.pressure * relative;
+        let turned = at.cofactor_change(change);
+        let isochoric = (f * own.stress).plus(-own.pressure, c);
+        let changed = (change * own.stress) + (f * stress);
+        let bulk = self.of_volume::<N>();
+        changed
+            .plus(shrink, isochoric)
+            .plus(-pressure, c)
+            .plus(-own.pressure, turned)
+            .scaled(own.scale)
+            .plus(bulk * volume, c)
+            .plus(bulk * at.volume_change, turned)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hyperelastic::{Parameters, conformance, sample_deformations};
+
+    /// Unlike along all axes.
+    const FORM: [f64; 9] = [0.06, 0.045, 0.03, 0.006, -0.003, 0.009, 0.024, 0.018, 0.021];
+
+    fn of(b: &[f64], bulk: f64) -> Result<Fung, ParameterError> {
+        Fung::new(
+            &Parameters::default()
+                .with("c", &[40000.0])
+                .with("b", b)
+                .with("bulk_modulus", &[bulk]),
+        )
+    }
+
+    #[test]
+    fn the_suite_holds() {
+        conformance::check(of(&FORM, 3e4).unwrap());
+    }
+
+    /// Axes turned with the material give the energy, stress and tangent of the axes of coordinates, turned.
+    #[test]
+    fn other_axes_are_a_turned_material() {
+        let law = of(&FORM, 3e4).unwrap();
+        let axes = Tensor([[0.6, 0.0, 0.8], [0.0, -1.0, 0.0], [0.8, 0.0, -0.6]]);
+        for [h, change] in sample_deformations::<Fung>() {
+            let at = law.at_in(h, &axes);
+            let to = |tensor: Tensor<f64>| (axes * tensor).times_transposed(axes);
+            let turned = law.at(to(h));
+            let size = 1.0 + law.stress(&at).largest();
+            assert!((law.energy(&at) - law.energy(&turned)).abs() < 1e-11 * size);
+            let stress = to(law.stress(&at)) - law.stress(&turned);
+            assert!(stress.largest() < 1e-11 * size);
+            let found = law.tangent(&at, change);
+            let difference = to(found) - law.tangent(&turned, to(change));
+            assert!(difference.largest() < 1e-11 * (size + found.largest()));
+        }
+    }
+
+    /// A form that is alike in all directions: `Q = a (tr E)^2 + g E:E`, whose shear modulus at rest is `c g/2`.
+    #[test]
+    fn a_form_alike_in_all_directions_knows_no_axes() {
+        let (a, g) = (0.02, 0.05);
+        let law = of(&[a + g, a + g, a + g, a, a, a, g, g, g], 3e4).unwrap();
+        assert!((law.lame().1 / (0.5 * 40000.0 * g) - 1.0).abs() < 1e-14);
+        let axes = Tensor([[0.6, 0.0, 0.8], [0.0, -1.0, 0.0], [0.8, 0.0, -0.6]]);
+        for [h, _] in sample_deformations::<Fung>() {
+            let [one, other] = [law.stress(&law.at(h)), law.stress(&law.at_in(h, &axes))];
+            assert!((one - other).largest() < 1e-12 * (1.0 + one.largest()));
+        }
+        conformance::turning_the_material_changes_nothing(law);
+    }
+
+    #[test]
+    fn forms_that_are_not_positive_on_shears_are_refused_with_their_least_value() {
+        let said = |b: &[f64]| of(b, 3e4).unwrap_err().to_string();
+        let mut no_shear = FORM;
+        no_shear[7] = 0.0;
+        assert!(said(&no_shear).starts_with("b = 0: expected a form above 0 for every strain"));
+        let mut negative = FORM;
+        negative[6] = -0.1;
+        assert!(said(&negative).starts_with("b = -0.1"));
+        // Positive on single strains, not on E11 = -E22.
+        assert!(said(&[1.0, 1.0, 1.0, 2.0, 0.0, 0.0, 1.0, 1.0, 1.0]).starts_with("b = -"));
+        assert!(said(&FORM[..8]).contains("b has 8 numbers"));
+        // A change of volume alone may have a form of any sign: the bulk modulus has that part.
+        assert!(of(&[0.1, 0.1, 0.1, -0.2, -0.2, -0.2, 1.0, 1.0, 1.0], 3e4).is_ok());
+    }
+}
