@@ -173,7 +173,7 @@ fn material(region: &Region, facts: &RegionFacts) -> Vec<String> {
             region.element, facts.patches
         ));
     }
-    lines.extend(axes(region));
+    lines.extend(material_axes(region));
     lines.extend(region.tissue.fibres.iter().map(FibreFamily::to_string));
     lines.extend(memory(region, facts));
     lines.extend(facts.network.map(|network| {
@@ -189,7 +189,7 @@ fn material(region: &Region, facts: &RegionFacts) -> Vec<String> {
 }
 
 /// The axes of a law that has some, and its constants along them.
-fn axes(region: &Region) -> Vec<String> {
+fn material_axes(region: &Region) -> Vec<String> {
     let Some(constants) = region.law.orthotropic() else {
         return Vec::new();
     };
