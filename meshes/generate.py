@@ -453,6 +453,45 @@ def muscle():
     add_data("along", lambda x, y, z: np.divide([0.06**2 - x**2, -x * y, -x * z], 0.06**2 - x**2))
 
 
+@in_collection(
+    "artery",
+    "fibres of two families: a ring of the media of a carotid artery, inner radius 0.71 mm, wall 0.26 mm, 0.39 mm long",
+    np.pi * (0.97**2 - 0.71**2) * 0.39 * 1e-3,
+    lambda mesh: no_node_is_doubled(mesh) and mesh.has_data(left=3, right=3),
+)
+def artery(around=32, through=3, along=4, angle=29):
+    """A grid of hexahedra in polar coordinates, six tetrahedra each; `angle` is that of the fibres to the circumference, in degrees."""
+    ring, layer, height = np.indices((around, through + 1, along + 1)).reshape(3, -1)
+    turn, radius = 2 * np.pi * ring / around, 0.71 + 0.26 * layer / through
+    nodes = MM * np.column_stack([radius * np.cos(turn), radius * np.sin(turn), 0.39 * height / along])
+    paths = np.eye(3, dtype=int)[[[0, 1, 2], [1, 2, 0], [2, 0, 1], [0, 2, 1], [2, 1, 0], [1, 0, 2]]]
+    steps = np.concatenate([np.zeros((6, 1, 3), int), paths.cumsum(axis=1)], axis=1)
+    first = np.column_stack([ring, layer, height])
+    first = first[(layer < through) & (height < along)][:, None, None]
+    corners = (first + (steps ^ (first % 2))).reshape(-1, 4, 3)
+    corners[..., 0] %= around
+    tets = corners @ [(through + 1) * (along + 1), along + 1, 1]
+    inverted = volumes(nodes, tets) < 0
+    tets[inverted] = tets[inverted][:, [0, 2, 1, 3]]
+
+    def faces_where(axis, *places):
+        faces = tets[:, OUTWARD_FACES].reshape(-1, 3)
+        grid = np.column_stack([ring, layer, height])[:, axis]
+        return 1 + faces[np.any([(grid[faces] == place).all(axis=1) for place in places], axis=0)]
+
+    add_cells("media", 1 + tets, nodes)
+    add_cells("inner", faces_where(1, 0))
+    add_cells("outer", faces_where(1, through))
+    add_cells("ends", faces_where(2, 0, along))
+
+    def at(side):
+        rise = np.tan(np.radians(angle))
+        return lambda x, y, z: np.divide([-y, x, side * rise * np.hypot(x, y)], np.hypot(x, y))
+
+    add_data("left", at(1))
+    add_data("right", at(-1))
+
+
 @in_collection("paper-cube-mirrored", "the paper's cube with neighbouring cells mirrored: no preferred direction", 8000)
 def paper_cube_mirrored(cells=10, edge=0.2):
     """Node (i, j, k) has the tag 1 + i + 11 (j + 11 k); cell (i, j, k) is reflected in x, y, z where i, j, k is odd."""

@@ -465,7 +465,10 @@ mod tests {
                 let expected = format!("the law `{}` needs", law.id);
                 assert!(needed.starts_with(&expected), "{needed}");
                 assert!(needed.contains(parameter.name), "{needed}");
-                let wrong = parameters.clone().with(parameter.name, &[f64::NAN]);
+                let least = parameter.list.map_or(1, |(least, _)| least);
+                let wrong = parameters
+                    .clone()
+                    .with(parameter.name, &vec![f64::NAN; least]);
                 let said = said(law.id, &wrong);
                 assert!(
                     said.starts_with(&format!("{} = NaN: expected", parameter.name)),

@@ -415,6 +415,14 @@ impl<'a> LawValues<'a> {
     }
 }
 
+/// A number of numbers, or the least and the largest.
+fn count([least, most]: [usize; 2]) -> String {
+    match least == most {
+        true => least.to_string(),
+        false => format!("{least} to {most}"),
+    }
+}
+
 /// A parameter that a law cannot have.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum ParameterError {
@@ -429,7 +437,7 @@ pub enum ParameterError {
         expected: &'static str,
     },
     /// A list that is too short or too long.
-    #[error("{quantity} has {found} numbers: expected {} to {}", expected[0], expected[1])]
+    #[error("{quantity} has {found} numbers: expected {}", count(*expected))]
     Length {
         /// The parameter.
         quantity: &'static str,

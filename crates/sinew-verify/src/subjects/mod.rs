@@ -1,6 +1,7 @@
 //! The subjects of the verification, one file each.
 
 mod affine;
+mod axes;
 mod bent_beam;
 mod bonded_block;
 mod cantilever;
@@ -47,6 +48,7 @@ pub(super) const SUBJECTS: &[Subject] = &[
     springs::SUBJECT,
     hyperelastic::SUBJECT,
     fibres::SUBJECT,
+    axes::SUBJECT,
     memory::SUBJECT,
     hanging_bar::SUBJECT,
     bonded_block::SUBJECT,

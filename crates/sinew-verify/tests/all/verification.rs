@@ -21,7 +21,7 @@ fn run(only: &[&str]) -> Verification {
 
 /// Subjects of which every row is computed here; the others take long without optimisation, and `cargo xtask ci`
 /// computes them.
-const QUICK: [&str; 18] = [
+const QUICK: [&str; 19] = [
     "uniform-strain",
     "cook",
     "free-cube",
@@ -33,6 +33,7 @@ const QUICK: [&str; 18] = [
     "springs",
     "hyperelastic",
     "fibres",
+    "axes",
     "memory",
     "hanging-bar",
     "bent-beam",
