@@ -57,6 +57,11 @@ const READY: &[Ready] = &[
         file: Some(("muscle.msh", file!("muscle.msh"))),
     },
     Ready {
+        name: "artery",
+        scene: scene!("artery.toml"),
+        file: Some(("artery.msh", file!("artery.msh"))),
+    },
+    Ready {
         name: "creep",
         scene: scene!("creep.toml"),
         file: None,
