@@ -27,5 +27,6 @@ mod ramps;
 #[cfg(feature = "implicit")]
 mod ready_scenes;
 mod simulations;
+mod tissues;
 mod tools;
 mod warnings;
