@@ -36,7 +36,7 @@ const C: LawParameter = LawParameter::number(
     "c",
     "The modulus c of c/2 (exp(Q) - 1), with Q a form in Green's strain E, freed of volume change, in the axes of the material.",
     Range::above_zero("a finite modulus above 0 Pa"),
-    &[40000.0],
+    &[80000.0],
 )
 .unit("Pa");
 
@@ -47,7 +47,7 @@ const B: LawParameter = LawParameter::number(
     "The form Q = b11 E11^2 + b22 E22^2 + b33 E33^2 + 2 (b12 E11 E22 + b23 E22 E33 + b31 E33 E11) + 2 (g12 E12^2 + g23 E23^2 \
      + g31 E31^2), as [b11, b22, b33, b12, b23, b31, g12, g23, g31]. At rest c/2 times it is the energy.",
     Range::finite("a finite number"),
-    &[0.04, 0.04, 0.04, 0.01, 0.01, 0.01, 0.03, 0.03, 0.03],
+    &[0.02, 0.02, 0.02, 0.005, 0.005, 0.005, 0.015, 0.015, 0.015],
 )
 .list(9, 9);
 
