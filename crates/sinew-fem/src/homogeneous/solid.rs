@@ -1,0 +1,110 @@
+//! A material at a point.
+
+use super::error::HomogeneousError;
+use crate::hyperelastic::fibres::Fibres;
+use crate::hyperelastic::{Deformation, Hyperelastic, LawError, SMALLEST_VOLUME_RATIO, Tensor};
+use crate::tetra;
+use crate::{Law, Region};
+
+/// The material of a region at a point, by its moduli as they are stated: instantaneous or long-term ones where stress relaxes.
+#[derive(Clone, Debug)]
+pub struct Solid {
+    matrix: Matrix,
+    fibres: Vec<(Fibres, [f64; 3])>,
+}
+
+/// The material without its fibres.
+#[derive(Clone, Debug)]
+enum Matrix {
+    /// Lame's constants (Pa) of small strain.
+    Linear {
+        lambda: f64,
+        mu: f64,
+    },
+    Large(Hyperelastic),
+}
+
+impl Solid {
+    /// The material of a region. Of properties that the mesh's data give, this takes what stands in the region in their place.
+    ///
+    /// # Errors
+    ///
+    /// [`HomogeneousError`] for springs, and for a law that cannot have its parameters.
+    pub fn of(region: &Region) -> Result<Self, HomogeneousError> {
+        let matrix = match &region.law {
+            Law::Springs { .. } => return Err(HomogeneousError::Springs),
+            Law::Linear {
+                youngs_modulus,
+                poissons_ratio,
+            } => {
+                let (lambda, mu) = tetra::lame(*youngs_modulus, *poissons_ratio);
+                Matrix::Linear { lambda, mu }
+            }
+            Law::Hyperelastic { id, parameters } => {
+                let law: Result<_, LawError> = Hyperelastic::new(id, parameters);
+                Matrix::Large(law?)
+            }
+        };
+        let families = region.tissue.fibres.iter();
+        let fibres = families
+            .map(|family| (family.fibres, family.unit_direction()))
+            .collect();
+        Ok(Self { matrix, fibres })
+    }
+
+    /// True if it is of small strain, where nominal stress and Cauchy stress are the same.
+    #[must_use]
+    pub fn is_linear(&self) -> bool {
+        matches!(self.matrix, Matrix::Linear { .. })
+    }
+
+    /// True if its stress depends on the direction of the pull.
+    #[must_use]
+    pub fn has_fibres(&self) -> bool {
+        !self.fibres.is_empty()
+    }
+
+    /// Lame's constants (lambda, mu) (Pa) at rest, without fibres.
+    #[must_use]
+    pub fn lame(&self) -> (f64, f64) {
+        match &self.matrix {
+            Matrix::Linear { lambda, mu } => (*lambda, *mu),
+            Matrix::Large(law) => law.lame(),
+        }
+    }
+
+    /// First Piola-Kirchhoff stress (Pa) by the gradient of the displacement; `None` where the law is not defined.
+    pub(super) fn stress(&self, h: Tensor<f64>) -> Option<Tensor<f64>> {
+        let deformation = Deformation::of(h);
+        let isotropic = match &self.matrix {
+            Matrix::Linear { lambda, mu } => isotropic(h, *lambda, *mu),
+            Matrix::Large(_) if deformation.volume_ratio <= SMALLEST_VOLUME_RATIO => return None,
+            Matrix::Large(law) => law.stress(h),
+        };
+        let stress = self.fibres.iter().fold(isotropic, |sum, (fibres, along)| {
+            sum + fibres.stress(&fibres.at(&deformation, *along))
+        });
+        is_finite(stress).then_some(stress)
+    }
+
+    /// Change of [`Self::stress`] by a change of F.
+    pub(super) fn tangent(&self, h: Tensor<f64>, change: Tensor<f64>) -> Tensor<f64> {
+        let isotropic = match &self.matrix {
+            Matrix::Linear { lambda, mu } => isotropic(change, *lambda, *mu),
+            Matrix::Large(law) => law.tangent(h, change),
+        };
+        let deformation = Deformation::of(h);
+        self.fibres.iter().fold(isotropic, |sum, (fibres, along)| {
+            sum + fibres.tangent(&fibres.at(&deformation, *along), change)
+        })
+    }
+}
+
+/// `lambda tr(eps) I + 2 mu eps`, eps being the symmetric part.
+fn isotropic(h: Tensor<f64>, lambda: f64, mu: f64) -> Tensor<f64> {
+    Tensor::diagonal(lambda * h.trace()).plus(2.0 * mu, h.symmetric())
+}
+
+fn is_finite(tensor: Tensor<f64>) -> bool {
+    tensor.0.iter().flatten().all(|entry| entry.is_finite())
+}
