@@ -23,9 +23,16 @@ impl Plot {
     pub fn svg(&self) -> String {
         draw(self)
     }
+
+    /// Height of the whole picture (px).
+    #[must_use]
+    pub fn full_height(&self) -> f64 {
+        laid_out(self).0.height
+    }
 }
 
-fn draw(plot: &Plot) -> String {
+/// The places of everything, where each series leaves the frame, and the legend's entries besides the series.
+fn laid_out(plot: &Plot) -> (Layout, Vec<Option<(f64, f64)>>, &'static [&'static str]) {
     // Where series leave does not depend on the legend.
     let plain = Layout::of(plot, &[]);
     let exits: Vec<Option<(f64, f64)>> = plot.series.iter().map(|s| plain.exit(s)).collect();
@@ -33,7 +40,11 @@ fn draw(plot: &Plot) -> String {
         true => &[LEAVES],
         false => &[],
     };
-    let layout = Layout::of(plot, leaves);
+    (Layout::of(plot, leaves), exits, leaves)
+}
+
+fn draw(plot: &Plot) -> String {
+    let (layout, exits, leaves) = laid_out(plot);
     let places = layout.places(plot);
     let mut svg = Svg::new(plot.width, layout.height, &described(plot));
     svg.text(

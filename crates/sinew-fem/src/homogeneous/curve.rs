@@ -39,22 +39,15 @@ pub struct LoadState {
     pub is_stable: bool,
 }
 
-/// An end of the stable range about rest.
+/// An end of the stable range about rest, and what else happens on that side.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct End {
-    /// The last stable state, if the curve goes on beyond it.
-    pub limit: Option<Limit>,
+    /// The last stable amount, if the curve goes on beyond it.
+    pub limit: Option<f64>,
+    /// The amount beyond which the size of the nominal stress falls, if it does. A law that is stable may have it: a bar pulled by a force then necks.
+    pub falls_from: Option<f64>,
     /// The amount beyond which no equilibrium was found, if the curve stops before the amount asked for.
     pub lost: Option<f64>,
-}
-
-/// The last stable state.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Limit {
-    /// Its amount.
-    pub amount: f64,
-    /// The amount from which on the size of the nominal stress falls beyond it, if it does.
-    pub falls_from: Option<f64>,
 }
 
 /// Halvings of the way to the next state before the curve ends.
@@ -120,19 +113,13 @@ impl Loaded<'_> {
                 break;
             };
             if end.limit.is_none() && !state.is_stable {
-                let amount = self.limit(&last, (amount, &free));
-                end.limit = Some(Limit {
-                    amount,
-                    falls_from: None,
-                });
+                end.limit = Some(self.limit(&last, (amount, &free)));
             }
             state.is_stable = end.limit.is_none();
             states.push(state);
             before = Some(std::mem::replace(&mut last, (amount, free)));
         }
-        if let Some(limit) = &mut end.limit {
-            limit.falls_from = falls_from(&states, limit.amount);
-        }
+        end.falls_from = falls_from(&states);
         Branch { states, end }
     }
 
@@ -208,21 +195,32 @@ impl Loaded<'_> {
     }
 }
 
-/// The amount from which on the size of the nominal stress falls, beyond the limit.
-fn falls_from(states: &[LoadState], limit: f64) -> Option<f64> {
-    let is_beyond = |pair: &&[LoadState]| {
+/// A fall of the stress over its size that is no rounding.
+const FALL: f64 = 1e-9;
+
+/// The amount beyond which the size of the nominal stress falls for the first time: the vertex of a parabola through three states.
+fn falls_from(states: &[LoadState]) -> Option<f64> {
+    let falls = |pair: &[LoadState]| {
         let way = pair[1].amount - pair[0].amount;
-        (pair[1].amount - limit) * way > 0.0
+        let fall = (pair[0].nominal - pair[1].nominal) * way.signum();
+        fall > FALL * pair[0].nominal.abs()
     };
-    let falls = |pair: &&[LoadState]| {
-        let way = pair[1].amount - pair[0].amount;
-        (pair[1].nominal - pair[0].nominal) * way < 0.0
+    let first = states.windows(2).position(falls)?;
+    let Some([a, b, c]) = first
+        .checked_sub(1)
+        .and_then(|from| states.get(from..from + 3))
+    else {
+        return Some(states[first].amount);
     };
-    let pair = states.windows(2).filter(is_beyond).find(falls)?;
-    // Between samples, the state before is the last that is known not to fall.
-    let from = pair[0].amount;
-    let is_within = (from - limit) * (pair[1].amount - from) < 0.0;
-    Some(if is_within { limit } else { from })
+    let (before, after) = (b.amount - a.amount, c.amount - b.amount);
+    let [rise, fall] = [
+        (b.nominal - a.nominal) / before,
+        (c.nominal - b.nominal) / after,
+    ];
+    // The slope is that of each stretch at its middle.
+    let share = rise / (rise - fall);
+    let middle = a.amount + 0.5 * before;
+    Some(middle + share * 0.5 * (before + after))
 }
 
 impl Curve {
@@ -232,7 +230,7 @@ impl Curve {
         let first = self.states.first().map(|state| state.amount);
         let last = self.states.last().map(|state| state.amount);
         let rest = self.load.rest();
-        let [low, high] = self.ends.map(|end| end.limit.map(|limit| limit.amount));
+        let [low, high] = self.ends.map(|end| end.limit);
         [low.or(first).unwrap_or(rest), high.or(last).unwrap_or(rest)]
     }
 

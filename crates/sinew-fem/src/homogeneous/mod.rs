@@ -31,7 +31,7 @@ mod solid;
 mod stability;
 
 pub use axes::Axes;
-pub use curve::{Curve, End, Limit, LoadState};
+pub use curve::{Curve, End, LoadState};
 pub use error::HomogeneousError;
 pub use load::Load;
 pub use solid::Solid;
