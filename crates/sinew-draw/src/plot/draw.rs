@@ -31,11 +31,14 @@ impl Plot {
     }
 }
 
+/// The place where each series leaves the frame, in shares of it, if it does.
+type Exits = Vec<Option<(f64, f64)>>;
+
 /// The places of everything, where each series leaves the frame, and the legend's entries besides the series.
-fn laid_out(plot: &Plot) -> (Layout, Vec<Option<(f64, f64)>>, &'static [&'static str]) {
+fn laid_out(plot: &Plot) -> (Layout, Exits, &'static [&'static str]) {
     // Where series leave does not depend on the legend.
     let plain = Layout::of(plot, &[]);
-    let exits: Vec<Option<(f64, f64)>> = plot.series.iter().map(|s| plain.exit(s)).collect();
+    let exits: Exits = plot.series.iter().map(|s| plain.exit(s)).collect();
     let leaves: &[&str] = match exits.iter().any(Option::is_some) {
         true => &[LEAVES],
         false => &[],

@@ -37,7 +37,7 @@ impl Axes {
     }
 
     /// A tensor given in these axes, in those of the mesh.
-    pub(super) fn to_mesh(&self, entries: [[f64; 3]; 3]) -> Tensor<f64> {
+    pub(super) fn in_mesh(&self, entries: [[f64; 3]; 3]) -> Tensor<f64> {
         let axes = Tensor::from_columns(self.0);
         (axes * Tensor(entries)).times_transposed(axes)
     }
@@ -76,10 +76,10 @@ mod tests {
     fn tensors_go_to_other_axes_and_back() {
         let axes = Axes::along([1.0, 2.0, -0.5]).unwrap();
         let entries = [[1.0, 2.0, 3.0], [-4.0, 5.0, 6.0], [7.0, 8.0, -9.0]];
-        let again = axes.of_mesh(axes.to_mesh(entries));
+        let again = axes.of_mesh(axes.in_mesh(entries));
         assert!((Tensor(again) - Tensor(entries)).largest() < 1e-14);
         let [first, ..] = axes.vectors();
-        let along = axes.to_mesh([[2.0, 0.0, 0.0], [0.0; 3], [0.0; 3]]);
+        let along = axes.in_mesh([[2.0, 0.0, 0.0], [0.0; 3], [0.0; 3]]);
         assert!((along - Tensor::outer(first, first).scaled(2.0)).largest() < 1e-15);
     }
 

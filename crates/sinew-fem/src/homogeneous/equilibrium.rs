@@ -28,7 +28,7 @@ impl Loaded<'_> {
         for ((row, column), value) in self.load.free().iter().zip(free.iter()) {
             h[*row][*column] = *value;
         }
-        self.axes.to_mesh(h)
+        self.axes.in_mesh(h)
     }
 
     /// Free strains at rest.
@@ -52,7 +52,7 @@ impl Loaded<'_> {
         for (place, (row, column)) in free.iter().enumerate() {
             let mut change = [[0.0; 3]; 3];
             change[*row][*column] = 1.0;
-            let change = self.axes.to_mesh(change);
+            let change = self.axes.in_mesh(change);
             let stress = self.axes.of_mesh(self.solid.tangent(h, change));
             for (of, (row, column)) in free.iter().enumerate() {
                 slopes[(of, place)] = stress[*row][*column];

@@ -29,11 +29,7 @@ pub fn picture_of_law(region: &RegionCurves, measured: Option<&Measured>) -> Str
     ];
     let mut lines = vec![moduli(region)];
     lines.extend(region.notes.iter().map(|note| note.replace('`', "")));
-    let is_whole = |curve: &&Curve| {
-        let ends = curve.ends.iter();
-        ends.clone()
-            .all(|end| end.limit.is_none() && end.lost.is_none())
-    };
+    let is_whole = |curve: &&Curve| curve.ends == [End::default(); 2];
     let (whole, others): (Vec<&Curve>, Vec<&Curve>) = region.curves.iter().partition(is_whole);
     match others.is_empty() {
         true => lines.push("stable (Drucker) in every load, as far as it is drawn".to_owned()),
