@@ -1,7 +1,8 @@
 //! Numbers on axes and scales.
 
 /// Four significant digits without trailing zeros.
-pub(crate) fn short(value: f64) -> String {
+#[must_use]
+pub fn short(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return value.abs().to_string();
     }

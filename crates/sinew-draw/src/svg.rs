@@ -246,6 +246,15 @@ impl Svg {
         self.out.push_str("</svg>\n");
     }
 
+    /// Puts a whole picture into this one, with its upper left corner at a place.
+    pub fn picture(&mut self, (x, y): (f64, f64), picture: &str) {
+        self.put(format_args!(
+            "<svg x=\"{}\" y=\"{}\" overflow=\"visible\">\n{picture}</svg>\n",
+            N(x),
+            N(y)
+        ));
+    }
+
     fn put(&mut self, arguments: fmt::Arguments<'_>) {
         // Writing into a String cannot fail.
         let _ = self.out.write_fmt(arguments);

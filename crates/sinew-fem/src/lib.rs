@@ -81,6 +81,7 @@ mod error;
 mod following;
 mod from_mesh;
 mod graph;
+pub mod homogeneous;
 pub mod hyperelastic;
 mod in_place;
 mod large;

@@ -1,8 +1,9 @@
 //! The problem as a user states it: materials, damping, supports, prescribed motions and loads.
 
 use sinew_core::Ramp;
+use sinew_mesh::{TetDataError, TetMesh};
 
-use crate::{Element, Fixed, FromMesh, Law, Moving, On, Tissue};
+use crate::{Direction, Element, Fixed, FromMesh, Law, Moving, On, Tissue};
 
 /// Materials, damping, supports, prescribed motions and loads of a body.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -128,6 +129,25 @@ impl Region {
     #[must_use]
     pub fn takes_data(&self) -> bool {
         !self.from_mesh.is_empty() || self.tissue.takes_data()
+    }
+
+    /// The same with the directions that the mesh's data give in a tetrahedron (0-based) in the place of those data.
+    ///
+    /// # Errors
+    /// [`sinew_mesh::TetDataError`] for data that the mesh does not have once.
+    pub fn at_tetrahedron(&self, mesh: &TetMesh, tet: usize) -> Result<Self, TetDataError> {
+        let mut region = self.clone();
+        let tissue = &mut region.tissue;
+        let families = tissue.fibres.iter_mut().map(|family| &mut family.direction);
+        for direction in families.chain(tissue.axes.iter_mut().flatten()) {
+            if let Direction::Data(name) = direction {
+                let data = mesh.data(name)?;
+                let row = data.rows().nth(tet).unwrap_or_default();
+                let [x, y, z] = *row else { continue };
+                *direction = Direction::Everywhere([x, y, z]);
+            }
+        }
+        Ok(region)
     }
 
     /// Sets the properties that come from the mesh's data.

@@ -88,7 +88,8 @@ impl Tissue {
     }
 
     /// True if a direction is taken from the mesh's data.
-    pub(crate) fn takes_data(&self) -> bool {
+    #[must_use]
+    pub fn takes_data(&self) -> bool {
         let families = self.fibres.iter().map(|family| &family.direction);
         let mut directions = families.chain(self.axes.iter().flatten());
         directions.any(|direction| matches!(direction, Direction::Data(_)))

@@ -52,6 +52,7 @@ mod frame_looks;
 mod frame_writer;
 mod frames;
 mod growth;
+mod laws;
 mod made_energy;
 #[cfg(feature = "implicit")]
 mod modes;
@@ -79,6 +80,11 @@ pub use error::RecordRunError;
 pub use folder_size::FolderSize;
 pub use frame_looks::{FrameLooks, Looked};
 pub use growth::EnergyGrowth;
+pub use laws::{
+    AskedCurves, LawCurvesError, Measured, MeasuredError, MeasuredFault, RegionCurves,
+    check_curves_folder, curves_of_laws, is_curves_file, picture_of_law, table_of_laws,
+    words_of_law, write_curves,
+};
 #[cfg(feature = "implicit")]
 pub use modes::{ModesError, NaturalMode, check_modes_folder, natural_modes, write_modes};
 pub use pace::Pace;

@@ -31,6 +31,9 @@ enum Command {
     /// Estimate the error of a scene's mesh: the scene again on a refined one, beside the error of its
     /// step.
     Converge(command::converge::Arguments),
+    /// Show the law of each region: its curves in tension, shear and of sheets, where they are stable, and measured points
+    /// beside them.
+    Law(command::law::Arguments),
     /// Find natural frequencies, mode shapes and the modes that the loads of a scene excite.
     #[cfg(feature = "implicit")]
     Modes(command::modes::Arguments),
@@ -59,6 +62,7 @@ fn main() -> ExitCode {
         Command::Resume(arguments) => command::resume::run(&arguments),
         Command::Compare(arguments) => command::compare::run(&arguments),
         Command::Converge(arguments) => command::converge::run(&arguments),
+        Command::Law(arguments) => command::law::run(&arguments),
         #[cfg(feature = "implicit")]
         Command::Modes(arguments) => command::modes::run(&arguments),
         #[cfg(feature = "live")]

@@ -23,17 +23,31 @@ impl Plot {
     pub fn svg(&self) -> String {
         draw(self)
     }
+
+    /// Height of the whole picture (px).
+    #[must_use]
+    pub fn full_height(&self) -> f64 {
+        laid_out(self).0.height
+    }
 }
 
-fn draw(plot: &Plot) -> String {
+/// The place where each series leaves the frame, in shares of it, if it does.
+type Exits = Vec<Option<(f64, f64)>>;
+
+/// The places of everything, where each series leaves the frame, and the legend's entries besides the series.
+fn laid_out(plot: &Plot) -> (Layout, Exits, &'static [&'static str]) {
     // Where series leave does not depend on the legend.
     let plain = Layout::of(plot, &[]);
-    let exits: Vec<Option<(f64, f64)>> = plot.series.iter().map(|s| plain.exit(s)).collect();
+    let exits: Exits = plot.series.iter().map(|s| plain.exit(s)).collect();
     let leaves: &[&str] = match exits.iter().any(Option::is_some) {
         true => &[LEAVES],
         false => &[],
     };
-    let layout = Layout::of(plot, leaves);
+    (Layout::of(plot, leaves), exits, leaves)
+}
+
+fn draw(plot: &Plot) -> String {
+    let (layout, exits, leaves) = laid_out(plot);
     let places = layout.places(plot);
     let mut svg = Svg::new(plot.width, layout.height, &described(plot));
     svg.text(

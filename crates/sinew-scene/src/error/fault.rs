@@ -176,6 +176,9 @@ pub enum Fault {
     /// A body that cannot be modelled.
     #[error("{}", .0.cause())]
     Model(sinew_fem::FemError),
+    /// A material without curves.
+    #[error(transparent)]
+    Homogeneous(#[from] sinew_fem::homogeneous::HomogeneousError),
     /// An oscillator that cannot be built.
     #[error(transparent)]
     Oscillator(#[from] sinew_core::OperatorError),

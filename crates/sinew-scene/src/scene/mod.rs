@@ -22,6 +22,7 @@ mod ramp;
 mod region;
 mod run;
 mod selected;
+mod solid;
 mod tissue;
 mod tool;
 mod tool_body;

@@ -11,7 +11,7 @@ use sinew_measure::advice::AdviceError;
 use sinew_measure::convergence::ConvergeError;
 use sinew_mesh::vtu::WriteVtuError;
 use sinew_mesh::{CellType, LabelError, MeshFileError, RefineError, TetMeshError, WriteMshError};
-use sinew_record::{CompareError, Ended, RecordRunError};
+use sinew_record::{CompareError, Ended, LawCurvesError, MeasuredError, RecordRunError};
 use sinew_scene::output::{OutputError, complain};
 use sinew_scene::{CuttingError, RefusedLoad, SceneError, Simulation, Warning};
 #[cfg(feature = "live")]
@@ -233,6 +233,24 @@ pub(crate) enum Failure {
     /// Results that cannot be compared.
     #[error(transparent)]
     Compare(#[from] CompareError),
+    /// Laws without curves.
+    #[error(transparent)]
+    LawCurves(LawCurvesError),
+    /// Measured points that cannot be used.
+    #[error(transparent)]
+    Measured(#[from] MeasuredError),
+    /// An axis of another number of components.
+    #[error("--along: expected three numbers such as 0,0,1, found {found}")]
+    Along {
+        /// Their number.
+        found: usize,
+    },
+    /// Stretches that are no range.
+    #[error("--stretch: expected a stretch and a larger one, such as 0.8 1.5, found {found:?}")]
+    Stretch {
+        /// The numbers given.
+        found: Vec<f64>,
+    },
     /// A scene whose natural modes cannot be found.
     #[cfg(feature = "implicit")]
     #[error(transparent)]
@@ -276,6 +294,16 @@ impl From<sinew_live::LiveError> for Failure {
             // With its excerpt.
             sinew_live::LiveError::Scene(error) => Self::Scene(error),
             error => Self::Live(error),
+        }
+    }
+}
+
+impl From<LawCurvesError> for Failure {
+    fn from(error: LawCurvesError) -> Self {
+        match error {
+            // With its excerpt.
+            LawCurvesError::Scene(error) => Self::Scene(error),
+            error => Self::LawCurves(error),
         }
     }
 }
@@ -345,6 +373,10 @@ impl Failure {
             | Self::WriteVtu { .. }
             | Self::Log(_)
             | Self::Replay { .. }
+            | Self::LawCurves(_)
+            | Self::Measured(_)
+            | Self::Along { .. }
+            | Self::Stretch { .. }
             | Self::SharedOutput { .. } => REFUSED,
             Self::Output(error) | Self::Record(RecordRunError::Output(error))
                 if error.is_refusal() =>

@@ -5,6 +5,7 @@ pub(crate) mod converge;
 mod failure;
 pub(crate) mod integrators;
 mod interruption;
+pub(crate) mod law;
 #[cfg(feature = "live")]
 pub(crate) mod live;
 mod memory_left;

@@ -4,6 +4,7 @@ mod basics;
 mod converge;
 #[cfg(feature = "implicit")]
 mod factor_memory;
+mod law;
 #[cfg(all(unix, feature = "live"))]
 mod live;
 mod mesh;

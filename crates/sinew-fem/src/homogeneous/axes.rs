@@ -1,0 +1,92 @@
+//! The axes of loads.
+
+use super::error::HomogeneousError;
+use crate::hyperelastic::{Tensor, dot};
+use crate::tissue::unit;
+
+/// Three axes at right angles: the first that of the pull, the second the other one of a sheet's plane.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Axes([[f64; 3]; 3]);
+
+impl Axes {
+    /// Axes with the first along a vector. The second is the mesh's axis after the one that the vector is nearest to, as far as it is at right angles to the
+    /// vector: `y` for a pull along `x`, `z` for one along `y`, `x` for one along `z`.
+    ///
+    /// # Errors
+    ///
+    /// [`HomogeneousError::NoAxis`].
+    pub fn along(vector: [f64; 3]) -> Result<Self, HomogeneousError> {
+        let first = unit(vector).ok_or(HomogeneousError::NoAxis)?;
+        let by_size = |i: &usize, j: &usize| first[*i].abs().total_cmp(&first[*j].abs());
+        // Of equal ones the first.
+        let nearest = (0..3).rev().max_by(by_size).unwrap_or_default();
+        let mut second = [0.0; 3];
+        second[(nearest + 1) % 3] = 1.0;
+        let share = dot(first, second);
+        let second = [0, 1, 2].map(|i| second[i] - share * first[i]);
+        let second = unit(second).ok_or(HomogeneousError::NoAxis)?;
+        let ([a, b, c], [d, e, f]) = (first, second);
+        let third = [b * f - c * e, c * d - a * f, a * e - b * d];
+        Ok(Self([first, second, third]))
+    }
+
+    /// The axes as unit vectors.
+    #[must_use]
+    pub fn vectors(&self) -> [[f64; 3]; 3] {
+        self.0
+    }
+
+    /// A tensor given in these axes, in those of the mesh.
+    pub(super) fn in_mesh(&self, entries: [[f64; 3]; 3]) -> Tensor<f64> {
+        let axes = Tensor::from_columns(self.0);
+        (axes * Tensor(entries)).times_transposed(axes)
+    }
+
+    /// A tensor given in the axes of the mesh, in these.
+    pub(super) fn of_mesh(&self, tensor: Tensor<f64>) -> [[f64; 3]; 3] {
+        let axes = Tensor::from_columns(self.0);
+        (axes.transposed_times(tensor) * axes).0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn axes_are_at_right_angles_and_right_handed() {
+        for vector in [
+            [2.0, 0.0, 0.0],
+            [0.0, -3.0, 0.0],
+            [1.0, 1.0, 1.0],
+            [0.2, -0.4, 5.0],
+        ] {
+            let axes = Axes::along(vector).unwrap();
+            let rows = Tensor(axes.vectors());
+            assert!((rows.times_transposed(rows) - Tensor::identity()).largest() < 1e-15);
+            assert!((dot(rows.0[0], rows.cofactor().0[0]) - 1.0).abs() < 1e-15);
+        }
+        let second = |vector| Axes::along(vector).unwrap().vectors()[1];
+        assert_eq!(second([1.0, 0.0, 0.0]), [0.0, 1.0, 0.0]);
+        assert_eq!(second([0.0, 1.0, 0.0]), [0.0, 0.0, 1.0]);
+        assert_eq!(second([0.0, 0.0, 1.0]), [1.0, 0.0, 0.0]);
+    }
+
+    #[test]
+    fn tensors_go_to_other_axes_and_back() {
+        let axes = Axes::along([1.0, 2.0, -0.5]).unwrap();
+        let entries = [[1.0, 2.0, 3.0], [-4.0, 5.0, 6.0], [7.0, 8.0, -9.0]];
+        let again = axes.of_mesh(axes.in_mesh(entries));
+        assert!((Tensor(again) - Tensor(entries)).largest() < 1e-14);
+        let [first, ..] = axes.vectors();
+        let along = axes.in_mesh([[2.0, 0.0, 0.0], [0.0; 3], [0.0; 3]]);
+        assert!((along - Tensor::outer(first, first).scaled(2.0)).largest() < 1e-15);
+    }
+
+    #[test]
+    fn an_axis_has_a_direction() {
+        for vector in [[0.0; 3], [f64::NAN, 0.0, 0.0]] {
+            assert_eq!(Axes::along(vector), Err(HomogeneousError::NoAxis));
+        }
+    }
+}
