@@ -54,7 +54,7 @@ impl OnLaw for Tangents<'_, '_> {
         if !region.is_smoothed() {
             for tet in rest.tets() {
                 let at = law.at(rest.gradient_of::<f64>(tet, &scratch.displacement));
-                require(&law, region, &relaxing, &at.deformation, tet)?;
+                require(&law, region, &relaxing, &at, tet)?;
                 let left = left_of_tets(region, &relaxing, &law, &at, tet);
                 let own = OwnTangent::of(&law, &at, left, kind);
                 let beside = beside_of(tet, &at.deformation);
