@@ -5,7 +5,8 @@ use std::process::Stdio;
 use serde_json::{Value, json};
 use sinew_fem::hyperelastic::fibres::{Fibres, Stiffening};
 use sinew_fem::hyperelastic::{
-    Deformation, Hyperelastic, LawParameter, NeoHookean, Tensor, sample_deformations,
+    Deformation, Hyperelastic, HyperelasticLaw, LawParameter, NeoHookean, Parameters, Tensor,
+    sample_deformations,
 };
 use sinew_scene::output::{OutputFolder, say};
 
@@ -98,6 +99,7 @@ fn of_fibres() -> Result<Vec<Value>, Failure> {
     let exponential = exponential.map_err(Failure::chore)?;
     let quadratic = Fibres::new(Stiffening::Quadratic { eta }).map_err(Failure::chore)?;
     let exponents = |name: &str, split: bool| json!({ "law": name, "k1": k1, "k2": k2, "dispersion": dispersion, "split": split });
+    let sampled = NeoHookean::new(&Parameters::new(3500.0, 0.45)).map_err(Failure::chore)?;
     let families = [
         (quadratic, json!({ "law": "quadratic fibres", "eta": eta })),
         (exponential, exponents("exponential fibres", false)),
@@ -107,7 +109,7 @@ fn of_fibres() -> Result<Vec<Value>, Failure> {
         ),
     ];
     let cases = families.map(|(fibres, mut case)| {
-        let samples = sample_deformations::<NeoHookean>().take(SAMPLES);
+        let samples = sample_deformations(sampled).take(SAMPLES);
         let samples = samples.map(|[h, change]| {
             let at = fibres.at(&Deformation::of(h), direction);
             json!({

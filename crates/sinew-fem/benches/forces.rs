@@ -13,7 +13,7 @@
 use std::time::{Duration, Instant};
 
 use sinew_core::{ElasticLaw, ForceLaw, LoadTime, System, Trial};
-use sinew_fem::hyperelastic::Parameters;
+use sinew_fem::hyperelastic::Hyperelastic;
 use sinew_fem::{Element, Law, Model, Problem, Region};
 use sinew_mesh::TetMesh;
 use sinew_mesh::structured::{Split, cube};
@@ -36,14 +36,12 @@ fn main() {
     for cells in [10, 20] {
         let mesh = cube(cells, 0.1, Split::Kuhn).expect("the mesh is small enough");
         println!("{} tetrahedra: net force, elastic force", mesh.tets.len());
-        for (law, element) in [
-            ("neo-hookean", Element::P1),
-            ("stable-neo-hookean", Element::P1),
-            ("stvk", Element::P1),
-            ("corotational", Element::P1),
+        let of_laws = Hyperelastic::IDS.iter().map(|id| (*id, Element::P1));
+        let averaged = [
             ("neo-hookean", Element::Fbar { patch: None }),
             ("neo-hookean", edges),
-        ] {
+        ];
+        for (law, element) in of_laws.chain(averaged) {
             let name = format!("{law}, {element}");
             if name.contains(&word) {
                 measure(&name, &mesh, &problem(law, element), time);
@@ -53,11 +51,9 @@ fn main() {
 }
 
 fn problem(law: &'static str, element: Element) -> Problem {
-    Problem::of([Region::new(
-        Law::hyperelastic(law, Parameters::new(3500.0, 0.45)),
-        1060.0,
-    )
-    .with_element(element)])
+    let parameters = Hyperelastic::parameters(law, 3500.0, 0.45).expect("every law has them");
+    let region = Region::new(Law::hyperelastic(law, parameters), 1060.0);
+    Problem::of([region.with_element(element)])
 }
 
 fn measure(name: &str, mesh: &TetMesh, problem: &Problem, time: Duration) {

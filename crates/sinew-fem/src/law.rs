@@ -100,15 +100,15 @@ impl Law {
         }
     }
 
-    /// Sets Young's modulus (Pa); that of a law with other moduli by scaling these.
+    /// Sets Young's modulus (Pa); that of a law with other moduli by scaling all of them, so that Poisson's ratio stays.
     pub fn set_youngs_modulus(&mut self, to: f64) {
         match self {
             Self::Linear { youngs_modulus, .. } | Self::Springs { youngs_modulus, .. } => {
                 *youngs_modulus = to;
             }
             Self::Hyperelastic { parameters, .. } => match parameters.stated() {
-                [Some(_), _] => parameters.set(LawParameter::YOUNGS_MODULUS.name, &[to]),
-                [None, _] => self.scale_stiffness(to / self.youngs_modulus()),
+                [Some(_), Some(_)] => parameters.set(LawParameter::YOUNGS_MODULUS.name, &[to]),
+                _ => self.scale_stiffness(to / self.youngs_modulus()),
             },
         }
     }
@@ -277,7 +277,7 @@ fn hyperelastic_with_modulus(id: &str, parameters: &Parameters, modulus: &str) -
         let values = parameters.get(parameter.name).unwrap_or_default();
         let value = match (values, parameter.list) {
             ([value], None) => value.to_string(),
-            _ => format!("{values:?}"),
+            _ => parameter.written(values),
         };
         let unit = match parameter.unit {
             "" => String::new(),

@@ -3,15 +3,18 @@
 use std::fmt;
 use std::sync::{Arc, PoisonError, RwLock};
 
+use crate::hyperelastic::arruda_boyce::ArrudaBoyce;
 use crate::hyperelastic::boxed::PointLaw;
 use crate::hyperelastic::corotational::Corotational;
 use crate::hyperelastic::fung::Fung;
+use crate::hyperelastic::gent::Gent;
 use crate::hyperelastic::law::{HyperelasticLaw, NodeBlock};
 use crate::hyperelastic::law_error::LawError;
 use crate::hyperelastic::mooney_rivlin::MooneyRivlin;
 use crate::hyperelastic::neo_hookean::NeoHookean;
 use crate::hyperelastic::neo_hookean_iso::NeoHookeanIso;
 use crate::hyperelastic::neo_hookean_log::NeoHookeanLog;
+use crate::hyperelastic::ogden::Ogden;
 use crate::hyperelastic::parameters::{
     LawParameter, LawValues, ParameterError, Parameters, engineering,
 };
@@ -19,6 +22,7 @@ use crate::hyperelastic::stable_neo_hookean::StableNeoHookean;
 use crate::hyperelastic::stable_neo_hookean_log::StableNeoHookeanLog;
 use crate::hyperelastic::stvk::Stvk;
 use crate::hyperelastic::tensor::Tensor;
+use crate::hyperelastic::veronda_westmann::VerondaWestmann;
 use crate::hyperelastic::yeoh::Yeoh;
 use crate::large::{Compiled, Own};
 
@@ -50,6 +54,10 @@ laws! {
     StableNeoHookeanLog,
     Yeoh,
     Fung,
+    Gent,
+    ArrudaBoyce,
+    VerondaWestmann,
+    Ogden,
 }
 
 /// The laws that the program has added.
@@ -58,12 +66,29 @@ static ADDED: RwLock<Vec<&'static KnownLaw>> = RwLock::new(Vec::new());
 /// The models that are no laws of large deformation.
 const RESERVED: [&str; 2] = ["linear", "springs"];
 
+/// The keys that a region of a scene has itself, whatever its law: no law has a parameter with one of these names.
+/// Young's modulus and Poisson's ratio are parameters that laws share.
+pub const KEYS_OF_REGIONS: &[&str] = &[
+    "group",
+    "where",
+    "density",
+    "model",
+    "springs",
+    "element",
+    "edge_share",
+    "patch",
+    "fibres",
+    "prony",
+    "viscous_part",
+    "moduli",
+];
+
 /// Adds a law, so that scenes and [`crate::Law::Hyperelastic`] know it by its id, for as long as the program runs. Its
 /// loops are compiled for its own type, as those of this crate's laws are.
 ///
 /// # Errors
 ///
-/// [`RegisterError`] for an id that is taken.
+/// [`RegisterError`] for an id that is taken, or a parameter that could be no key of a scene.
 pub fn register<L: HyperelasticLaw + 'static>() -> Result<(), RegisterError> {
     add(KnownLaw::of::<L>())
 }
@@ -77,7 +102,7 @@ pub type MakeBoxed =
 ///
 /// # Errors
 ///
-/// [`RegisterError`] for an id that is taken.
+/// [`RegisterError`] for an id that is taken, or a parameter that could be no key of a scene.
 pub fn register_boxed(
     id: &'static str,
     meaning: &'static str,
@@ -96,12 +121,25 @@ pub fn register_boxed(
 }
 
 fn add(law: KnownLaw) -> Result<(), RegisterError> {
+    let id = law.id;
+    for (place, parameter) in law.parameters.iter().enumerate() {
+        let key = parameter.name;
+        if KEYS_OF_REGIONS.contains(&key) {
+            return Err(RegisterError::KeyOfRegions { id, key });
+        }
+        if law.parameters[..place]
+            .iter()
+            .any(|other| other.name == key)
+        {
+            return Err(RegisterError::TwoOfAName { id, key });
+        }
+    }
     let mut added = ADDED.write().unwrap_or_else(PoisonError::into_inner);
     let is_taken = RESERVED.contains(&law.id)
         || OURS.iter().any(|known| known.id == law.id)
         || added.iter().any(|known| known.id == law.id);
     if is_taken {
-        return Err(RegisterError { id: law.id });
+        return Err(RegisterError::Taken { id });
     }
     added.push(Box::leak(Box::new(law)));
     Ok(())
@@ -374,10 +412,31 @@ fn found(id: &str) -> Result<&'static KnownLaw, LawError> {
 
 /// A law that cannot be added.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("the id `{id}` is taken by another model: give the law one of its own")]
-pub struct RegisterError {
-    /// The id.
-    pub id: &'static str,
+pub enum RegisterError {
+    /// An id that another model has.
+    #[error("the id `{id}` is taken by another model: give the law one of its own")]
+    Taken {
+        /// The id.
+        id: &'static str,
+    },
+    /// A parameter with the name of a key that regions of scenes have themselves.
+    #[error(
+        "the law `{id}` has a parameter `{key}`, which is a key of every region in a scene: give the parameter another name"
+    )]
+    KeyOfRegions {
+        /// The law's id.
+        id: &'static str,
+        /// The parameter.
+        key: &'static str,
+    },
+    /// Two parameters of one name.
+    #[error("the law `{id}` has two parameters `{key}`: give one of them another name")]
+    TwoOfAName {
+        /// The law's id.
+        id: &'static str,
+        /// The name.
+        key: &'static str,
+    },
 }
 
 #[cfg(test)]
@@ -417,10 +476,12 @@ mod tests {
             let parameters = Parameters::examples(law.parameters);
             law.make(&parameters).unwrap();
             for parameter in law.parameters {
-                let expected = parameter.list.unwrap_or((1, 1));
-                assert!((expected.0..=expected.1).contains(&parameter.example.len()));
-                let mut example = parameter.example.iter();
-                assert!(example.all(|value| parameter.range.contains(*value)));
+                let (least, most) = parameter.list.unwrap_or((1, 1));
+                let width = parameter.width();
+                let lengths = least * width..=most * width;
+                assert!(lengths.contains(&parameter.example.len()));
+                let mut example = parameter.example.iter().enumerate();
+                assert!(example.all(|(place, value)| parameter.range_at(place).contains(*value)));
                 assert!(parameter.meaning.ends_with('.'), "{}", parameter.name);
             }
         }
@@ -444,13 +505,41 @@ mod tests {
     }
 
     #[test]
+    fn a_parameter_that_could_be_no_key_of_a_scene_is_refused() {
+        static OF_REGIONS: [LawParameter; 1] = [LawParameter {
+            name: "density",
+            ..LawParameter::BULK_MODULUS
+        }];
+        static TWICE: [LawParameter; 2] = [LawParameter::BULK_MODULUS; 2];
+        let make = || -> MakeBoxed { Box::new(|_| Err(ParameterError::NotStated { law: "none" })) };
+        let said = |id, parameters| {
+            let refused = register_boxed(id, "", parameters, make()).unwrap_err();
+            assert!(known_law(id).is_none());
+            refused.to_string()
+        };
+        let expected = "the law `heavy` has a parameter `density`, which is a key of every region in a scene: give the parameter another name";
+        assert_eq!(said("heavy", &OF_REGIONS), expected);
+        let expected =
+            "the law `double` has two parameters `bulk_modulus`: give one of them another name";
+        assert_eq!(said("double", &TWICE), expected);
+        for law in OURS {
+            let mut names = law.parameters.iter().map(|parameter| parameter.name);
+            assert!(
+                names.all(|name| !KEYS_OF_REGIONS.contains(&name)),
+                "{}",
+                law.id
+            );
+        }
+    }
+
+    #[test]
     fn parameters_that_a_law_cannot_have_are_refused_by_name() {
         let said = |id: &str, parameters: &Parameters| {
             Hyperelastic::new(id, parameters).unwrap_err().to_string()
         };
         let good = Parameters::new(1.0, 0.3);
         assert!(
-            said("ogden", &good).starts_with("no law is called `ogden`; there are neo-hookean,")
+            said("rubber", &good).starts_with("no law is called `rubber`; there are neo-hookean,")
         );
         for law in OURS {
             let parameters = law.with_moduli(1.0, 0.3).unwrap();

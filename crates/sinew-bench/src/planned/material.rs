@@ -45,10 +45,7 @@ impl Material {
             own.presence == Presence::Required && scene.iter().all(|known| known.name != own.name)
         };
         for parameter in own.iter().filter(is_new) {
-            let value = match (parameter.list, parameter.example) {
-                (None, [value, ..]) => format!("{value:?}"),
-                (_, list) => format!("{list:?}"),
-            };
+            let value = parameter.written(parameter.example);
             values.push(format!("region.1.{}={value}", parameter.name));
         }
         values

@@ -24,6 +24,17 @@ pub trait PointLaw: Debug + Send + Sync {
     /// Lame's constants (lambda, mu) (Pa) at small strain.
     fn lame(&self) -> (f64, f64);
 
+    /// The reason for which the law has no meaning where [`Self::margin`] ends, as half a sentence after its name
+    /// ([`HyperelasticLaw::limit`]); `None` for a law that ends only where elements invert.
+    fn limit(&self) -> Option<&str> {
+        None
+    }
+
+    /// A number above 0 where the law is defined, J aside ([`HyperelasticLaw::margin`]).
+    fn margin(&self, _h: Tensor<f64>) -> f64 {
+        1.0
+    }
+
     /// The local energy density (J/m^3): all but `lambda/2 (J - 1)^2`.
     fn energy(&self, h: Tensor<f64>) -> f64;
 
@@ -74,6 +85,15 @@ impl HyperelasticLaw for Boxed<'_> {
 
     fn lame(&self) -> (f64, f64) {
         self.0.lame()
+    }
+
+    fn limit(&self) -> Option<&str> {
+        self.0.limit()
+    }
+
+    #[inline(never)]
+    fn margin<N: Number>(&self, at: &Point<N, ()>) -> N {
+        N::from_lanes(|lane| self.0.margin(lane_of(at.displacement_gradient, lane)))
     }
 
     fn own<N: Number>(&self, _: &Deformation<N>) {}

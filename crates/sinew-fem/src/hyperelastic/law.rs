@@ -13,6 +13,9 @@ use super::tensor::{Tensor, dot};
 /// Volume ratio J below which a law that is not defined for inverted elements is refused.
 pub const SMALLEST_VOLUME_RATIO: f64 = 1e-6;
 
+/// Margin ([`HyperelasticLaw::margin`]) below which a law is refused.
+pub(crate) const SMALLEST_MARGIN: f64 = 1e-6;
+
 /// A hyperelastic law of a material that is alike in all directions, or has axes ([`Self::HAS_AXES`]).
 ///
 /// The energy density is `psi = psi_local(F) + lambda/2 theta(F)^2`: elements that do not lock average the dilation
@@ -171,11 +174,33 @@ pub trait HyperelasticLaw: Copy + Debug + Send + Sync {
         Point { deformation, own }
     }
 
+    /// The reason for which the law has no meaning where [`Self::margin`] ends, as half a sentence after its name in a
+    /// refusal: "ends where its chains are straight, at I1 - 3 = `limit`". `None` for a law that ends at most where
+    /// elements invert; its margin is not asked for.
+    #[inline(always)]
+    fn limit(&self) -> Option<&str> {
+        None
+    }
+
+    /// A number above 0 where the law is defined, elsewhere 0 or below, or not a number; that J is above 0 need not
+    /// show in it. It goes with [`Self::limit`].
+    #[inline(always)]
+    fn margin<N: Number>(&self, _at: &Point<N, Self::Own<N>>) -> N {
+        N::of(1.0)
+    }
+
+    /// True if no lane is beyond the limit of the law, J aside.
+    #[inline(always)]
+    fn is_within_limit<N: Number>(&self, at: &Point<N, Self::Own<N>>) -> bool {
+        self.limit().is_none() || N::all_le(N::of(SMALLEST_MARGIN), self.margin(at))
+    }
+
     /// True if the law is defined for a deformation, in all lanes.
     #[inline(always)]
-    fn admits<N: Number>(&self, deformation: &Deformation<N>) -> bool {
+    fn admits<N: Number>(&self, at: &Point<N, Self::Own<N>>) -> bool {
         let smallest = N::of(SMALLEST_VOLUME_RATIO);
-        Self::DEFINED_WHEN_INVERTED || N::all_le(smallest, deformation.volume_ratio)
+        let is_proper = Self::DEFINED_WHEN_INVERTED || N::all_le(smallest, at.volume_ratio);
+        is_proper && self.is_within_limit(at)
     }
 
     /// The volumetric part of a tetrahedron that is averaged with no other.

@@ -13,6 +13,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+pub(crate) mod arruda_boyce;
 pub(crate) mod boxed;
 #[cfg(any(test, feature = "conformance"))]
 pub mod conformance;
@@ -20,42 +21,57 @@ pub(crate) mod corotational;
 mod decomposition;
 mod deformation;
 pub mod fibres;
+mod first_invariant;
 pub(crate) mod fung;
+pub(crate) mod gent;
 pub(crate) mod law;
 pub(crate) mod law_error;
 pub(crate) mod mooney_rivlin;
 pub(crate) mod neo_hookean;
 pub(crate) mod neo_hookean_iso;
 pub(crate) mod neo_hookean_log;
+pub(crate) mod ogden;
 mod orthotropic;
 pub(crate) mod parameters;
+mod powers;
 mod projection;
 pub mod prony;
+#[cfg(test)]
+mod same;
 mod samples;
+mod second_invariant;
 pub(crate) mod stable_neo_hookean;
 pub(crate) mod stable_neo_hookean_log;
+mod stretches;
 pub(crate) mod stvk;
 pub(crate) mod tensor;
+pub(crate) mod veronda_westmann;
 mod viscous;
 pub(crate) mod yeoh;
 
 pub use crate::law_registry::{
-    Hyperelastic, KnownLaw, MakeBoxed, RegisterError, known_law, known_laws, register,
-    register_boxed,
+    Hyperelastic, KEYS_OF_REGIONS, KnownLaw, MakeBoxed, RegisterError, known_law, known_laws,
+    register, register_boxed,
 };
+pub use arruda_boyce::ArrudaBoyce;
 pub use boxed::{Boxed, PointLaw};
 pub use corotational::Corotational;
 pub use decomposition::SingularValues;
 pub use deformation::Deformation;
 pub use fung::Fung;
+pub use gent::Gent;
+pub(crate) use law::SMALLEST_MARGIN;
 pub use law::{Bulk, HyperelasticLaw, NodeBlock, Point, SMALLEST_VOLUME_RATIO};
 pub use law_error::LawError;
 pub use mooney_rivlin::MooneyRivlin;
 pub use neo_hookean::NeoHookean;
 pub use neo_hookean_iso::NeoHookeanIso;
 pub use neo_hookean_log::NeoHookeanLog;
+pub use ogden::Ogden;
 pub use orthotropic::Orthotropic;
-pub use parameters::{LawParameter, LawValues, ParameterError, Parameters, Presence, Range};
+pub use parameters::{
+    Column, LawParameter, LawValues, ParameterError, Parameters, Presence, Range,
+};
 pub(crate) use projection::semidefinite;
 pub use projection::{Linearised, Projection, TangentKind};
 pub use samples::sample_deformations;
@@ -64,5 +80,6 @@ pub use stable_neo_hookean_log::StableNeoHookeanLog;
 pub use stvk::Stvk;
 pub use tensor::Tensor;
 pub(crate) use tensor::dot;
+pub use veronda_westmann::VerondaWestmann;
 pub(crate) use viscous::Viscous;
 pub use yeoh::Yeoh;

@@ -5,6 +5,7 @@ use sinew_sparse::simd::Number;
 use super::deformation::Deformation;
 use super::law::{Bulk, HyperelasticLaw, Point, block_of};
 use super::parameters::{LawParameter, LawValues, ParameterError, Range};
+use super::second_invariant;
 use super::tensor::Tensor;
 
 /// `psi = C1 (J^-2/3 I1 - 3) + C2 (J^-4/3 I2 - 3) + kappa/2 (J - 1)^2` with `mu = 2 (C1 + C2)` and `kappa = lambda + 2/3 mu`.
@@ -32,7 +33,7 @@ impl MooneyRivlin {
 const C1_OVER_C2: LawParameter = LawParameter::number(
     "c1_over_c2",
     "C1/C2",
-    "The ratio of Mooney and Rivlin's two shear constants, of which Young's modulus and Poisson's ratio leave it open.",
+    "The ratio of Mooney and Rivlin's two shear constants, which the moduli leave open.",
     Range::above_zero("a finite ratio above 0"),
     &[4.0],
 );
@@ -45,11 +46,11 @@ pub struct Isochoric<N> {
     /// `J^-2/3`.
     pub(super) scale: N,
     /// `F'F - I`.
-    strain: Tensor<N>,
+    pub(super) strain: Tensor<N>,
     /// `I1 - 3`.
     pub(super) first: N,
     /// `I2 - 3`.
-    second: N,
+    pub(super) second: N,
 }
 
 impl<N: Number> Isochoric<N> {
@@ -76,7 +77,7 @@ impl<N: Number> Isochoric<N> {
 
     /// I2.
     #[inline(always)]
-    fn i2(&self) -> N {
+    pub(super) fn i2(&self) -> N {
         self.second + N::of(3.0)
     }
 
@@ -88,7 +89,7 @@ impl<N: Number> Isochoric<N> {
 
     /// `B = I1 F - F C`, half of dI2/dF.
     #[inline(always)]
-    fn second_gradient(&self, gradient: Tensor<N>) -> Tensor<N> {
+    pub(super) fn second_gradient(&self, gradient: Tensor<N>) -> Tensor<N> {
         gradient.scaled(self.first + N::of(2.0)) - gradient * self.strain
     }
 }
@@ -96,18 +97,17 @@ impl<N: Number> Isochoric<N> {
 impl HyperelasticLaw for MooneyRivlin {
     const ID: &'static str = "mooney-rivlin";
     const MEANING: &'static str = "fits rubber-like tissue better in shear";
-    const PARAMETERS: &'static [LawParameter] = &[
-        LawParameter::YOUNGS_MODULUS,
-        LawParameter::POISSONS_RATIO,
-        C1_OVER_C2,
-    ];
+    const PARAMETERS: &'static [LawParameter] = {
+        let [ratio, bulk] = LawParameter::VOLUME;
+        &[LawParameter::YOUNGS_MODULUS, ratio, bulk, C1_OVER_C2]
+    };
     const DEFINED_WHEN_INVERTED: bool = false;
     const HAS_ISOCHORIC_PART: bool = true;
 
     type Own<N: Number> = Isochoric<N>;
 
     fn from_values(values: &LawValues<'_>) -> Result<Self, ParameterError> {
-        let (lambda, mu) = values.lame();
+        let (lambda, mu) = values.lame_by_volume()?;
         let ratio = values.number(&C1_OVER_C2);
         let c2 = 0.5 * mu / (1.0 + ratio);
         Ok(Self::of(lambda, ratio * c2, c2))
@@ -142,7 +142,7 @@ impl HyperelasticLaw for MooneyRivlin {
     #[inline(always)]
     fn stress<N: Number>(&self, at: &Point<N, Isochoric<N>>) -> Tensor<N> {
         let own = &at.own;
-        let (f, volume) = (at.gradient, at.volume_change);
+        let volume = at.volume_change;
         let a1 = N::of(2.0 * self.c1) * own.scale;
         let third = N::of(-1.0 / 3.0);
         // F - I1/(3J) c, and B - 2 I2/(3J) c, by what is 0 at rest.
@@ -154,10 +154,7 @@ impl HyperelasticLaw for MooneyRivlin {
             return stress;
         }
         let a2 = N::of(2.0 * self.c2) * own.scale * own.scale;
-        let second = own.beyond_rest(own.second, volume) * third;
-        let rest = at.distortion.plus(second, at.cofactor);
-        let strained = f.scaled(own.first) - f * own.strain;
-        stress.plus(a2 + a2, rest).plus(a2, strained)
+        second_invariant::stress_with(stress, at, own, a2)
     }
 
     #[inline(always)]
@@ -185,27 +182,11 @@ impl HyperelasticLaw for MooneyRivlin {
             return tangent;
         }
         let a2 = N::of(2.0 * self.c2) * own.scale * own.scale;
-        let b = own.second_gradient(f);
-        let one_side = f.transposed_times(change);
-        let strain = one_side + one_side.transposed();
-        let db = change.scaled(own.first + N::of(2.0)).plus(along + along, f)
-            - change * own.strain
-            - f * strain;
-        let along = b.contracted(change);
-        let two = N::of(2.0) * third;
-        let of_c = two * own.over * (N::of(7.0) * third * own.i2() * relative - (along + along));
-        let second = db
-            .plus(N::of(-4.0) * third * relative, b)
-            .plus(of_c, c)
-            .plus(-(two * own.i2() * own.over), turned);
-        tangent.plus(a2, second)
+        tangent.plus(a2, second_invariant::tangent(at, own, change))
     }
 
-    /// The exact block, but with the coefficient 16/9 in place of 14/9 in the contribution of I2 along c g.
-    ///
-    /// The part of I1 is rank-one convex. In that of I2 a vector w meets `|D[w g']|^2 - 8/3 (B : w g') n + 14/9 I2 n^2`, n being `c : w g'/J`. As
-    /// `B : w g' = c : D[w g']` and `c : c = I2`, it is a square and so not below 0 with 16/9, which with 14/9 it may be
-    /// (Hartmann and Neff, International Journal of Solids and Structures 40, 2003).
+    /// The exact block, but with the coefficient 16/9 in place of 14/9 in the contribution of I2 along c g
+    /// ([`second_invariant::SQUARE`]). The part of I1 is rank-one convex.
     #[inline(always)]
     fn node_block<N: Number>(
         &self,
@@ -227,16 +208,6 @@ impl HyperelasticLaw for MooneyRivlin {
             return block;
         }
         let a2 = N::of(2.0 * self.c2) * own.scale * own.scale;
-        // |D[w g']|^2 = w . (sum over k of D[e_k g']:D[e_l g']) w.
-        let unit = Tensor::<N>::identity().0;
-        let turned = unit.map(|axis| at.cofactor_change(Tensor::outer(axis, gradient)));
-        let turning = Tensor(turned.map(|a| turned.map(|b| a.contracted(b))));
-        let sloped = own.second_gradient(f).on(gradient);
-        let mixed = Tensor::outer(sloped, normal).symmetric();
-        let second = N::of(16.0 / 9.0) * own.i2() * squared;
-        block
-            .plus(a2, turning)
-            .plus(N::of(-8.0 / 3.0) * a2 * own.over, mixed)
-            .plus(a2 * second, Tensor::outer(normal, normal))
+        second_invariant::block_with(block, at, own, (a2, second_invariant::SQUARE), gradient)
     }
 }

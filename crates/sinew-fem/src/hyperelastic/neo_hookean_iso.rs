@@ -21,7 +21,10 @@ pub struct NeoHookeanIso {
 impl HyperelasticLaw for NeoHookeanIso {
     const ID: &'static str = "neo-hookean-iso";
     const MEANING: &'static str = "is there for comparison with other programs";
-    const PARAMETERS: &'static [LawParameter] = LawParameter::MODULI;
+    const PARAMETERS: &'static [LawParameter] = {
+        let [ratio, bulk] = LawParameter::VOLUME;
+        &[LawParameter::YOUNGS_MODULUS, ratio, bulk]
+    };
     const DEFINED_WHEN_INVERTED: bool = false;
     const HAS_ISOCHORIC_PART: bool = true;
     const NODE_BLOCK: NodeBlock = NodeBlock::Exact;
@@ -29,7 +32,7 @@ impl HyperelasticLaw for NeoHookeanIso {
     type Own<N: Number> = Isochoric<N>;
 
     fn from_values(values: &LawValues<'_>) -> Result<Self, ParameterError> {
-        let (lambda, mu) = values.lame();
+        let (lambda, mu) = values.lame_by_volume()?;
         let base = MooneyRivlin::of(lambda, 0.5 * mu, 0.0);
         Ok(Self { base })
     }

@@ -23,10 +23,24 @@ pub struct LawParameter {
     pub range: Range,
     /// The least and the largest length of a list; `None` for a single number.
     pub list: Option<(usize, usize)>,
+    /// Numbers of each entry of a list of tuples, such as the pairs of an Ogden law; empty for plain numbers. The
+    /// values of all entries follow one another, in `example` and in [`Parameters`] too.
+    pub columns: &'static [Column],
     /// Rule for a parameter that is left out.
     pub presence: Presence,
     /// A typical value, by which tests and the reference make the law.
     pub example: &'static [f64],
+}
+
+/// A number of each entry of a list of tuples.
+#[derive(Clone, Copy, Debug)]
+pub struct Column {
+    /// Name in messages, with the unit: "mu in Pa".
+    pub name: &'static str,
+    /// True for a modulus, which scales with the stiffness of a body.
+    pub is_modulus: bool,
+    /// Range.
+    pub range: Range,
 }
 
 /// A range of numbers.
@@ -110,7 +124,7 @@ impl LawParameter {
     pub const MODULI: &'static [Self] = &[Self::YOUNGS_MODULUS, Self::POISSONS_RATIO];
 
     /// [`Self::POISSONS_RATIO`] or [`Self::BULK_MODULUS`], for laws with shear constants of their own
-    /// ([`LawValues::lambda`]).
+    /// ([`LawValues::lambda`]) or with Young's modulus ([`LawValues::lame_by_volume`]).
     pub const VOLUME: [Self; 2] = {
         const NAMES: &[&str] = &["poissons_ratio", "bulk_modulus"];
         [
@@ -145,6 +159,7 @@ impl LawParameter {
             meaning,
             range,
             list: None,
+            columns: &[],
             presence: Presence::Required,
             example,
         }
@@ -162,6 +177,15 @@ impl LawParameter {
         Self {
             list: Some((least, most)),
             ..self
+        }
+    }
+
+    /// The parameter as a list of `least` to `most` tuples of these numbers.
+    #[must_use]
+    pub const fn tuples(self, columns: &'static [Column], least: usize, most: usize) -> Self {
+        Self {
+            columns,
+            ..self.list(least, most)
         }
     }
 
@@ -183,15 +207,54 @@ impl LawParameter {
         }
     }
 
-    /// True for a modulus, which scales with the stiffness.
+    /// True for a modulus, which scales with the stiffness; in a list of tuples some numbers may be moduli.
     #[must_use]
     pub fn is_modulus(&self) -> bool {
-        self.unit == PASCAL
+        self.unit == PASCAL || self.columns.iter().any(|column| column.is_modulus)
+    }
+
+    /// Numbers of an entry of its list.
+    #[must_use]
+    pub fn width(&self) -> usize {
+        self.columns.len().max(1)
+    }
+
+    /// The range of the number at this place among its values.
+    #[must_use]
+    pub fn range_at(&self, place: usize) -> Range {
+        let column = self.columns.get(place % self.width());
+        column.map_or(self.range, |column| column.range)
+    }
+
+    /// Values as they are written: a number, a list, or a list of lists.
+    #[must_use]
+    pub fn written(&self, values: &[f64]) -> String {
+        match (self.list, values) {
+            (None, [value, ..]) => format!("{value:?}"),
+            _ if self.columns.is_empty() => format!("{values:?}"),
+            _ => format!("{:?}", values.chunks(self.width()).collect::<Vec<_>>()),
+        }
+    }
+
+    fn scale(&self, values: &mut [f64], factor: f64) {
+        for (place, value) in values.iter_mut().enumerate() {
+            let column = self.columns.get(place % self.width());
+            if column.is_none_or(|column| column.is_modulus) {
+                *value *= factor;
+            }
+        }
     }
 
     /// Values that fit, as a description that follows "expected".
     #[must_use]
     pub fn expected(&self) -> String {
+        if let (Some((least, most)), [_, ..]) = (self.list, self.columns) {
+            let names: Vec<&str> = self.columns.iter().map(|column| column.name).collect();
+            let ranges = self.columns.iter().map(|column| column.range.expected);
+            let ranges: Vec<&str> = ranges.collect();
+            let (names, ranges) = (names.join(", "), ranges.join(" and "));
+            return format!("a list of {least} to {most} of [{names}], each of {ranges}");
+        }
         match self.list {
             None => self.range.expected.to_owned(),
             Some((least, most)) if least == most => {
@@ -207,18 +270,22 @@ impl LawParameter {
     fn check(&self, values: &[f64]) -> Result<(), ParameterError> {
         let quantity = self.name;
         let (least, most) = self.list.unwrap_or((1, 1));
-        if !(least..=most).contains(&values.len()) {
-            let (found, expected) = (values.len(), [least, most]);
+        let width = self.width();
+        if !(least..=most).contains(&(values.len() / width)) || values.len() % width != 0 {
+            let (found, expected) = (values.len(), [least * width, most * width]);
             return Err(ParameterError::Length {
                 quantity,
                 found,
                 expected,
             });
         }
-        match values.iter().find(|value| !self.range.contains(**value)) {
-            None => Ok(()),
-            Some(found) => Err(self.refused(*found, self.range.expected)),
+        for (place, found) in values.iter().enumerate() {
+            let range = self.range_at(place);
+            if !range.contains(*found) {
+                return Err(self.refused(*found, range.expected));
+            }
         }
+        Ok(())
     }
 
     /// The error for a value that does not fit the others; `expected` follows "expected".
@@ -293,9 +360,8 @@ impl Parameters {
         let kept = |name: &str| is_of_shear && name == LawParameter::BULK_MODULUS.name;
         for parameter in described.iter().filter(|parameter| parameter.is_modulus()) {
             let values = self.values.get_mut(parameter.name);
-            let values = values.filter(|_| !kept(parameter.name));
-            for value in values.into_iter().flatten() {
-                *value *= factor;
+            if let Some(values) = values.filter(|_| !kept(parameter.name)) {
+                parameter.scale(values, factor);
             }
         }
     }
@@ -392,6 +458,26 @@ impl<'a> LawValues<'a> {
     pub fn lame(&self) -> (f64, f64) {
         let modulus = self.number(&LawParameter::YOUNGS_MODULUS);
         lame(modulus, self.number(&LawParameter::POISSONS_RATIO))
+    }
+
+    /// Lame's constants (lambda, mu) (Pa) of [`LawParameter::YOUNGS_MODULUS`] and one of [`LawParameter::VOLUME`].
+    ///
+    /// # Errors
+    ///
+    /// [`ParameterError`] for a bulk modulus below 1/3 of Young's modulus, with which Poisson's ratio would be below 0.
+    pub fn lame_by_volume(&self) -> Result<(f64, f64), ParameterError> {
+        let Some(bulk) = self.given(&LawParameter::BULK_MODULUS) else {
+            return Ok(self.lame());
+        };
+        let modulus = self.number(&LawParameter::YOUNGS_MODULUS);
+        let triple = 3.0 * bulk;
+        let expected = "at least 1/3 of Young's modulus: Poisson's ratio is 0 or above for laws of large deformation";
+        if triple < modulus {
+            return Err(LawParameter::BULK_MODULUS.refused(bulk, expected));
+        }
+        let over = 1.0 / (9.0 * bulk - modulus);
+        let mu = triple * modulus * over;
+        Ok((triple * (triple - modulus) * over, mu))
     }
 
     /// Lame's first constant (Pa) to a shear modulus (Pa), by [`LawParameter::POISSONS_RATIO`] or

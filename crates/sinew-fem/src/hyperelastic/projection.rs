@@ -198,6 +198,14 @@ impl<N: Number> Projection<N> {
     }
 }
 
+/// [`semidefinite`] with what that loses by rounding where negative eigenvalues are the larger ones: the own block of a
+/// node for a tangent that may be indefinite.
+#[inline(always)]
+pub(super) fn surely_semidefinite<N: Number>(block: Tensor<N>) -> Tensor<N> {
+    let rounding = block.largest() * N::of(8.0 * N::EPSILON);
+    semidefinite(block.symmetric()) + Tensor::diagonal(rounding)
+}
+
 /// A symmetric tensor without its negative eigenvalues: half the sum of the tensor and its positive square root's square, which is `V |s| V'`.
 #[inline(always)]
 pub(crate) fn semidefinite<N: Number>(tensor: Tensor<N>) -> Tensor<N> {

@@ -3,7 +3,8 @@
 use sinew_sparse::simd::Number;
 
 use super::deformation::Deformation;
-use super::law::{Bulk, HyperelasticLaw, Point, block_of};
+use super::first_invariant::{self, Slopes};
+use super::law::{Bulk, HyperelasticLaw, Point};
 use super::mooney_rivlin::Isochoric;
 use super::parameters::{LawParameter, LawValues, ParameterError, Range};
 use super::tensor::Tensor;
@@ -37,21 +38,12 @@ const C: LawParameter = LawParameter::number(
 impl Yeoh {
     /// First and second derivative of `c1 i + c2 i^2 + c3 i^3` by i.
     #[inline(always)]
-    fn slopes<N: Number>(&self, at: &Point<N, Isochoric<N>>) -> [N; 2] {
-        let own = &at.own;
-        // 0 at rest, where J^-2/3 is exactly 1.
-        let beyond = N::of(3.0).mul_add(own.scale - N::of(1.0), own.scale * own.first);
+    fn slopes<N: Number>(&self, own: &Isochoric<N>) -> Slopes<N> {
+        let beyond = first_invariant::beyond(own);
         let [c1, c2, c3] = self.c;
         let second = N::of(6.0 * c3).mul_add(beyond, N::of(2.0 * c2));
         let half = N::of(3.0 * c3).mul_add(beyond, N::of(2.0 * c2));
         [half.mul_add(beyond, N::of(c1)), second]
-    }
-
-    /// `(F - I1/(3J) c)`, by parts that are 0 at rest: half the gradient of i over `J^-2/3`.
-    #[inline(always)]
-    fn half_gradient<N: Number>(at: &Point<N, Isochoric<N>>) -> Tensor<N> {
-        let beyond = at.own.beyond_rest(at.own.first, at.volume_change);
-        at.distortion.plus(beyond * N::of(-1.0 / 3.0), at.cofactor)
     }
 
     /// Second derivative (Pa) of the local energy of volume, `mu/3 (J - 1)^2`.
@@ -96,10 +88,8 @@ impl HyperelasticLaw for Yeoh {
 
     #[inline(always)]
     fn energy<N: Number>(&self, at: &Point<N, Isochoric<N>>) -> N {
-        let (own, volume) = (&at.own, at.volume_change);
-        // `J^-2/3 - 1` without a difference of large numbers.
-        let shrink = (N::of(-2.0 / 3.0) * volume.ln_1p()).exp_m1();
-        let beyond = own.scale.mul_add(own.first, N::of(3.0) * shrink);
+        let volume = at.volume_change;
+        let beyond = first_invariant::exactly_beyond(at);
         let [c1, c2, c3] = self.c.map(N::of);
         let local = c3.mul_add(beyond, c2).mul_add(beyond, c1) * beyond;
         (N::of(0.5) * self.of_volume::<N>() * volume).mul_add(volume, local)
@@ -108,39 +98,20 @@ impl HyperelasticLaw for Yeoh {
     /// `2 psi' J^-2/3 (F - I1/(3J) c) + 2/3 mu (J - 1) c`.
     #[inline(always)]
     fn stress<N: Number>(&self, at: &Point<N, Isochoric<N>>) -> Tensor<N> {
-        let [slope, _] = self.slopes(at);
-        let stress = Self::half_gradient(at).scaled(N::of(2.0) * slope * at.own.scale);
-        stress.plus(self.of_volume::<N>() * at.volume_change, at.cofactor)
+        let [slope, _] = self.slopes(&at.own);
+        first_invariant::stress(at, &at.own, slope)
+            .plus(self.of_volume::<N>() * at.volume_change, at.cofactor)
     }
 
     #[inline(always)]
     fn tangent<N: Number>(&self, at: &Point<N, Isochoric<N>>, change: Tensor<N>) -> Tensor<N> {
-        let own = &at.own;
-        let (f, c) = (at.gradient, at.cofactor);
-        let [slope, curvature] = self.slopes(at);
-        let twice = N::of(2.0) * own.scale;
-        let volume = c.contracted(change);
-        // dJ/J.
-        let relative = volume * own.over;
-        let turned = at.cofactor_change(change);
-        let third = N::of(1.0 / 3.0);
-        let along = f.contracted(change);
-        let of_c = third * own.over * (N::of(5.0) * third * own.i1() * relative - (along + along));
-        let first = change
-            .plus(N::of(-2.0) * third * relative, f)
-            .plus(of_c, c)
-            .plus(-(third * own.i1() * own.over), turned);
-        let half = Self::half_gradient(at);
         let bulk = self.of_volume::<N>();
-        first
-            .scaled(slope * twice)
-            .plus(curvature * twice * twice * half.contracted(change), half)
-            .plus(bulk * volume, c)
-            .plus(bulk * at.volume_change, turned)
+        first_invariant::tangent(at, &at.own, self.slopes(&at.own), change)
+            .plus(bulk * at.cofactor.contracted(change), at.cofactor)
+            .plus(bulk * at.volume_change, at.cofactor_change(change))
     }
 
-    /// The exact block, with derivatives of psi by i that are below 0 taken as 0: the gradient of i is an outer product
-    /// in it, and i is rank-one convex.
+    /// The exact block, with derivatives of psi by i that are below 0 taken as 0.
     #[inline(always)]
     fn node_block<N: Number>(
         &self,
@@ -148,19 +119,9 @@ impl HyperelasticLaw for Yeoh {
         bulk: Bulk<N>,
         gradient: [N; 3],
     ) -> Tensor<N> {
-        let (own, zero) = (&at.own, N::of(0.0));
-        let [slope, curvature] = self.slopes(at).map(|of_psi| of_psi.max(zero));
-        let twice = N::of(2.0) * own.scale;
-        let a = slope * twice;
-        let squared = own.over * own.over;
-        let first = a * N::of(5.0 / 9.0) * own.i1() * squared;
-        let (along, normal) = (at.gradient.on(gradient), at.cofactor.on(gradient));
-        let mixed = Tensor::outer(along, normal).symmetric();
-        let sloped = Self::half_gradient(at).on(gradient);
+        let slopes = self.slopes(&at.own).map(|of_psi| of_psi.max(N::of(0.0)));
         let of_volume = self.of_volume::<N>() + bulk.modulus;
-        block_of(at, gradient, a, first + of_volume)
-            .plus(N::of(-4.0 / 3.0) * a * own.over, mixed)
-            .plus(curvature * twice * twice, Tensor::outer(sloped, sloped))
+        first_invariant::node_block(at, &at.own, slopes, of_volume, gradient)
     }
 }
 
@@ -195,7 +156,7 @@ mod tests {
         let (mu, nu) = (1200.0, 0.45);
         let yeoh = of(&[0.5 * mu], nu);
         let iso = NeoHookeanIso::new(&Parameters::new(2.0 * mu * (1.0 + nu), nu)).unwrap();
-        for [h, change] in sample_deformations::<Yeoh>() {
+        for [h, change] in sample_deformations(yeoh) {
             let (a, b) = (yeoh.at(h), iso.at(h));
             let size = 1.0 + yeoh.stress(&a).largest();
             assert!((yeoh.energy(&a) - iso.energy(&b)).abs() < 1e-11 * size);

@@ -151,7 +151,7 @@ impl<T: Typed> Compiled for T {
     }
 
     fn samples(&self) -> Vec<[Tensor<f64>; 2]> {
-        sample_deformations::<T::Law<'_>>().collect()
+        sample_deformations(self.law()).collect()
     }
 
     fn forces(&self, forces: Forces<'_, f64>) -> Result<Deformed, EvaluationError> {

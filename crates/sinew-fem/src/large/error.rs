@@ -37,6 +37,17 @@ pub(super) fn memory_refused(tag: u64, volume_ratio: f64) -> EvaluationError {
     }
 }
 
+/// The error for a tetrahedron, or the mean of some, that is beyond the limit of a law.
+#[cold]
+pub(super) fn limit_reached(law: &str, limit: &str, tag: u64) -> EvaluationError {
+    EvaluationError {
+        element: tag,
+        reason: format!(
+            "the law `{law}` {limit}: shorter steps avoid that unless the motion itself leads there"
+        ),
+    }
+}
+
 /// The error for a tetrahedron, or the mean of some, that a law is not defined for.
 #[cold]
 pub(super) fn refused(law: &str, tag: u64, volume_ratio: f64) -> EvaluationError {

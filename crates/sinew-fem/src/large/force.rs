@@ -174,7 +174,7 @@ impl<T: Vectors, L: HyperelasticLaw> Sweep<'_, T, L> {
             let own = first - chunk.slots.start;
             let gradient = rest.gradient_of::<N>(first, places.displacement);
             let at = point(&self.law, gradient, self.numbers.axes.as_ref(), first);
-            require_law(&self.law, &at.deformation, |lane| rest.tag(first + lane))?;
+            require_law(&self.law, &at, |lane| rest.tag(first + lane))?;
             let volume = rest.volumes::<N>(first);
             let dilation = volume * self.law.dilation(&at);
             dilation.store(&mut dilations[own..]);
@@ -236,7 +236,7 @@ impl<T: Vectors, L: HyperelasticLaw> Sweep<'_, T, L> {
                 let tets = region.edges.of(region.edge_at(first + lane));
                 tets.first().map_or(0, |tet| rest.tag(*tet as usize))
             };
-            require_law(&self.law, &at.deformation, tag)?;
+            require_law(&self.law, &at, tag)?;
             let mut stress = self.law.stress(&at);
             if let Some(stiffness) = stiffness {
                 stress = stress.scaled(stiffness.at_edges(first));
@@ -353,7 +353,7 @@ impl<T: Vectors, L: HyperelasticLaw> Sweep<'_, T, L> {
                 rest.gradient_of::<N>(first, places.displacement)
             };
             let at = point(&self.law, gradient, self.numbers.axes.as_ref(), first);
-            require_law(&self.law, &at.deformation, |lane| rest.tag(first + lane))?;
+            require_law(&self.law, &at, |lane| rest.tag(first + lane))?;
             let dilation = if is_smoothed {
                 N::load(&dilations[own..])
             } else {

@@ -56,7 +56,7 @@ impl OnLaw for Tangents<'_, '_> {
             for tet in rest.tets() {
                 let gradient = rest.gradient_of::<f64>(tet, &scratch.displacement);
                 let at = point(&law, gradient, region.axes.as_ref(), tet);
-                require(&law, region, &relaxing, &at.deformation, tet)?;
+                require(&law, region, &relaxing, &at, tet)?;
                 let left = left_of_tets(region, &relaxing, &law, &at, tet);
                 let own = OwnTangent::of(&law, &at, left, kind);
                 let beside = beside_of(tet, &at.deformation);

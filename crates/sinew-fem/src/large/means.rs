@@ -10,7 +10,7 @@ use super::kept::{Rows, load, store};
 use super::memory::Relaxing;
 use super::region::HyperelasticRegion;
 use super::scratch::Scratch;
-use crate::hyperelastic::{Deformation, HyperelasticLaw, Point, Tensor};
+use crate::hyperelastic::{HyperelasticLaw, Point, Tensor};
 use crate::smoothing::Average;
 
 /// Takes the gradient of the displacement in each tetrahedron and the mean dilation of each patch; with those of the change, where it is
@@ -29,7 +29,7 @@ pub(super) fn means<N: Number<Real = f64>, L: HyperelasticLaw>(
         let gradient = rest.gradient_of::<N>(first, &scratch.displacement);
         store(gradient, &mut scratch.gradients[side_by_side.clone()]);
         let at = point(law, gradient, region.axes.as_ref(), first);
-        require(law, region, relaxing, &at.deformation, first)?;
+        require(law, region, relaxing, &at, first)?;
         let [dilations, changes] = &mut scratch.dilations_of_tets;
         let volume = rest.volumes::<N>(first);
         (volume * law.dilation(&at)).store(&mut dilations[first..]);
@@ -72,7 +72,7 @@ pub(super) fn at_edges<N: Number<Real = f64>, L: HyperelasticLaw>(
         let tets = region.edges.of(region.edge_at(first + lane));
         tets.first().map_or(0, |tet| region.rest.tag(*tet as usize))
     };
-    require_law(law, &at.deformation, tag)?;
+    require_law(law, &at, tag)?;
     require_memory(relaxing, &at.deformation, tag)?;
     Ok(at)
 }
@@ -126,11 +126,11 @@ pub(super) fn require<L: HyperelasticLaw, N: Number>(
     law: &L,
     region: &HyperelasticRegion,
     relaxing: &Relaxing<'_>,
-    deformation: &Deformation<N>,
+    at: &Point<N, L::Own<N>>,
     first: usize,
 ) -> Result<(), EvaluationError> {
     let tag = |lane: usize| region.rest.tag(first + lane);
-    require_law(law, deformation, tag)?;
-    require_memory(relaxing, deformation, tag)?;
-    require_fibres(&region.fibres, deformation, tag)
+    require_law(law, at, tag)?;
+    require_memory(relaxing, &at.deformation, tag)?;
+    require_fibres(&region.fibres, &at.deformation, tag)
 }

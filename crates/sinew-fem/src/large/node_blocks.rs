@@ -91,7 +91,7 @@ impl<L: HyperelasticLaw, const ALL: bool> WithReal<f64> for Sweep<'_, '_, L, ALL
                 let dilation = N::from_lanes(|lane| scratch.dilations[patch(lane)][0]);
                 left_of_smoothed(region, relaxing, law, &at, (first, dilation))
             } else {
-                require(law, region, relaxing, &at.deformation, first)?;
+                require(law, region, relaxing, &at, first)?;
                 left_of_tets(region, relaxing, law, &at, first)
             };
             let gradients = rest.all_gradients::<N>(first);

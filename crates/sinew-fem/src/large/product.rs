@@ -139,7 +139,7 @@ impl<'a, L: HyperelasticLaw, const ALL: bool> Sweep<'a, L, ALL> {
                 });
                 left_of_smoothed(region, &relaxing, &law, &at, (first, dilation))
             } else {
-                require(&law, region, &relaxing, &at.deformation, first)?;
+                require(&law, region, &relaxing, &at, first)?;
                 left_of_tets(region, &relaxing, &law, &at, first)
             };
             let own = OwnTangent::among::<ALL>(&law, &at, left, kind);

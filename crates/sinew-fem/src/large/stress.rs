@@ -28,9 +28,8 @@ impl Cauchy<'_> {
         let rest = &region.rest;
         let gradient = |tet: usize| rest.gradient_by(tet, displacement);
         let at = point(&law, gradient(tet), region.axes.as_ref(), tet);
-        let is_possible = |at: &Point<f64, L::Own<f64>>| {
-            law.admits(&at.deformation) && relaxing.admits(&at.deformation)
-        };
+        let is_possible =
+            |at: &Point<f64, L::Own<f64>>| law.admits(at) && relaxing.admits(&at.deformation);
         let mut is_defined = is_possible(&at);
         let left = match region.patch_of.get(tet) {
             Some(patch) => {

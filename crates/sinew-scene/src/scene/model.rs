@@ -2,7 +2,7 @@
 
 use std::sync::{Mutex, PoisonError};
 
-use sinew_fem::hyperelastic::{KnownLaw, LawParameter, Presence, known_laws};
+use sinew_fem::hyperelastic::{KnownLaw, LawParameter, Presence, Range, known_laws};
 use toml::de::DeValue;
 
 use crate::decode::value::{Misfit, finite, list, text};
@@ -242,7 +242,7 @@ fn examples(law: &'static KnownLaw) -> Vec<&'static str> {
                 Presence::Required | Presence::Default(_) => true,
             });
         let lines = given.map(|parameter| {
-            let value = Parameter(parameter).written(parameter.example);
+            let value = parameter.written(parameter.example);
             format!("{} = {value}\n", parameter.name)
         });
         let lines: String = lines.collect();
@@ -349,7 +349,7 @@ impl Described for LawKey {
         let (_, first) = self.laws[0];
         let otherwise = match (requiring.len(), first.presence) {
             (count, _) if count == self.laws.len() => Stated::Required,
-            (0, Presence::Default(default)) => Stated::Default(Parameter(first).written(default)),
+            (0, Presence::Default(default)) => Stated::Default(first.written(default)),
             (0, _) => Stated::InWords("one of several"),
             _ => Stated::RequiredWith(MODEL.name, requiring),
         };
@@ -369,30 +369,35 @@ impl Described for LawKey {
 #[derive(Clone, Copy, Debug)]
 struct Parameter(&'static LawParameter);
 
-impl Parameter {
-    fn written(self, values: &[f64]) -> String {
-        match (self.0.list, values) {
-            (None, [value, ..]) => format!("{value:?}"),
-            _ => format!("{values:?}"),
-        }
-    }
-}
-
 impl Kind for Parameter {
     fn expected(&self) -> String {
         self.0.expected()
     }
 
     fn shape(&self) -> Shape {
-        let range = self.0.range;
-        let number = Shape::Number(range.low, range.high);
+        let of = |range: Range| Shape::Number(range.low, range.high);
+        let list = |of: Shape, least, most| Shape::List {
+            of: Box::new(of),
+            least,
+            most: Some(most),
+        };
+        let columns = self.0.columns;
+        let entry = match columns {
+            [] => of(self.0.range),
+            [first, rest @ ..] => {
+                let is_alike = rest.iter().all(|column| {
+                    (column.range.low, column.range.high) == (first.range.low, first.range.high)
+                });
+                let numbers = match is_alike {
+                    true => of(first.range),
+                    false => Shape::Either(columns.iter().map(|column| of(column.range)).collect()),
+                };
+                list(numbers, columns.len(), columns.len())
+            }
+        };
         match self.0.list {
-            None => number,
-            Some((least, most)) => Shape::List {
-                of: Box::new(number),
-                least,
-                most: Some(most),
-            },
+            None => entry,
+            Some((least, most)) => list(entry, least, most),
         }
     }
 }
@@ -401,19 +406,34 @@ impl Values for Parameter {
     type Read = Vec<f64>;
 
     fn read(&self, value: &DeValue<'_>) -> Result<Vec<f64>, Misfit> {
-        let number = |value: &DeValue<'_>| {
+        let number = |value: &DeValue<'_>, range: Range| {
             let number = finite(value)?;
-            match self.0.range.contains(number) {
+            match range.contains(number) {
                 true => Ok(number),
                 false => Err(Misfit::Value),
             }
         };
+        let of_plain = |value: &DeValue<'_>| number(value, self.0.range);
         let Some((least, most)) = self.0.list else {
-            return Ok(vec![number(value)?]);
+            return Ok(vec![of_plain(value)?]);
         };
-        let numbers = list(value, number)?;
-        match (least..=most).contains(&numbers.len()) {
-            true => Ok(numbers),
+        let entries = match self.0.columns {
+            [] => list(value, |value| Ok(vec![of_plain(value)?]))?,
+            columns => list(value, |value| {
+                let numbers = list(value, finite)?;
+                let fits = numbers.len() == columns.len()
+                    && columns
+                        .iter()
+                        .zip(&numbers)
+                        .all(|(column, number)| column.range.contains(*number));
+                match fits {
+                    true => Ok(numbers),
+                    false => Err(Misfit::Value),
+                }
+            })?,
+        };
+        match (least..=most).contains(&entries.len()) {
+            true => Ok(entries.concat()),
             false => Err(Misfit::Value),
         }
     }

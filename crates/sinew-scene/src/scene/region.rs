@@ -263,6 +263,14 @@ fn read(table: &Table<'_>, selections: &mut Selections) -> Result<Region, SceneE
         true => from_mesh::read(table, &YOUNGS_MODULUS)?.or(1.0),
         false => (1.0, None),
     };
+    if modulus_data.is_some() && table.has(LawParameter::BULK_MODULUS.name) {
+        let reason = "does not go with Young's modulus by data, of which Poisson's ratio makes a bulk modulus for each tetrahedron";
+        let key = LawParameter::BULK_MODULUS.name;
+        let reason = reason.to_owned();
+        return Err(table
+            .place()
+            .key_fault(key, Fault::Misplaced { key, reason }));
+    }
     let law = match model {
         MaterialModel::Springs => springs(&table.table(&SPRINGS_OF_REGION)?, youngs_modulus)?,
         MaterialModel::Linear => Law::Linear {
@@ -358,4 +366,20 @@ fn poissons_ratio(table: &Table<'_>) -> Result<f64, SceneError> {
         }
         _ => error,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sinew_fem::hyperelastic::KEYS_OF_REGIONS;
+
+    /// The registry of laws refuses these names, and cannot see the keys here.
+    #[test]
+    fn laws_leave_the_keys_of_regions_alone() {
+        let keys = REGION.keys.iter().filter(|key| key.parts().is_none());
+        let names = keys.map(|key| key.name());
+        let shared = [YOUNGS_MODULUS.name, POISSONS_RATIO.name];
+        let own: Vec<&str> = names.filter(|name| !shared.contains(name)).collect();
+        assert_eq!(own, KEYS_OF_REGIONS);
+    }
 }

@@ -9,6 +9,7 @@
 use std::arch::x86_64::*;
 
 use super::lanes::{Lanes, MOST};
+use super::real::bits;
 
 /// Two 256-bit vectors.
 #[derive(Clone, Copy)]
@@ -221,6 +222,42 @@ impl Lanes<f64> for Avx2<__m256d> {
     }
 
     #[inline(always)]
+    unsafe fn two_to_it(self) -> Self {
+        unsafe {
+            let of = |x| {
+                let biased = _mm256_add_pd(x, _mm256_set1_pd(bits::BIASED_DOUBLE));
+                let shifted =
+                    _mm256_slli_epi64::<{ bits::OF_DOUBLE as i32 }>(_mm256_castpd_si256(biased));
+                _mm256_castsi256_pd(shifted)
+            };
+            Self(of(self.0), of(self.1))
+        }
+    }
+
+    #[inline(always)]
+    unsafe fn parts(self) -> [Self; 2] {
+        unsafe {
+            let of = |x| {
+                let own = _mm256_castpd_si256(x);
+                let root = _mm256_set1_epi64x(bits::ROOT_OF_DOUBLE as i64);
+                let exponent =
+                    _mm256_srli_epi64::<{ bits::OF_DOUBLE as i32 }>(_mm256_sub_epi64(own, root));
+                let shifted = _mm256_slli_epi64::<{ bits::OF_DOUBLE as i32 }>(exponent);
+                let mantissa = _mm256_sub_epi64(
+                    _mm256_add_epi64(own, _mm256_set1_epi64x(1_i64 << 62)),
+                    shifted,
+                );
+                let ones = _mm256_castpd_si256(_mm256_set1_pd(bits::WHOLE_DOUBLE));
+                let whole = _mm256_castsi256_pd(_mm256_or_si256(exponent, ones));
+                let offset = _mm256_set1_pd(bits::WHOLE_DOUBLE + 1024.0);
+                (_mm256_castsi256_pd(mantissa), _mm256_sub_pd(whole, offset))
+            };
+            let ((a, b), (c, d)) = (of(self.0), of(self.1));
+            [Self(a, c), Self(b, d)]
+        }
+    }
+
+    #[inline(always)]
     unsafe fn at_most(self, other: Self) -> u32 {
         unsafe {
             let of = |a, b| _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_LE_OQ>(a, b)) as u32;
@@ -399,6 +436,42 @@ impl Lanes<f32> for Avx2<__m256> {
     #[inline(always)]
     unsafe fn sqrt(self) -> Self {
         unsafe { Self(_mm256_sqrt_ps(self.0), _mm256_sqrt_ps(self.1)) }
+    }
+
+    #[inline(always)]
+    unsafe fn two_to_it(self) -> Self {
+        unsafe {
+            let of = |x| {
+                let biased = _mm256_add_ps(x, _mm256_set1_ps(bits::BIASED_SINGLE));
+                let shifted =
+                    _mm256_slli_epi32::<{ bits::OF_SINGLE as i32 }>(_mm256_castps_si256(biased));
+                _mm256_castsi256_ps(shifted)
+            };
+            Self(of(self.0), of(self.1))
+        }
+    }
+
+    #[inline(always)]
+    unsafe fn parts(self) -> [Self; 2] {
+        unsafe {
+            let of = |x| {
+                let own = _mm256_castps_si256(x);
+                let root = _mm256_set1_epi32(bits::ROOT_OF_SINGLE as i32);
+                let exponent =
+                    _mm256_srli_epi32::<{ bits::OF_SINGLE as i32 }>(_mm256_sub_epi32(own, root));
+                let shifted = _mm256_slli_epi32::<{ bits::OF_SINGLE as i32 }>(exponent);
+                let mantissa = _mm256_sub_epi32(
+                    _mm256_add_epi32(own, _mm256_set1_epi32(1_i32 << 30)),
+                    shifted,
+                );
+                let ones = _mm256_castps_si256(_mm256_set1_ps(bits::WHOLE_SINGLE));
+                let whole = _mm256_castsi256_ps(_mm256_or_si256(exponent, ones));
+                let offset = _mm256_set1_ps(bits::WHOLE_SINGLE + 128.0);
+                (_mm256_castsi256_ps(mantissa), _mm256_sub_ps(whole, offset))
+            };
+            let ((a, b), (c, d)) = (of(self.0), of(self.1));
+            [Self(a, c), Self(b, d)]
+        }
     }
 
     #[inline(always)]

@@ -9,6 +9,7 @@
 use std::arch::x86_64::*;
 
 use super::lanes::{Lanes, MOST};
+use super::real::bits;
 
 /// A 512-bit vector.
 #[derive(Clone, Copy)]
@@ -161,6 +162,41 @@ impl Lanes<f64> for Avx512<__m512d> {
     }
 
     #[inline(always)]
+    unsafe fn two_to_it(self) -> Self {
+        unsafe {
+            let of = |x| {
+                let biased = _mm512_add_pd(x, _mm512_set1_pd(bits::BIASED_DOUBLE));
+                let shifted = _mm512_slli_epi64::<{ bits::OF_DOUBLE }>(_mm512_castpd_si512(biased));
+                _mm512_castsi512_pd(shifted)
+            };
+            Self(of(self.0))
+        }
+    }
+
+    #[inline(always)]
+    unsafe fn parts(self) -> [Self; 2] {
+        unsafe {
+            let of = |x| {
+                let own = _mm512_castpd_si512(x);
+                let root = _mm512_set1_epi64(bits::ROOT_OF_DOUBLE as i64);
+                let exponent =
+                    _mm512_srli_epi64::<{ bits::OF_DOUBLE }>(_mm512_sub_epi64(own, root));
+                let shifted = _mm512_slli_epi64::<{ bits::OF_DOUBLE }>(exponent);
+                let mantissa = _mm512_sub_epi64(
+                    _mm512_add_epi64(own, _mm512_set1_epi64(1_i64 << 62)),
+                    shifted,
+                );
+                let ones = _mm512_castpd_si512(_mm512_set1_pd(bits::WHOLE_DOUBLE));
+                let whole = _mm512_castsi512_pd(_mm512_or_si512(exponent, ones));
+                let offset = _mm512_set1_pd(bits::WHOLE_DOUBLE + 1024.0);
+                (_mm512_castsi512_pd(mantissa), _mm512_sub_pd(whole, offset))
+            };
+            let (a, b) = of(self.0);
+            [Self(a), Self(b)]
+        }
+    }
+
+    #[inline(always)]
     unsafe fn at_most(self, other: Self) -> u32 {
         unsafe { _mm512_cmp_pd_mask::<_CMP_LE_OQ>(self.0, other.0).into() }
     }
@@ -289,6 +325,41 @@ impl Lanes<f32> for Avx512<__m512> {
     #[inline(always)]
     unsafe fn sqrt(self) -> Self {
         unsafe { Self(_mm512_sqrt_ps(self.0)) }
+    }
+
+    #[inline(always)]
+    unsafe fn two_to_it(self) -> Self {
+        unsafe {
+            let of = |x| {
+                let biased = _mm512_add_ps(x, _mm512_set1_ps(bits::BIASED_SINGLE));
+                let shifted = _mm512_slli_epi32::<{ bits::OF_SINGLE }>(_mm512_castps_si512(biased));
+                _mm512_castsi512_ps(shifted)
+            };
+            Self(of(self.0))
+        }
+    }
+
+    #[inline(always)]
+    unsafe fn parts(self) -> [Self; 2] {
+        unsafe {
+            let of = |x| {
+                let own = _mm512_castps_si512(x);
+                let root = _mm512_set1_epi32(bits::ROOT_OF_SINGLE as i32);
+                let exponent =
+                    _mm512_srli_epi32::<{ bits::OF_SINGLE }>(_mm512_sub_epi32(own, root));
+                let shifted = _mm512_slli_epi32::<{ bits::OF_SINGLE }>(exponent);
+                let mantissa = _mm512_sub_epi32(
+                    _mm512_add_epi32(own, _mm512_set1_epi32(1_i32 << 30)),
+                    shifted,
+                );
+                let ones = _mm512_castps_si512(_mm512_set1_ps(bits::WHOLE_SINGLE));
+                let whole = _mm512_castsi512_ps(_mm512_or_si512(exponent, ones));
+                let offset = _mm512_set1_ps(bits::WHOLE_SINGLE + 128.0);
+                (_mm512_castsi512_ps(mantissa), _mm512_sub_ps(whole, offset))
+            };
+            let (a, b) = of(self.0);
+            [Self(a), Self(b)]
+        }
     }
 
     #[inline(always)]

@@ -23,6 +23,10 @@ pub(crate) trait Lanes<T: Real>: Copy {
     unsafe fn mul(self, other: Self) -> Self;
     unsafe fn div(self, other: Self) -> Self;
     unsafe fn sqrt(self) -> Self;
+    /// [`Real::two_to_it`].
+    unsafe fn two_to_it(self) -> Self;
+    /// [`Real::parts`].
+    unsafe fn parts(self) -> [Self; 2];
     /// Asks for the 64 bytes at an address, which need not be valid, to be brought near.
     unsafe fn prefetch(from: *const T);
     /// `self factor + other`, rounded once where the instruction set can.

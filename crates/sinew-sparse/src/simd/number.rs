@@ -64,6 +64,14 @@ pub trait Number:
     #[must_use]
     fn sqrt(self) -> Self;
 
+    /// 2 to the power of the number, which is a whole one; of the range that exponents have.
+    #[must_use]
+    fn two_to_it(self) -> Self;
+
+    /// m and e of `m 2^e`, for a number above 0: m from the root of 1/2 to that of 2, e whole.
+    #[must_use]
+    fn parts(self) -> [Self; 2];
+
     /// `then` where `a <= b`, elsewhere, and where one of them is not a number, `otherwise`.
     #[must_use]
     fn select_le(a: Self, b: Self, then: Self, otherwise: Self) -> Self;
@@ -207,6 +215,16 @@ macro_rules! scalar {
             #[inline(always)]
             fn sqrt(self) -> Self {
                 $number::sqrt(self)
+            }
+
+            #[inline(always)]
+            fn two_to_it(self) -> Self {
+                Real::two_to_it(self)
+            }
+
+            #[inline(always)]
+            fn parts(self) -> [Self; 2] {
+                Real::parts(self)
             }
 
             #[inline(always)]

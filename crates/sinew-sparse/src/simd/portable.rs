@@ -3,6 +3,7 @@
 #![allow(unsafe_code, reason = "the contract stands at `Lanes`")]
 
 use super::lanes::Lanes;
+use super::real::Real;
 
 /// Numbers in an array of `N = T::LANES`.
 #[derive(Clone, Copy)]
@@ -82,6 +83,16 @@ macro_rules! array {
             #[inline(always)]
             unsafe fn sqrt(self) -> Self {
                 Self(self.0.map(<$number>::sqrt))
+            }
+
+            #[inline(always)]
+            unsafe fn two_to_it(self) -> Self {
+                Self(self.0.map(Real::two_to_it))
+            }
+
+            #[inline(always)]
+            unsafe fn parts(self) -> [Self; 2] {
+                [0, 1].map(|part| Self(self.0.map(|value| value.parts()[part])))
             }
 
             #[inline(always)]

@@ -271,6 +271,18 @@ impl<T: Real, V: Lanes<T>> Number for Vector<T, V> {
     }
 
     #[inline(always)]
+    fn two_to_it(self) -> Self {
+        // SAFETY: see `Vector`.
+        Self::new(unsafe { self.0.two_to_it() })
+    }
+
+    #[inline(always)]
+    fn parts(self) -> [Self; 2] {
+        // SAFETY: see `Vector`.
+        unsafe { self.0.parts() }.map(Self::new)
+    }
+
+    #[inline(always)]
     fn select_le(a: Self, b: Self, then: Self, otherwise: Self) -> Self {
         // SAFETY: see `Vector`.
         Self::new(unsafe { V::select_le(a.0, b.0, then.0, otherwise.0) })
@@ -322,6 +334,23 @@ mod tests {
             close(a.abs(), &|a, _| a.abs());
             close(a.recip(), &|a, _| a.recip());
             close(b.exp(), &|_, b| b.exp());
+            close((b + b).two_to_it(), &|_, b| (2.0 * b).exp2());
+            for size in [1.0, 1.41, 1.42, 0.708, 0.707, 1e-30, 3e30] {
+                let [mantissa, exponent] = (N::of(size) * b * b).parts();
+                let root = N::of(std::f64::consts::SQRT_2 * (1.0 + N::EPSILON));
+                assert!(N::all_le(mantissa, root) && N::all_le(root.recip(), mantissa));
+                let again = mantissa
+                    * (exponent * N::of(0.5)).map(f64::exp2)
+                    * (exponent * N::of(0.5)).map(f64::exp2);
+                close(again, &|_, b| {
+                    N::Real::of(N::Real::of(size).to_f64() * b * b).to_f64()
+                });
+                close(exponent, &|_, b| {
+                    (N::Real::of(size).to_f64() * b * b * std::f64::consts::SQRT_2)
+                        .log2()
+                        .floor()
+                });
+            }
             close(N::select_le(a, b, a, b), &|a, b| if a <= b { a } else { b });
             let not_in_all = [N::all_le(a, b), N::any_le(b + N::of(1e11), b)];
             assert_eq!(not_in_all, [false, false]);

@@ -160,10 +160,10 @@ fn measure(law: &Hyperelastic) -> [f64; 6] {
         let found = stress(h);
         let size = found.largest() + scale;
         for unit in units() {
-            let slope = slope(|x| Tensor::diagonal(energy(h.plus(x, unit))), 2e-4);
+            let slope = slope(|x| Tensor::diagonal(energy(h.plus(x, unit))), 5e-5);
             note(0, (slope.0[0][0] - found.contracted(unit)).abs(), size);
         }
-        let slope = slope(|x| stress(h.plus(x, change)), 1e-4);
+        let slope = slope(|x| stress(h.plus(x, change)), 5e-5);
         let of_change = tangent(h, change);
         note(
             1,
