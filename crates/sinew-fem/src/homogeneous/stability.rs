@@ -69,6 +69,11 @@ mod tests {
         }
     }
 
+    /// The gradient of a displacement that stretches the axes.
+    fn stretched([x, y, z]: [f64; 3]) -> Tensor<f64> {
+        Tensor([[x, 0.0, 0.0], [0.0, y, 0.0], [0.0, 0.0, z]]) - Tensor::identity()
+    }
+
     /// A slope of tau by logarithmic strains, by differences of stresses alone.
     #[test]
     fn it_is_the_slope_of_kirchhoffs_stress_by_logarithmic_strain() {
@@ -77,10 +82,7 @@ mod tests {
         let stretches = [1.7_f64, 0.8, 0.6];
         let tau = |logs: [f64; 3]| {
             let l = logs.map(f64::exp);
-            let mut h = Tensor::<f64>::zero();
-            for i in 0..3 {
-                h.0[i][i] = l[i] - 1.0;
-            }
+            let h = stretched(l);
             let p = solid.stress(h).unwrap();
             [0, 1, 2].map(|i| p.0[i][i] * l[i])
         };
@@ -101,10 +103,7 @@ mod tests {
             let turn = (squares[i] + squares[j]) / (squares[i] - squares[j]);
             least = least.min((t[i] - t[j]) * turn);
         }
-        let mut h = Tensor::<f64>::zero();
-        for i in 0..3 {
-            h.0[i][i] = stretches[i] - 1.0;
-        }
+        let h = stretched(stretches);
         let found = least_stiffness(&solid, h).unwrap();
         assert!((found / least - 1.0).abs() < 1e-7, "{found} {least}");
     }

@@ -176,9 +176,9 @@ fn a_yeoh_law_that_softens_is_stable_up_to_its_turning_point() {
     for _ in 0..100 {
         let middle = 0.5 * (low + high);
         if turning(middle) > 0.0 {
-            low = middle
+            low = middle;
         } else {
-            high = middle
+            high = middle;
         }
     }
     let limit = curve.ends[1].limit.unwrap();
