@@ -6,7 +6,8 @@ use crate::hyperelastic::{Deformation, Hyperelastic, LawError, SMALLEST_VOLUME_R
 use crate::tetra;
 use crate::{Law, Region};
 
-/// The material of a region at a point, by its moduli as they are stated: instantaneous or long-term ones where stress relaxes.
+/// The material of a region at a point, by its moduli as they are stated: instantaneous or long-term ones where stress
+/// relaxes.
 #[derive(Clone, Debug)]
 pub struct Solid {
     matrix: Matrix,
@@ -25,7 +26,8 @@ enum Matrix {
 }
 
 impl Solid {
-    /// The material of a region. Of properties that the mesh's data give, this takes what stands in the region in their place.
+    /// The material of a region. Of properties that the mesh's data give, this takes what stands in the region in their
+    /// place.
     ///
     /// # Errors
     ///

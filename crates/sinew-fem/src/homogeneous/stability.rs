@@ -5,11 +5,14 @@ use nalgebra::{Matrix6, SymmetricEigen};
 use super::solid::Solid;
 use crate::hyperelastic::Tensor;
 
-/// The least eigenvalue (Pa) of the tangent D between the rate of deformation d and the corotational (Zaremba-Jaumann) rate of the Kirchhoff stress
+/// The least eigenvalue (Pa) of the tangent D between the rate of deformation d and the corotational (Zaremba-Jaumann)
+/// rate of the Kirchhoff stress
 /// `tau = P F'`: `d : D : d = (A : d F) F' : d + P F' d : d`, A being dP/dF.
 ///
-/// In the principal axes of an isotropic law d is the rate of the logarithmic strain, so that D > 0 is `dtau : deps > 0`, the stability of Drucker (Journal of
-/// Applied Mechanics 26, 1959) as Abaqus checks it (Abaqus Theory Guide, "Hyperelastic material behavior") and Hill's inequality (Hill, Proceedings of the Royal Society A 314,
+/// In the principal axes of an isotropic law d is the rate of the logarithmic strain, so that D > 0 is `dtau : deps >
+/// 0`, the stability of Drucker (Journal of
+/// Applied Mechanics 26, 1959) as Abaqus checks it (Abaqus Theory Guide, "Hyperelastic material behavior") and Hill's
+/// inequality (Hill, Proceedings of the Royal Society A 314,
 /// 1970; Leblond, European Journal of Mechanics A/Solids 11, 1992), with the law's own compressibility.
 pub(super) fn least_stiffness(solid: &Solid, h: Tensor<f64>) -> Option<f64> {
     let stress = solid.stress(h)?;

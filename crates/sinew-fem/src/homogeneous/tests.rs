@@ -140,7 +140,8 @@ fn a_linear_law_has_straight_lines() {
     }
 }
 
-/// With nu = 0 nothing moves across: tau = E/2 (l^4 - l^2) turns at l^2 = 1/2, the nominal stress E/2 (l^3 - l) at l^2 = 1/3.
+/// With nu = 0 nothing moves across: tau = E/2 (l^4 - l^2) turns at l^2 = 1/2, the nominal stress E/2 (l^3 - l) at l^2
+/// = 1/3.
 #[test]
 fn a_bar_of_saint_venant_and_kirchhoff_gives_way_where_its_stress_turns() {
     let region = region("stvk", Parameters::new(2000.0, 0.0));

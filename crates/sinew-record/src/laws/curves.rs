@@ -24,7 +24,8 @@ pub struct AskedCurves {
     pub region: Option<String>,
     /// The axis of the pull.
     pub along: [f64; 3],
-    /// The least and the largest stretch; an amount of shear is a stretch less 1. Where there are none, those of measured points with some room, or else from .7 to 2.
+    /// The least and the largest stretch; an amount of shear is a stretch less 1. Where there are none, those of
+    /// measured points with some room, or else from .7 to 2.
     pub stretch: Option<[f64; 2]>,
 }
 
@@ -127,7 +128,8 @@ fn with_room([low, high]: [f64; 2]) -> [f64; 2] {
     [(low - room).max(0.5 * low), high + room]
 }
 
-/// A region with the properties of one place where the mesh's data give them, and sentences about what its curves are of. `moduli` are the least and the
+/// A region with the properties of one place where the mesh's data give them, and sentences about what its curves are
+/// of. `moduli` are the least and the
 /// largest of its tetrahedra (Pa).
 fn at_a_point(region: &Region, moduli: Option<[f64; 2]>, axes: &Axes) -> (Region, Vec<String>) {
     let mut region = region.clone();
