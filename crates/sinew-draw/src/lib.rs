@@ -1,6 +1,7 @@
 //! Plots and pictures as SVG, pages as HTML: data in, text out.
 //!
-//! [`Plot`] draws series on two axes, [`Sheet`] plots side by side, [`Surface`] a mesh, [`Roofline`] rates beneath their limits;
+//! [`Plot`] draws series on two axes, [`Sheet`] plots side by side, [`Surface`] a mesh, [`Roofline`] rates beneath
+//! their limits;
 //! [`svg`] and [`axis`] are what they are made of. [`Page`] is an HTML page in one file with
 //! headings, facts, tables and figures. Everything follows a reader's light or dark colours and needs
 //! no network.

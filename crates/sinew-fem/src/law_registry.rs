@@ -336,6 +336,12 @@ impl Hyperelastic {
         self.0.is_defined_when_inverted()
     }
 
+    /// True if it is defined at a gradient of the displacement.
+    #[must_use]
+    pub fn is_defined_at(&self, h: Tensor<f64>) -> bool {
+        self.0.is_defined_at(h)
+    }
+
     /// True if its isochoric part can relax alone.
     #[must_use]
     pub fn has_isochoric_part(&self) -> bool {

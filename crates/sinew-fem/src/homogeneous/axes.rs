@@ -9,7 +9,8 @@ use crate::tissue::unit;
 pub struct Axes([[f64; 3]; 3]);
 
 impl Axes {
-    /// Axes with the first along a vector. The second is the mesh's axis after the one that the vector is nearest to, as far as it is at right angles to the
+    /// Axes with the first along a vector. The second is the mesh's axis after the one that the vector is nearest to,
+    /// as far as it is at right angles to the
     /// vector: `y` for a pull along `x`, `z` for one along `y`, `x` for one along `z`.
     ///
     /// # Errors

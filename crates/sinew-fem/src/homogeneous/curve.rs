@@ -27,7 +27,8 @@ pub struct Curve {
 pub struct LoadState {
     /// The stretch, or the amount of shear.
     pub amount: f64,
-    /// Nominal stress (first Piola-Kirchhoff) (Pa) along the first axis, on the face across it; in simple shear on that across the second axis.
+    /// Nominal stress (first Piola-Kirchhoff) (Pa) along the first axis, on the face across it; in simple shear on that
+    /// across the second axis.
     pub nominal: f64,
     /// Nominal stress (Pa) along the second axis on the face across it.
     pub nominal_across: f64,
@@ -44,7 +45,8 @@ pub struct LoadState {
 pub struct End {
     /// The last stable amount, if the curve goes on beyond it.
     pub limit: Option<f64>,
-    /// The amount beyond which the size of the nominal stress falls, if it does. A law that is stable may have it: a bar pulled by a force then necks.
+    /// The amount beyond which the size of the nominal stress falls, if it does. A law that is stable may have it: a
+    /// bar pulled by a force then necks.
     pub falls_from: Option<f64>,
     /// The amount beyond which no equilibrium was found, if the curve stops before the amount asked for.
     pub lost: Option<f64>,
@@ -56,7 +58,8 @@ const HALVINGS: u32 = 12;
 const BISECTIONS: usize = 40;
 
 impl Solid {
-    /// The curve of a load between two amounts, with `intervals` states on the way from rest to the farther one. States are found one after the other, from rest on; the
+    /// The curve of a load between two amounts, with `intervals` states on the way from rest to the farther one. States
+    /// are found one after the other, from rest on; the
     /// curve ends where there is no next one.
     #[must_use]
     pub fn curve(&self, load: Load, axes: &Axes, between: [f64; 2], intervals: usize) -> Curve {
@@ -198,7 +201,8 @@ impl Loaded<'_> {
 /// A fall of the stress over its size that is no rounding.
 const FALL: f64 = 1e-9;
 
-/// The amount beyond which the size of the nominal stress falls for the first time: the vertex of a parabola through three states.
+/// The amount beyond which the size of the nominal stress falls for the first time: the vertex of a parabola through
+/// three states.
 fn falls_from(states: &[LoadState]) -> Option<f64> {
     let falls = |pair: &[LoadState]| {
         let way = pair[1].amount - pair[0].amount;

@@ -18,7 +18,8 @@ pub(super) struct Loaded<'a> {
 const MOST_STEPS: usize = 60;
 /// Least share of a Newton step that is tried.
 const LEAST_SHARE: f64 = 1e-4;
-/// A stress that is left, over the largest one, and over the largest stiffness: rounding near incompressibility is some 1e-16 of the latter.
+/// A stress that is left, over the largest one, and over the largest stiffness: rounding near incompressibility is some
+/// 1e-16 of the latter.
 const LEFT: [f64; 2] = [1e-9, 1e-12];
 
 impl Loaded<'_> {
@@ -61,7 +62,8 @@ impl Loaded<'_> {
         slopes
     }
 
-    /// Newton's method with shorter steps where the whole one does not bring the stresses down; `None` where it finds no equilibrium.
+    /// Newton's method with shorter steps where the whole one does not bring the stresses down; `None` where it finds
+    /// no equilibrium.
     pub(super) fn solve(&self, amount: f64, guess: &DVector<f64>) -> Option<DVector<f64>> {
         let mut free = guess.clone();
         let mut at = self.gradient(amount, &free);

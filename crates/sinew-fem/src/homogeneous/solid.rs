@@ -7,7 +7,8 @@ use crate::tetra;
 use crate::tissue::{Direction, frame};
 use crate::{Law, Region};
 
-/// The material of a region at a point, by its moduli as they are stated: instantaneous or long-term ones where stress relaxes.
+/// The material of a region at a point, by its moduli as they are stated: instantaneous or long-term ones where stress
+/// relaxes.
 #[derive(Clone, Debug)]
 pub struct Solid {
     matrix: Matrix,
@@ -107,8 +108,14 @@ impl Solid {
         let deformation = Deformation::of(h);
         let isotropic = match &self.matrix {
             Matrix::Linear { lambda, mu } => isotropic(h, *lambda, *mu),
-            Matrix::Large(_) if deformation.volume_ratio <= SMALLEST_VOLUME_RATIO => return None,
-            Matrix::Large(law) => self.out_of_axes(law.stress(self.in_axes(h))),
+            Matrix::Large(law) => {
+                let in_axes = self.in_axes(h);
+                if deformation.volume_ratio <= SMALLEST_VOLUME_RATIO || !law.is_defined_at(in_axes)
+                {
+                    return None;
+                }
+                self.out_of_axes(law.stress(in_axes))
+            }
         };
         let stress = self.fibres.iter().fold(isotropic, |sum, (fibres, along)| {
             sum + fibres.stress(&fibres.at(&deformation, *along))

@@ -5,11 +5,14 @@ use nalgebra::{Matrix6, SymmetricEigen};
 use super::solid::Solid;
 use crate::hyperelastic::Tensor;
 
-/// The least eigenvalue (Pa) of the tangent D between the rate of deformation d and the corotational (Zaremba-Jaumann) rate of the Kirchhoff stress
+/// The least eigenvalue (Pa) of the tangent D between the rate of deformation d and the corotational (Zaremba-Jaumann)
+/// rate of the Kirchhoff stress
 /// `tau = P F'`: `d : D : d = (A : d F) F' : d + P F' d : d`, A being dP/dF.
 ///
-/// In the principal axes of an isotropic law d is the rate of the logarithmic strain, so that D > 0 is `dtau : deps > 0`, the stability of Drucker (Journal of
-/// Applied Mechanics 26, 1959) as Abaqus checks it (Abaqus Theory Guide, "Hyperelastic material behavior") and Hill's inequality (Hill, Proceedings of the Royal Society A 314,
+/// In the principal axes of an isotropic law d is the rate of the logarithmic strain, so that D > 0 is `dtau : deps >
+/// 0`, the stability of Drucker (Journal of
+/// Applied Mechanics 26, 1959) as Abaqus checks it (Abaqus Theory Guide, "Hyperelastic material behavior") and Hill's
+/// inequality (Hill, Proceedings of the Royal Society A 314,
 /// 1970; Leblond, European Journal of Mechanics A/Solids 11, 1992), with the law's own compressibility.
 pub(super) fn least_stiffness(solid: &Solid, h: Tensor<f64>) -> Option<f64> {
     let stress = solid.stress(h)?;
@@ -69,6 +72,11 @@ mod tests {
         }
     }
 
+    /// The gradient of a displacement that stretches the axes.
+    fn stretched([x, y, z]: [f64; 3]) -> Tensor<f64> {
+        Tensor([[x, 0.0, 0.0], [0.0, y, 0.0], [0.0, 0.0, z]]) - Tensor::identity()
+    }
+
     /// A slope of tau by logarithmic strains, by differences of stresses alone.
     #[test]
     fn it_is_the_slope_of_kirchhoffs_stress_by_logarithmic_strain() {
@@ -77,10 +85,7 @@ mod tests {
         let stretches = [1.7_f64, 0.8, 0.6];
         let tau = |logs: [f64; 3]| {
             let l = logs.map(f64::exp);
-            let mut h = Tensor::<f64>::zero();
-            for i in 0..3 {
-                h.0[i][i] = l[i] - 1.0;
-            }
+            let h = stretched(l);
             let p = solid.stress(h).unwrap();
             [0, 1, 2].map(|i| p.0[i][i] * l[i])
         };
@@ -101,10 +106,7 @@ mod tests {
             let turn = (squares[i] + squares[j]) / (squares[i] - squares[j]);
             least = least.min((t[i] - t[j]) * turn);
         }
-        let mut h = Tensor::<f64>::zero();
-        for i in 0..3 {
-            h.0[i][i] = stretches[i] - 1.0;
-        }
+        let h = stretched(stretches);
         let found = least_stiffness(&solid, h).unwrap();
         assert!((found / least - 1.0).abs() < 1e-7, "{found} {least}");
     }

@@ -140,7 +140,8 @@ fn a_linear_law_has_straight_lines() {
     }
 }
 
-/// With nu = 0 nothing moves across: tau = E/2 (l^4 - l^2) turns at l^2 = 1/2, the nominal stress E/2 (l^3 - l) at l^2 = 1/3.
+/// With nu = 0 nothing moves across: tau = E/2 (l^4 - l^2) turns at l^2 = 1/2, the nominal stress E/2 (l^3 - l) at l^2
+/// = 1/3.
 #[test]
 fn a_bar_of_saint_venant_and_kirchhoff_gives_way_where_its_stress_turns() {
     let region = region("stvk", Parameters::new(2000.0, 0.0));
@@ -176,9 +177,9 @@ fn a_yeoh_law_that_softens_is_stable_up_to_its_turning_point() {
     for _ in 0..100 {
         let middle = 0.5 * (low + high);
         if turning(middle) > 0.0 {
-            low = middle
+            low = middle;
         } else {
-            high = middle
+            high = middle;
         }
     }
     let limit = curve.ends[1].limit.unwrap();

@@ -6,6 +6,7 @@ use sinew_sparse::simd::Number;
 use super::deformation::Deformation;
 use super::law::{HyperelasticLaw, Point};
 use super::parameters::{LawParameter, LawValues, ParameterError, Range};
+use super::powers::{SHARE_OF_EXPONENT, exp_m1, largest_exponent};
 use super::tensor::Tensor;
 
 /// `psi = c/2 (exp Q - 1) + kappa/2 (J - 1)^2`, with `Q = b11 E11^2 + b22 E22^2 + b33 E33^2 + 2 (b12 E11 E22 + b23 E22 E33
@@ -64,6 +65,8 @@ pub struct Strained<N> {
     slope: Tensor<N>,
     /// Q.
     exponent: N,
+    /// `exp Q - 1`.
+    risen: N,
     /// `c/2 exp Q` (Pa).
     grown: N,
     /// `c/2 exp Q dQ/dE` in the axes of coordinates (Pa).
@@ -157,6 +160,16 @@ impl HyperelasticLaw for Fung {
     }
 
     #[inline(always)]
+    fn limit(&self) -> Option<&str> {
+        Some("ends where exp(Q) is beyond all numbers, and the tetrahedron is there")
+    }
+
+    #[inline(always)]
+    fn margin<N: Number>(&self, at: &Point<N, Strained<N>>) -> N {
+        N::of(SHARE_OF_EXPONENT * largest_exponent::<N>()) - at.own.exponent
+    }
+
+    #[inline(always)]
     fn own<N: Number>(&self, deformation: &Deformation<N>) -> Strained<N> {
         self.own_in(deformation, &Tensor::identity())
     }
@@ -173,7 +186,8 @@ impl HyperelasticLaw for Fung {
         let strain = (*axes * strain).times_transposed(*axes);
         let slope = self.form(strain);
         let exponent = half * slope.contracted(strain);
-        let grown = N::of(self.half) * exponent.exp();
+        let risen = exp_m1(exponent);
+        let grown = N::of(self.half) * (risen + N::of(1.0));
         let stress = axes.transposed_times(slope * *axes).scaled(grown);
         let squared = twice_green + Tensor::identity();
         let over = deformation.volume_ratio.recip();
@@ -183,6 +197,7 @@ impl HyperelasticLaw for Fung {
             over,
             slope,
             exponent,
+            risen,
             grown,
             stress,
             squared,
@@ -193,7 +208,7 @@ impl HyperelasticLaw for Fung {
     #[inline(always)]
     fn energy<N: Number>(&self, at: &Point<N, Strained<N>>) -> N {
         let volume = at.volume_change;
-        let local = N::of(self.half) * at.own.exponent.exp_m1();
+        let local = N::of(self.half) * at.own.risen;
         (N::of(0.5) * self.of_volume::<N>() * volume).mul_add(volume, local)
     }
 

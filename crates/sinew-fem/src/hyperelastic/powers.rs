@@ -8,6 +8,10 @@ pub(super) fn largest_exponent<N: Number>() -> f64 {
     if is_double::<N>() { 700.0 } else { 86.0 }
 }
 
+/// Share of the largest exponent at which laws end that grow exponentially, so that their stresses and tangents are
+/// numbers too.
+pub(super) const SHARE_OF_EXPONENT: f64 = 0.75;
+
 #[inline(always)]
 fn is_double<N: Number>() -> bool {
     N::EPSILON < 1e-10

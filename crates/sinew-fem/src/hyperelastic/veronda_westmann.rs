@@ -7,7 +7,7 @@ use super::first_invariant::{self, Slopes};
 use super::law::{Bulk, HyperelasticLaw, NodeBlock, Point};
 use super::mooney_rivlin::Isochoric;
 use super::parameters::{LawParameter, LawValues, ParameterError, Range};
-use super::powers::{exp_m1, largest_exponent};
+use super::powers::{SHARE_OF_EXPONENT, exp_m1, largest_exponent};
 use super::projection::surely_semidefinite;
 use super::second_invariant;
 use super::tensor::Tensor;
@@ -44,9 +44,6 @@ const C2: LawParameter = LawParameter::number(
     Range::above_zero("a finite number above 0"),
     &[3.0],
 );
-
-/// Share of the largest exponent at which the law ends, so that stresses and tangents are numbers too.
-const SHARE_OF_EXPONENT: f64 = 0.75;
 
 /// Values cached per deformation gradient.
 #[derive(Clone, Copy, Debug)]

@@ -36,6 +36,9 @@ pub(crate) trait Compiled: Debug + Send + Sync {
     /// The tangent that own blocks of nodes belong to.
     fn node_block_kind(&self) -> NodeBlock;
 
+    /// True if the law is defined at a gradient of the displacement.
+    fn is_defined_at(&self, h: Tensor<f64>) -> bool;
+
     /// Energy density (J/m^3) of a tetrahedron without averages, by the gradient of the displacement.
     fn energy(&self, h: Tensor<f64>) -> f64;
 
@@ -119,6 +122,11 @@ impl<T: Typed> Compiled for T {
 
     fn shear_moduli(&self) -> [f64; 2] {
         self.law().shear_moduli()
+    }
+
+    fn is_defined_at(&self, h: Tensor<f64>) -> bool {
+        let law = self.law();
+        law.admits(&law.at(h))
     }
 
     fn node_block_kind(&self) -> NodeBlock {

@@ -145,7 +145,8 @@ fn with_room([low, high]: [f64; 2]) -> [f64; 2] {
     [(low - room).max(0.5 * low), high + room]
 }
 
-/// A region with the properties of one place where the mesh's data give them, and sentences about what its curves are of. `moduli` are the least and the
+/// A region with the properties of one place where the mesh's data give them, and sentences about what its curves are
+/// of. `moduli` are the least and the
 /// largest of its tetrahedra (Pa).
 fn at_a_point(
     (given, stated): (&Region, &Region),

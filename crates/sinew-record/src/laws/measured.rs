@@ -19,7 +19,8 @@ const HEAD: &str = "load,stretch_or_shear,stress_Pa";
 /// Characters of a text in messages.
 const SHOWN: usize = 40;
 
-/// Measured points: a CSV file with the columns `load` (`uniaxial`, `equibiaxial`, `planar` or `simple-shear`), `stretch_or_shear` (1 and 0 at rest) and `stress_Pa` (nominal).
+/// Measured points: a CSV file with the columns `load` (`uniaxial`, `equibiaxial`, `planar` or `simple-shear`),
+/// `stretch_or_shear` (1 and 0 at rest) and `stress_Pa` (nominal).
 /// Empty lines and lines that begin with `#` are skipped.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Measured {

@@ -13,12 +13,15 @@ pub(super) const DESCRIBED: &str = "Curves of a law";
 
 const WIDTHS: [f64; 2] = [600.0, 440.0];
 const HEIGHT: f64 = 400.0;
-/// Stresses that are cut off, over the median of those that are drawn: a law that stiffens as an exponential leaves the frame.
+/// Stresses that are cut off, over the median of those that are drawn: a law that stiffens as an exponential leaves the
+/// frame.
 const MOST: f64 = 8.0;
-/// Extent of a sheet's stress over that of the others': pressed along two axes it grows so fast that it would hide them.
+/// Extent of a sheet's stress over that of the others': pressed along two axes it grows so fast that it would hide
+/// them.
 const OF_SHEET: f64 = 1.25;
 
-/// The picture of a region's law: stretches at the left, shear at the right. Lines are solid where the law is stable and dashed beyond; measured points are dots.
+/// The picture of a region's law: stretches at the left, shear at the right. Lines are solid where the law is stable
+/// and dashed beyond; measured points are dots.
 #[must_use]
 pub fn picture_of_law(region: &RegionCurves, measured: Option<&Measured>) -> String {
     let stretches = [Load::Uniaxial, Load::Equibiaxial, Load::Planar];

@@ -6,7 +6,8 @@ use sinew_fem::homogeneous::{Curve, Load};
 use super::curves::RegionCurves;
 use super::measured::Measured;
 
-/// A region's law in lines: its moduli at rest, what the curves are of, where they are stable, and how far measured points are from them.
+/// A region's law in lines: its moduli at rest, what the curves are of, where they are stable, and how far measured
+/// points are from them.
 #[must_use]
 pub fn words_of_law(region: &RegionCurves, measured: Option<&Measured>) -> Vec<String> {
     let mut lines = vec![moduli(region)];

@@ -20,7 +20,8 @@ pub(crate) struct Arguments {
     /// The only region to show: its number, from 1 on, or its group
     #[arg(long, value_name = "NUMBER|GROUP")]
     region: Option<String>,
-    /// The least and the largest stretch; an amount of shear goes from FROM - 1 to TO - 1 [default: those of the measured
+    /// The least and the largest stretch; an amount of shear goes from FROM - 1 to TO - 1 [default: those of the
+    /// measured
     /// points with some room, or 0.7 2]
     #[arg(long, num_args = 2, value_names = ["FROM", "TO"], value_parser = stretch, allow_negative_numbers = true)]
     stretch: Option<Vec<f64>>,
@@ -120,7 +121,8 @@ fn is_table(path: &Path) -> bool {
     (is_csv && !path.is_dir()) || path == Path::new("-") || is_stream()
 }
 
-/// Writes a table and, where it is a file, the picture of each region beside it; all are checked before the first is written.
+/// Writes a table and, where it is a file, the picture of each region beside it; all are checked before the first is
+/// written.
 fn beside(
     table: Destination,
     inputs: &[PathBuf],
