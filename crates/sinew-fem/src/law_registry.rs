@@ -531,7 +531,8 @@ mod tests {
                 let expected = format!("the law `{}` needs", law.id);
                 assert!(needed.starts_with(&expected), "{needed}");
                 assert!(needed.contains(parameter.name), "{needed}");
-                let wrong = parameters.clone().with(parameter.name, &[f64::NAN]);
+                let not_numbers = vec![f64::NAN; parameter.example.len()];
+                let wrong = parameters.clone().with(parameter.name, &not_numbers);
                 let said = said(law.id, &wrong);
                 assert!(
                     said.starts_with(&format!("{} = NaN: expected", parameter.name)),
