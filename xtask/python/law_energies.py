@@ -100,6 +100,53 @@ def yeoh(f, la, mu, c=(1, mpf(1) / 10, mpf(1) / 30)):
     return mu / 2 * shape + (la + 2 * mu / 3) / 2 * (j - 1) ** 2
 
 
+def isochoric_stretches(f):
+    """Principal stretches of `F J^-1/3`, by the roots of the characteristic polynomial: mpmath's own eigenvalues have too
+    few digits for differences of differences."""
+    root = mp.cbrt(determinant(f))
+    return [value / root for value in singular_values(f)]
+
+
+def volume(f, la, mu):
+    return (la + 2 * mu / 3) / 2 * (determinant(f) - 1) ** 2
+
+
+def isochoric_first(f):
+    return mp.cbrt(determinant(f)) ** -2 * first_invariant(f)
+
+
+def gent(f, la, mu, shear_modulus=None, limit="97.2"):
+    """The shear modulus is that at small strain."""
+    limit = mpf(limit)
+    return -mu * limit / 2 * mp.log(1 - (isochoric_first(f) - 3) / limit) + volume(f, la, mu)
+
+
+def arruda_boyce(f, la, mu, shear_modulus=None, locking_stretch="2.8"):
+    """The modulus of the chains follows from that at small strain."""
+    over = mpf(locking_stretch) ** -2
+    series = [mpf(1), mpf(3) / 5, mpf(99) / 175, mpf(513) / 875, mpf(42039) / 67375]
+    own = mu / sum(c * over**k for k, c in enumerate(series))
+    c = [mpf(1) / 2, mpf(1) / 20, mpf(11) / 1050, mpf(19) / 7000, mpf(519) / 673750]
+    i1 = isochoric_first(f)
+    return own * sum(c[k] * over**k * (i1 ** (k + 1) - 3 ** (k + 1)) for k in range(5)) + volume(f, la, mu)
+
+
+def veronda_westmann(f, la, mu, c1=None, c2=1):
+    """c1 is mu/c2."""
+    c2 = mpf(c2)
+    second = mp.cbrt(determinant(f)) ** -4 * second_invariant(f) - 3
+    return mu / c2 * (mp.exp(c2 * (isochoric_first(f) - 3)) - 1) - mu / 2 * second + volume(f, la, mu)
+
+
+def ogden(f, la, mu, terms=(1000, mpf("1.3"), 200, 5, 50, -2)):
+    """The terms give the ratios of the moduli."""
+    pairs = [(mpf(terms[i]), mpf(terms[i + 1])) for i in range(0, len(terms), 2)]
+    share = mu / sum(own for own, _ in pairs)
+    stretches = isochoric_stretches(f)
+    psi = sum(2 * share * own / a**2 * (sum(s**a for s in stretches) - 3) for own, a in pairs)
+    return psi + volume(f, la, mu)
+
+
 LAWS = {
     "neo-hookean": neo_hookean,
     "stable-neo-hookean": stable_neo_hookean,
@@ -110,10 +157,14 @@ LAWS = {
     "neo-hookean-iso": neo_hookean_iso,
     "stable-neo-hookean-log": stable_neo_hookean_log,
     "yeoh": yeoh,
+    "gent": gent,
+    "arruda-boyce": arruda_boyce,
+    "veronda-westmann": veronda_westmann,
+    "ogden": ogden,
 }
 
 # Parameters that laws take beside moduli.
-OWN = ["c1_over_c2", "c"]
+OWN = ["c1_over_c2", "c", "shear_modulus", "limit", "locking_stretch", "c1", "c2", "terms"]
 
 INVERTIBLE = ["stable-neo-hookean", "corotational", "stvk", "stable-neo-hookean-log"]
 

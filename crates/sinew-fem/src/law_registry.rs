@@ -77,6 +77,7 @@ pub const KEYS_OF_REGIONS: &[&str] = &[
     "element",
     "edge_share",
     "patch",
+    "axes",
     "fibres",
     "prony",
     "viscous_part",
@@ -560,10 +561,8 @@ mod tests {
                 let expected = format!("the law `{}` needs", law.id);
                 assert!(needed.starts_with(&expected), "{needed}");
                 assert!(needed.contains(parameter.name), "{needed}");
-                let least = parameter.list.map_or(1, |(least, _)| least);
-                let wrong = parameters
-                    .clone()
-                    .with(parameter.name, &vec![f64::NAN; least]);
+                let not_numbers = vec![f64::NAN; parameter.example.len()];
+                let wrong = parameters.clone().with(parameter.name, &not_numbers);
                 let said = said(law.id, &wrong);
                 assert!(
                     said.starts_with(&format!("{} = NaN: expected", parameter.name)),

@@ -21,7 +21,7 @@ pub(super) struct Stretches<N> {
     pub(super) logs: [N; 3],
 }
 
-/// Sweeps of rotations at most; six are seen.
+/// Sweeps of rotations at most; five are seen.
 const SWEEPS: usize = 12;
 
 impl<N: Number> Stretches<N> {
@@ -84,13 +84,16 @@ fn strain_of<N: Number>(axis: [N; 3], moved: [N; 3]) -> N {
 /// turns no more.
 #[inline(always)]
 fn axes_of<N: Number>(tensor: Tensor<N>) -> [[N; 3]; 3] {
+    // Entries of 1 at most, so that squares of squares are numbers too.
+    let largest = tensor.largest().max(N::of(smallest::<N>()));
+    let tensor = tensor.scaled(largest.recip());
     let [[xx, xy, xz], [_, yy, yz], [.., zz]] = tensor.0;
     let mut turning = Turning {
         diagonal: [xx, yy, zz],
         beside: [xy, xz, yz],
         axes: Tensor::identity().0,
     };
-    let negligible = tensor.largest() * N::of(0.25 * N::EPSILON);
+    let negligible = N::of(2.0 * N::EPSILON);
     for _ in 0..SWEEPS {
         turning.turn::<0, 0, 1>();
         turning.turn::<1, 0, 2>();
@@ -112,17 +115,22 @@ struct Turning<N> {
 }
 
 impl<N: Number> Turning<N> {
-    /// Turns axes P and Q, whose entry is that of `OWN`, so that it vanishes nearly: the half of the angle has a tangent
-    /// without roots, wrong by a few per cent where the angle is large and by its cube where it is small. So one more
-    /// sweep is needed, and each is over twice as soon.
+    /// Turns axes P and Q, whose entry is that of `OWN`, so that it vanishes nearly. The tangent of half the angle is
+    /// `e/(f d)` of the entry e and the difference d, with a fit of `f(e/d)` in place of roots: the first terms of its
+    /// series up to 1/2, lines beyond. Of a small angle the fifth power is left, of a large one up to a hundredth.
     #[inline(always)]
     fn turn<const OWN: usize, const P: usize, const Q: usize>(&mut self) {
         let (zero, one) = (N::of(0.0), N::of(1.0));
         let (p, q, entry) = (self.diagonal[P], self.diagonal[Q], self.beside[OWN]);
         let difference = q - p;
-        let (far, near) = (difference.abs(), N::of(2.0) * difference.abs());
-        let long = near.max(entry.abs().mul_add(N::of(2.35), N::of(1.2) * far));
-        let across = N::select_le(zero, difference, entry, -entry);
+        let (apart, size) = (difference.abs(), entry.abs());
+        let first = size.mul_add(N::of(2.1), N::of(1.45) * apart);
+        let last = size.mul_add(N::of(2.4), apart);
+        let series = (apart + apart).mul_add(apart, N::of(2.5) * size * size);
+        let is_small = size + size;
+        let long = N::select_le(is_small, apart, series, first.max(last));
+        let across = N::select_le(is_small, apart, entry * apart, entry);
+        let across = N::select_le(zero, difference, across, -across);
         let squared = across * across;
         let square = long.mul_add(long, squared);
         let over = square.recip();
@@ -151,10 +159,10 @@ impl<N: Number> Turning<N> {
     }
 }
 
-/// A square that is still a number with all digits.
+/// A number that is 0 for tensors, as a size and as the square of one's square.
 #[inline(always)]
 fn smallest<N: Number>() -> f64 {
-    if N::EPSILON < 1e-10 { 1e-290 } else { 1e-30 }
+    if N::EPSILON < 1e-10 { 1e-290 } else { 1e-36 }
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 
 mod added_laws;
 mod bodies_with_axes;
+mod closed_forms;
 mod damping;
 mod fibrous_bodies;
 mod hyperelastic_bodies;

@@ -116,8 +116,8 @@ fn infinite_modulus() {
 #[test]
 fn unknown_model() {
     insta::assert_snapshot!(
-        refusal(BODY, "model = \"springs\"", "model = \"ogden\""),
-        @r#"scene.toml:6: [[region]] 1: model = "ogden": expected "springs", "linear", "neo-hookean", "stable-neo-hookean", "corotational", "stvk", "mooney-rivlin", "neo-hookean-log", "neo-hookean-iso", "stable-neo-hookean-log" or "yeoh""#
+        refusal(BODY, "model = \"springs\"", "model = \"rubber\""),
+        @r#"scene.toml:6: [[region]] 1: model = "rubber": expected "springs", "linear", "neo-hookean", "stable-neo-hookean", "corotational", "stvk", "mooney-rivlin", "neo-hookean-log", "neo-hookean-iso", "stable-neo-hookean-log", "yeoh", "gent", "arruda-boyce", "veronda-westmann" or "ogden""#
     );
 }
 
@@ -125,7 +125,7 @@ fn unknown_model() {
 fn no_model() {
     insta::assert_snapshot!(
         refusal(BODY, "model = \"springs\"\n", ""),
-        @r#"scene.toml:4: [[region]] 1: `model` is missing: expected "springs", "linear", "neo-hookean", "stable-neo-hookean", "corotational", "stvk", "mooney-rivlin", "neo-hookean-log", "neo-hookean-iso", "stable-neo-hookean-log" or "yeoh""#
+        @r#"scene.toml:4: [[region]] 1: `model` is missing: expected "springs", "linear", "neo-hookean", "stable-neo-hookean", "corotational", "stvk", "mooney-rivlin", "neo-hookean-log", "neo-hookean-iso", "stable-neo-hookean-log", "yeoh", "gent", "arruda-boyce", "veronda-westmann" or "ogden""#
     );
 }
 
@@ -388,4 +388,31 @@ fn a_stiffness_beyond_all_numbers() {
         refused.ends_with("cannot tell up to which step it is stable"),
         "{refused}"
     );
+}
+
+/// The refusal of a region of the law of Ogden with these terms.
+fn refused_ogden(terms: &str) -> String {
+    let springs = "model = \"springs\"\nyoungs_modulus = 3500.0\nsprings = { rule = \"lloyd\" }\n";
+    let lines = format!("model = \"ogden\"\npoissons_ratio = 0.45\nterms = {terms}\n");
+    refusal(BODY, springs, &lines)
+}
+
+#[test]
+fn terms_that_are_no_pairs() {
+    insta::assert_snapshot!(refused_ogden("[[600.0, 2.0], [1.0]]"), @"scene.toml:8: [[region]] 1: terms = [[600.0, 2.0], [1.0]]: expected a list of 1 to 6 of [mu in Pa, alpha], each of a finite modulus in Pa and a finite exponent other than 0");
+    insta::assert_snapshot!(refused_ogden("[600.0, 2.0]"), @"scene.toml:8: [[region]] 1: terms = [600.0, 2.0]: expected a list of 1 to 6 of [mu in Pa, alpha], each of a finite modulus in Pa and a finite exponent other than 0");
+    insta::assert_snapshot!(refused_ogden("[]"), @"scene.toml:8: [[region]] 1: terms = []: expected a list of 1 to 6 of [mu in Pa, alpha], each of a finite modulus in Pa and a finite exponent other than 0");
+}
+
+#[test]
+fn terms_that_make_no_law() {
+    insta::assert_snapshot!(refused_ogden("[[600.0, 0.0]]"), @"scene.toml:8: [[region]] 1: terms = [[600.0, 0.0]]: expected an alpha other than 0 in each term");
+    insta::assert_snapshot!(refused_ogden("[[600.0, 2.0], [-600.0, 4.0]]"), @"scene.toml:8: [[region]] 1: terms = [[600.0, 2.0], [-600.0, 4.0]]: expected a sum of mu above 0 Pa");
+}
+
+#[test]
+fn two_stiffnesses_of_volume_beside_youngs_modulus() {
+    let lines = "poissons_ratio = 0.45\nbulk_modulus = 35000.0\n";
+    insta::assert_snapshot!(refused_law("neo-hookean-iso", lines), @"scene.toml:9: [[region]] 1: expected exactly one of `poissons_ratio`, `bulk_modulus`, found `poissons_ratio` and `bulk_modulus`");
+    insta::assert_snapshot!(refused_law("neo-hookean-iso", "bulk_modulus = 1000.0\n"), @"scene.toml:8: [[region]] 1: bulk_modulus = 1000.0: expected at least 1/3 of Young's modulus: Poisson's ratio is 0 or above for laws of large deformation");
 }

@@ -128,7 +128,7 @@ fn no_terms() {
 fn the_deviatoric_part_of_a_law_that_has_none() {
     insta::assert_snapshot!(
         refused_memory("neo-hookean", "prony = [[0.5, 1.0]]\nviscous_part = \"deviatoric\""),
-        @r#"scene.toml:10: [[region]] 1: `viscous_part` = "deviatoric" goes with model = "mooney-rivlin", "neo-hookean-iso" or "yeoh" only, which have a part that keeps the volume"#
+        @r#"scene.toml:10: [[region]] 1: `viscous_part` = "deviatoric" goes with model = "mooney-rivlin", "neo-hookean-iso", "yeoh", "gent", "arruda-boyce", "veronda-westmann" or "ogden" only, which have a part that keeps the volume"#
     );
 }
 
