@@ -16,6 +16,9 @@ impl Clock {
     /// Share of a time by which multiples of a step may miss the instant that they represent: rounding.
     pub const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
+    /// Largest number of steps, up to which each is a number of its own in f64.
+    pub const MOST_STEPS: u64 = 1 << f64::MANTISSA_DIGITS;
+
     /// The time `t` (s), before any step.
     #[must_use]
     pub fn at(t: f64) -> Self {
@@ -38,13 +41,31 @@ impl Clock {
         (self.steps > 0).then_some(self.dt)
     }
 
+    /// False for a clock that no steps lead to, as bytes from elsewhere may give it.
+    pub(crate) fn is_sound(self) -> bool {
+        let is_step = self.dt > 0.0 || (self.steps == 0 && self.dt == 0.0);
+        is_step && self.dt.is_finite() && self.base.is_finite() && self.steps <= Self::MOST_STEPS
+    }
+
     /// Takes one more step of `dt` (s).
     pub fn advance(&mut self, dt: f64) {
         if self.steps > 0 && dt != self.dt {
             *self = Self::at(self.time());
         }
         self.dt = dt;
-        self.steps += 1;
+        self.steps = self.steps.saturating_add(1);
+    }
+}
+
+#[cfg(test)]
+impl Clock {
+    /// So many steps of `dt` (s) after 0.
+    pub(crate) fn after(steps: u64, dt: f64) -> Self {
+        Self {
+            base: 0.0,
+            dt,
+            steps,
+        }
     }
 }
 

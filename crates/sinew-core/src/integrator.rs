@@ -166,7 +166,8 @@ impl Batch<'_> {
     /// Sets the integrator up, checks the state and takes the steps: the one way to take a step.
     ///
     /// # Errors
-    /// [`StepError`] when set-up fails or the system refuses a trial state.
+    /// [`StepError`] when set-up fails or the system refuses a trial state, and [`StepError::Stalled`] for an integrator
+    /// that leaves steps out and does not say why.
     pub fn take<I: Integrator + ?Sized>(
         &mut self,
         integrator: &mut I,
@@ -175,6 +176,13 @@ impl Batch<'_> {
         let work = integrator.prepare(self.system(), self.dt())?;
         self.count(work);
         self.check(integrator.id(), state)?;
-        integrator.run(self, state)
+        integrator.run(self, state)?;
+        match self.goes_on() {
+            true => Err(StepError::Stalled {
+                by: integrator.id(),
+                t: state.t(),
+            }),
+            false => Ok(()),
+        }
     }
 }

@@ -53,7 +53,12 @@ impl SavedState {
     pub fn of(state: &State, system: &dyn System) -> Self {
         Self {
             system: system.fingerprint(),
-            state: state.clone(),
+            state: State {
+                // Revisions are those of this process.
+                loads: None,
+                start: None,
+                ..state.clone()
+            },
             start: state.start.map(|start| start.energy),
             has_loads: state.loads.is_some(),
         }
@@ -93,6 +98,12 @@ impl SavedState {
         if self.system != system.fingerprint() {
             return Err(StateBytesError::OtherSystem);
         }
+        if !state.clock.is_sound() {
+            return Err(KIND.impossible("clock").into());
+        }
+        if state.cut.is_some_and(|cut| !cut.is_sound()) {
+            return Err(KIND.impossible("cut of steps").into());
+        }
         Ok(State {
             start: self.start.map(|energy| Start {
                 system: system.revision(),
@@ -125,7 +136,8 @@ impl State {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{DampedAt, LinearModel, LinearOperators, VelocityTime};
+    use crate::clock::Clock;
+    use crate::{DampedAt, LinearModel, LinearOperators, StepCut, VelocityTime};
 
     fn model() -> LinearModel {
         LinearModel::new(LinearOperators::oscillator(0.1, 100.0, 1.0).unwrap())
@@ -175,6 +187,49 @@ mod tests {
         let read = State::from_bytes(&bytes, &fresh).unwrap();
         assert_eq!(read.start.unwrap().system, fresh.revision());
         assert_eq!(read.loads, loads_revision(&fresh));
+    }
+
+    #[test]
+    fn a_saved_state_is_equal_to_what_is_read_of_it() {
+        let model = model();
+        let mut state = state();
+        state.start = Some(Start {
+            system: model.revision(),
+            energy: 0.25,
+        });
+        state.loads = loads_revision(&model);
+        let saved = SavedState::of(&state, &model);
+        let read: SavedState = bytes::read(KIND, &state.to_bytes(&model).unwrap()).unwrap();
+        assert_eq!(read, saved);
+        assert_eq!(saved.restore(&model), Ok(state));
+    }
+
+    #[test]
+    fn a_clock_and_a_cut_that_cannot_be_are_refused() {
+        let model = model();
+        let mut never = state();
+        never.clock = Clock::after(u64::MAX, 1e-3);
+        let mut back = state();
+        back.clock = Clock::after(3, -1e-3);
+        let mut nowhere = state();
+        nowhere.clock = Clock::at(f64::NAN);
+        let mut whole = state();
+        whole.cut = Some(StepCut {
+            parts: 0,
+            taken: 0,
+            stable_step: 1e-3,
+            damping: 0.0,
+        });
+        for (number, state) in [never, back, nowhere, whole].into_iter().enumerate() {
+            let refused = SavedState::of(&state, &model).restore(&model);
+            assert!(
+                matches!(
+                    refused,
+                    Err(StateBytesError::Bytes(BytesError::Content { .. }))
+                ),
+                "{number}: {refused:?}"
+            );
+        }
     }
 
     #[test]

@@ -186,7 +186,7 @@ impl<'r, R: Recorder + ?Sized> RecordedSteps<'r, R> {
         state: &mut State,
         run: &Run,
     ) -> Result<Outcome, SimulateError> {
-        let end = self.steps + run.steps;
+        let end = self.steps.saturating_add(run.steps);
         let watches = !self.watch.is_empty();
         if watches && !self.is_shown {
             self.watch.sample(state);

@@ -63,6 +63,19 @@ pub struct StepCut {
     pub damping: f64,
 }
 
+impl StepCut {
+    /// False for a cut that no method leaves.
+    pub(crate) fn is_sound(self) -> bool {
+        let Self {
+            parts,
+            taken: _,
+            stable_step,
+            damping,
+        } = self;
+        parts > 0 && stable_step > 0.0 && damping >= 0.0
+    }
+}
+
 impl Clone for State {
     fn clone(&self) -> Self {
         let mut clone = Self::new(Vec::new(), Vec::new());

@@ -163,6 +163,17 @@ pub enum StepError {
         /// The reason, and the remedy.
         reason: String,
     },
+    /// Steps that were not taken, without an error.
+    #[error(
+        "`{by}` at t = {t} s: its `run` ended without an error before all steps were taken; expected each step \
+         of the batch, or the reason against it"
+    )]
+    Stalled {
+        /// The integrator's id, or the machine's name.
+        by: &'static str,
+        /// Time of the state (s).
+        t: f64,
+    },
     /// The nonlinear equations of a step were not solved.
     #[error(
         "`{integrator}` at t = {t} s: {iterations} Newton iterations left {residual:.1e} of the forces unbalanced: \

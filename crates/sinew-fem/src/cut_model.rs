@@ -49,6 +49,9 @@ impl From<FieldError> for CutModelError {
     }
 }
 
+/// Largest number of changes of a saved body: far more than there are, and far from overflow.
+const MOST_CHANGES: u64 = 1 << 53;
+
 /// The changes that cuts made to a model.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -117,14 +120,18 @@ impl CutReport {
 
     /// Adds another cut to this one.
     pub fn add(&mut self, other: &Self) {
-        self.faces += other.faces;
+        for (own, other) in [
+            (&mut self.faces, other.faces),
+            (&mut self.new_nodes, other.new_nodes),
+            (&mut self.moved_nodes, other.moved_nodes),
+            (&mut self.removed_tets, other.removed_tets),
+            (&mut self.frozen_tets, other.frozen_tets),
+        ] {
+            *own = own.saturating_add(other);
+        }
         self.area += other.area;
-        self.new_nodes += other.new_nodes;
-        self.moved_nodes += other.moved_nodes;
         self.mass_gained += other.mass_gained;
-        self.removed_tets += other.removed_tets;
         self.removed_mass += other.removed_mass;
-        self.frozen_tets += other.frozen_tets;
         self.energy_gained = match (self.energy_gained, other.energy_gained) {
             (Some(a), Some(b)) => Some(Energy {
                 kinetic: a.kinetic + b.kinetic,
@@ -439,6 +446,9 @@ impl CutModel {
     /// # Errors
     /// [`CutModelError`].
     pub fn restore(&mut self, saved: &SavedCut) -> Result<(), CutModelError> {
+        if saved.epoch > MOST_CHANGES {
+            return Err(SavedBodyError.into());
+        }
         self.body.restore(&saved.body)?;
         self.frozen.clone_from(&saved.frozen);
         let before = std::mem::replace(&mut self.epoch, saved.epoch);

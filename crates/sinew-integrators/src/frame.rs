@@ -361,7 +361,14 @@ impl<S: StepByHand> Ready<S> {
             Self::ByHand(steps) => batch.each(state, |step, state| steps.step(&step, state)),
             Self::Program(loaded) => {
                 loaded.guard(batch);
-                loaded.machine.run(batch, state)
+                loaded.machine.run(batch, state)?;
+                match batch.goes_on() {
+                    true => Err(StepError::Stalled {
+                        by: loaded.machine.name(),
+                        t: state.t(),
+                    }),
+                    false => Ok(()),
+                }
             }
         }
     }

@@ -15,7 +15,7 @@ use crate::request;
 pub(crate) const NAME: &str = "checkpoint.bin";
 
 /// The first line, with the version of what follows.
-const HEAD: &str = "sinew checkpoint 9\n";
+const HEAD: &str = "sinew checkpoint 10\n";
 
 /// Bytes of the checksum at its end.
 const CHECKSUM: usize = 32;

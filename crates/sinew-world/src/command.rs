@@ -6,19 +6,27 @@ use serde::{Deserialize, Serialize};
 use sinew_core::{OptionError, Options, StepError};
 use sinew_scene::{CuttingError, DrivenLoadError};
 
-/// A tool of a world, by its place in the scene.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub struct ToolId(pub(crate) usize);
+use crate::log::SceneKey;
 
-/// A load of a world, by its place in the scene.
+/// A tool of a scene, by its place there. It is known in all worlds of the scene, and in no others.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub struct LoadId(pub(crate) usize);
+pub struct ToolId {
+    pub(crate) scene: SceneKey,
+    pub(crate) place: usize,
+}
+
+/// A load of a scene, by its place there. It is known in all worlds of the scene, and in no others.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct LoadId {
+    pub(crate) scene: SceneKey,
+    pub(crate) place: usize,
+}
 
 impl ToolId {
     /// Its place (0-based) among the tools of the scene.
     #[must_use]
     pub fn index(self) -> usize {
-        self.0
+        self.place
     }
 }
 
@@ -26,7 +34,7 @@ impl LoadId {
     /// Its place (0-based) among the loads of the scene.
     #[must_use]
     pub fn index(self) -> usize {
-        self.0
+        self.place
     }
 }
 
@@ -95,8 +103,8 @@ pub enum CommandError {
         /// The names of all loads.
         known: Vec<String>,
     },
-    /// The id of a tool or a load of another world.
-    #[error("this id is that of a tool or a load of another world: ask this one by the name")]
+    /// The id of a tool or a load of another scene.
+    #[error("this id is that of a tool or a load of another scene: ask this world by the name")]
     ForeignId,
     /// A pose that is no place.
     #[error(

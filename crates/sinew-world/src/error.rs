@@ -65,6 +65,9 @@ pub enum WorldStepError {
     /// A pose that could not be recorded.
     #[error(transparent)]
     Input(#[from] InputError),
+    /// A failure before the motion was saved and restored, in words.
+    #[error("{0}")]
+    Earlier(String),
     /// A step by which the time does not advance any more.
     #[error("t = {t} s: a step of {dt} s does not advance it: expected a longer step, or a reset")]
     Time {
@@ -84,6 +87,22 @@ pub enum AdvanceError {
     /// A recorder that failed.
     #[error(transparent)]
     Record(#[from] RecordError),
+}
+
+/// Reasons for which [`crate::World::advance_to`] ends before its time.
+#[derive(Debug, thiserror::Error)]
+pub enum AdvanceToError {
+    /// A time that no steps lead to.
+    #[error("t = {t} s: expected a finite time from {now} s on")]
+    Time {
+        /// The time (s).
+        t: f64,
+        /// The present time (s).
+        now: f64,
+    },
+    /// A step or a recorder that failed.
+    #[error(transparent)]
+    Advance(#[from] AdvanceError),
 }
 
 /// Reasons for which a world cannot report a field.
@@ -112,9 +131,17 @@ pub enum RestoreError {
         "this motion was kept by a world that was built in another way, by `World::new` or `World::following`"
     )]
     OtherWorld,
-    /// A motion of another scene, which can cut where this one cannot, or has other tools or loads.
-    #[error("this motion was kept by the world of another scene")]
+    /// A motion of another scene.
+    #[error(
+        "this motion was kept by the world of another scene: its text, or a file that it reads, is not that of this one"
+    )]
     OtherScene,
+    /// A part that no motion has: the value was altered.
+    #[error("the saved motion was altered: its {part} cannot be")]
+    Impossible {
+        /// The part.
+        part: &'static str,
+    },
     /// Cuts of another body.
     #[error(transparent)]
     Cutting(#[from] CuttingError),

@@ -15,7 +15,9 @@ mod world;
 
 pub use command::{Command, CommandError, LoadId, ToolId};
 pub use course::Course;
-pub use error::{AdvanceError, ReportError, RestoreError, WorldError, WorldStepError};
+pub use error::{
+    AdvanceError, AdvanceToError, ReportError, RestoreError, WorldError, WorldStepError,
+};
 pub use input_file::{InputFile, InputFileError};
 pub use log::{Entry, Header, Journal, JournalError, Log, LogError, LogFault};
 pub use recorder::{BodyChange, BodyCut, Recorder, Recorders, Shown};

@@ -213,6 +213,12 @@ impl Replay {
     ) -> Result<Ended, FollowError> {
         loop {
             let (step, end) = (self.world.steps(), self.log.steps());
+            if let (true, Some(WorldStepError::Diverged { t, place })) =
+                (step >= end, self.world.failure())
+            {
+                let (t, place) = (*t, place.clone());
+                return Ok(Ended::Diverged { t, place });
+            }
             let next = self.log.entries().get(self.given);
             let next = next.map_or(end, |entry| entry.step.min(end));
             let ended = match self.world.advance_shown(next.saturating_sub(step), shown) {

@@ -19,7 +19,7 @@ use sinew_scene::{
 use sinew_tools::Steering;
 
 use crate::error::{WorldError, WorldStepError};
-use crate::log::{Header, Log};
+use crate::log::{Header, Log, SceneIdentity};
 use crate::recorder::BodyCut;
 
 pub use saved::Saved;
@@ -52,6 +52,7 @@ pub use saved::Saved;
 pub struct World {
     /// The scene as it was built.
     scene: Arc<Simulation>,
+    identity: SceneIdentity,
     /// The body as it moves: its loads follow inputs from the first load factor on. Until then they are known in
     /// advance, which some methods need, and every sum has the bits of a run.
     body: Arc<SceneBody>,
@@ -175,6 +176,7 @@ impl World {
 
     /// Like [`World::new`], with a header that is known already.
     pub(crate) fn with_header(scene: Scene, header: Header) -> Result<Self, WorldError> {
+        let identity = header.scene_identity();
         let mut simulation = scene.build()?;
         if let Some(refused) = simulation.refused_load() {
             return Err(refused.into());
@@ -206,7 +208,7 @@ impl World {
             inputs,
             log: Log::new(header),
             follows: false,
-            ..Self::still(simulation, method)?
+            ..Self::still(simulation, method, identity)?
         };
         let Self {
             body,
@@ -224,11 +226,13 @@ impl World {
     /// commands are refused.
     ///
     /// # Errors
-    /// [`CuttingError`] for a body that cannot be cut, which building the scene rules out.
+    /// [`WorldError`] for a file of the scene that cannot be read again, and for a body that cannot be cut, which building
+    /// the scene rules out.
     pub fn following(
         simulation: Simulation,
         integrator: Box<dyn Stepper>,
-    ) -> Result<Self, CuttingError> {
+    ) -> Result<Self, WorldError> {
+        let identity = Header::of(simulation.scene())?.scene_identity();
         let settings = simulation.settings();
         let method = Method {
             integrator,
@@ -236,15 +240,20 @@ impl World {
             asked: (settings.integrator.clone(), settings.options.clone()),
             stable_step: OnceCell::new(),
         };
-        Self::still(simulation, method)
+        Ok(Self::still(simulation, method, identity)?)
     }
 
     /// The beginning of a motion without inputs.
-    fn still(simulation: Simulation, method: Method) -> Result<Self, CuttingError> {
+    fn still(
+        simulation: Simulation,
+        method: Method,
+        identity: SceneIdentity,
+    ) -> Result<Self, CuttingError> {
         let state = simulation.initial_state().clone();
         let limit = simulation.run().divergence_limit;
         let simulation = Arc::new(simulation);
         Ok(Self {
+            identity,
             method,
             tools: Vec::new(),
             loads: Vec::new(),

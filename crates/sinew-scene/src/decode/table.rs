@@ -7,11 +7,11 @@ use toml::Spanned;
 use toml::de::{DeString, DeTable, DeValue};
 
 use super::condition::{Condition, Goes};
-use super::description::{Described, Needs, TableDescription};
+use super::description::{Described, Needs, Shape, TableDescription};
 use super::key::Key;
 use super::place::{KeyPlace, Place};
 use super::presence::Presence;
-use super::value::{Misfit, kind};
+use super::value::{Misfit, WITHIN, kind};
 use super::values::{Inner, Kind, Values};
 use crate::error::{Fault, SceneError, shortened};
 use crate::formula::Formula;
@@ -300,7 +300,8 @@ impl<'a> Table<'a> {
                 .iter()
                 .find(|condition| !self.meets(condition));
             if let (true, Some(condition)) = (key_is_given, broken) {
-                return Err(self.misplaced(key.name(), condition));
+                let error = self.unknown_word(condition);
+                return Err(error.unwrap_or_else(|| self.misplaced(key.name(), condition)));
             }
         }
         Ok(())
@@ -318,6 +319,23 @@ impl<'a> Table<'a> {
             }
             Goes::Never => false,
         }
+    }
+
+    /// The error for the word of another key on which a condition depends, where the word itself means nothing.
+    fn unknown_word(&self, condition: &Condition) -> Option<SceneError> {
+        let (other, _) = condition.goes.words()?;
+        let value = self.entries.get(other)?;
+        let keys = self.description.all_keys();
+        let described = keys.into_iter().find(|key| key.name() == other)?.describe();
+        let Shape::Words(words) = described.shape else {
+            return None;
+        };
+        let misfit = match value.get_ref().as_str() {
+            Some(word) if words.contains(&word) => return None,
+            Some(_) => Misfit::Value,
+            None => Misfit::Type,
+        };
+        Some(self.misfit(other, value, described.expected, misfit))
     }
 
     /// The text that a key holds; `None` if it holds none.
@@ -381,6 +399,11 @@ impl<'a> Table<'a> {
                 found,
                 expected,
             },
+            Misfit::TooLarge => Fault::Value {
+                key: key.to_owned(),
+                found,
+                expected: WITHIN.to_owned(),
+            },
             Misfit::Type => Fault::Type {
                 key: key.to_owned(),
                 found,
@@ -388,7 +411,7 @@ impl<'a> Table<'a> {
                 kind: kind(value.get_ref()),
             },
         };
-        self.place.value_fault(key, fault)
+        self.place.error(Some(value.span()), fault)
     }
 
     /// The error for a list with a text that is no formula, at the character where it ceases to be one.

@@ -11,6 +11,8 @@ pub(crate) enum Misfit {
     Type,
     /// The type is right, the value is not.
     Value,
+    /// A whole number is larger than TOML has any.
+    TooLarge,
     /// A text in the value is no formula.
     Formula,
 }
@@ -40,7 +42,7 @@ pub(super) fn satisfying<T>(value: T, fits: impl FnOnce(&T) -> bool) -> Result<T
 pub(crate) fn finite(value: &DeValue<'_>) -> Result<f64, Misfit> {
     let number = match value {
         DeValue::Float(float) => float.as_str().parse().map_err(|_| Misfit::Value)?,
-        DeValue::Integer(_) => integer(value)? as f64,
+        DeValue::Integer(_) => integer(value).map_err(|_| Misfit::TooLarge)? as f64,
         _ => return Err(Misfit::Type),
     };
     satisfying(number, |number: &f64| number.is_finite())
@@ -52,6 +54,9 @@ pub(crate) fn integer(value: &DeValue<'_>) -> Result<i64, Misfit> {
     };
     i64::from_str_radix(integer.as_str(), integer.radix()).map_err(|_| Misfit::Value)
 }
+
+/// Description of the whole numbers that are taken as numbers.
+pub(super) const WITHIN: &str = "whole numbers of at most 9223372036854775807 in size; write a larger number with a point or an exponent";
 
 /// A whole number from 1 to `most`.
 pub(crate) fn count_within(
@@ -104,9 +109,10 @@ mod tests {
         assert_eq!(read("1_000", finite), Ok(1000.0));
         assert_eq!(read("0x10", finite), Ok(16.0));
         assert_eq!(read("-1.5e-3", finite), Ok(-1.5e-3));
-        for not_finite in ["nan", "-inf", "1e400", "99999999999999999999"] {
+        for not_finite in ["nan", "-inf", "1e400"] {
             assert_eq!(read(not_finite, finite), Err(Misfit::Value), "{not_finite}");
         }
+        assert_eq!(read("99999999999999999999", finite), Err(Misfit::TooLarge));
         assert_eq!(read("\"1\"", finite), Err(Misfit::Type));
     }
 

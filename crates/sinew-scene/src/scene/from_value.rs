@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use serde::ser::Error as _;
 use serde::{Serialize, Serializer};
+use serde_json::Value;
 
 use super::Scene;
 use crate::error::{Fault, SceneError};
@@ -47,10 +48,37 @@ impl Scene {
             Ok(text) => Self::parse(SceneSource::of_values(path, text)),
             Err(error) => {
                 let nothing = Arc::new(SceneSource::of_values(path, ""));
-                let reason = error.to_string();
+                let reason = match null_in(value) {
+                    Some(path) => {
+                        format!(
+                            "`{path}` is null: expected a value; leave the key out if there is none"
+                        )
+                    }
+                    None => error.to_string(),
+                };
                 Err(SceneError::new(&nothing, Fault::Values { reason }))
             }
         }
+    }
+}
+
+/// The keys to the first value that is none, such as `region[1].density`.
+fn null_in(value: &impl Serialize) -> Option<String> {
+    let tree = serde_json::to_value(value).ok()?;
+    null_below(&tree, String::new())
+}
+
+fn null_below(value: &Value, path: String) -> Option<String> {
+    match value {
+        Value::Null => Some(path).filter(|path| !path.is_empty()),
+        Value::Array(items) => (1..)
+            .zip(items)
+            .find_map(|(number, item)| null_below(item, format!("{path}[{number}]"))),
+        Value::Object(entries) => entries.iter().find_map(|(key, value)| {
+            let dot = if path.is_empty() { "" } else { "." };
+            null_below(value, format!("{path}{dot}{key}"))
+        }),
+        _ => None,
     }
 }
 

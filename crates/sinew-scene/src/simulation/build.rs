@@ -81,6 +81,7 @@ impl MeshedScene {
                 scene: Arc::new(scene),
                 model,
                 probes: probes.into(),
+                held: OnceLock::new(),
             }),
             initial,
             stable_step,

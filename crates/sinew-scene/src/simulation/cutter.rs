@@ -5,7 +5,7 @@ use std::sync::{Arc, OnceLock};
 
 use serde::{Deserialize, Serialize};
 use sinew_core::{Energy, Inputs, State};
-use sinew_cutting::BladeAct;
+use sinew_cutting::{BladeAct, SavedBodyError};
 use sinew_fem::{CutModel, CutModelError, CutReport, Problem, SavedCut};
 use sinew_mesh::TetMesh;
 use sinew_tools::{Convex, Tools, ToolsError};
@@ -105,6 +105,9 @@ pub struct Cutter {
     before: Before,
     pub(super) totals: CutTotals,
 }
+
+/// Largest number of saved changes: far more than there are, and far from overflow.
+const MOST_CHANGES: u64 = 1 << 53;
 
 /// The cuts of a body, and where its cutter stands.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -311,6 +314,9 @@ impl Cutter {
         saved: &SavedCuts,
         uncut: &SceneBody,
     ) -> Result<Option<SceneBody>, CuttingError> {
+        if saved.totals.changes > MOST_CHANGES {
+            return Err(CutModelError::from(SavedBodyError).into());
+        }
         self.cut.restore(&saved.cut)?;
         self.followed = saved.followed;
         self.swept = saved.swept;
@@ -371,7 +377,7 @@ impl Cutter {
             }
         };
         self.totals.report.add(&loose);
-        self.totals.changes += 1;
+        self.totals.changes = self.totals.changes.saturating_add(1);
         let cut = self.body_after(body)?;
         if let (Some(theirs), Some(own)) = (body.model().contact(), cut.model().contact()) {
             let place_of = self.places_before(body, &cut);
@@ -449,6 +455,7 @@ impl Cutter {
             scene: Arc::clone(&before.scene),
             model: SceneModel::Body(Arc::new(body)),
             probes: probes.collect(),
+            held: OnceLock::new(),
         })
     }
 }

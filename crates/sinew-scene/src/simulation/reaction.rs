@@ -67,11 +67,20 @@ pub enum ReactionError {
 }
 
 impl SceneBody {
-    /// The parts of the body that are held or moved, in the order of the scene; none for an oscillator.
+    /// The parts of the body that are held or moved, in the order of the scene; none for an oscillator. They are found
+    /// at the first request.
     ///
     /// # Errors
     /// [`ReactionError::Field`] for a part that the body does not have, which building a scene rules out.
-    pub fn held_parts(&self) -> Result<Vec<HeldPlace>, ReactionError> {
+    pub fn held_parts(&self) -> Result<Arc<[HeldPlace]>, ReactionError> {
+        if let Some(parts) = self.held.get() {
+            return Ok(Arc::clone(parts));
+        }
+        let parts = self.find_held_parts()?.into();
+        Ok(Arc::clone(self.held.get_or_init(|| parts)))
+    }
+
+    fn find_held_parts(&self) -> Result<Vec<HeldPlace>, ReactionError> {
         let (Subject::Body(body), Some(built)) = (self.scene().subject(), self.model().body())
         else {
             return Ok(Vec::new());
@@ -151,7 +160,7 @@ impl SceneBody {
 #[derive(Debug)]
 pub struct HeldParts {
     body: Arc<BodyModel>,
-    parts: Vec<HeldPlace>,
+    parts: Arc<[HeldPlace]>,
     /// The force (N) of supports on each node.
     forces: Vec<[f64; 3]>,
     /// The displacement (m) of each node.

@@ -1,12 +1,13 @@
 //! The body of a scene as it moves.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use sinew_core::{State, StepReport, System};
 use sinew_integrators::Stepper;
 
 use super::model::SceneModel;
 use super::probe::Probe;
+use super::reaction::HeldPlace;
 use super::{set_up, step, tool_end};
 use crate::error::SceneError;
 use crate::scene::Scene;
@@ -17,6 +18,8 @@ pub struct SceneBody {
     pub(super) scene: Arc<Scene>,
     pub(super) model: SceneModel,
     pub(super) probes: Arc<[Probe]>,
+    /// Its parts that are held or moved, once they were asked for.
+    pub(super) held: OnceLock<Arc<[HeldPlace]>>,
 }
 
 impl SceneBody {

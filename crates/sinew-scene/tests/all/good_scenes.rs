@@ -294,7 +294,31 @@ fn a_scene_of_values_is_that_of_its_text_and_errors_name_keys() {
         (serde_json::json!({ "run": { "duration": 0.1 } }), "run: "),
         (
             serde_json::json!({ "title": null }),
-            "the scene: these values make no scene: ",
+            "the scene: these values make no scene: `title` is null",
+        ),
+        (
+            serde_json::json!({ "region": [{ "density": null }] }),
+            "the scene: these values make no scene: `region[1].density` is null",
+        ),
+        (
+            serde_json::json!({ "gravity": [0, null, 0] }),
+            "the scene: these values make no scene: `gravity[2]` is null",
+        ),
+        (
+            serde_json::json!({ "fixed": [{ "group": "bottom" }, 3] }),
+            "fixed[2]: ",
+        ),
+        (
+            serde_json::json!({ "load": [{ "group": "top", "traction": [0, 0, 1], "ramp": { "kind": "abc", "rise": 0.1 } }] }),
+            "load[1].ramp.kind: kind = \"abc\": expected \"step\"",
+        ),
+        (
+            serde_json::json!({ "gravity": [0, 0, u64::MAX] }),
+            "gravity: gravity = [0, 0, 18446744073709551615]: expected whole numbers of at most 9223372036854775807 in size",
+        ),
+        (
+            serde_json::json!({ "run": { "duration": u64::MAX } }),
+            "run.duration: duration = 18446744073709551615: expected whole numbers of at most 9223372036854775807 in size",
         ),
     ] {
         let said = said(1000.0, more);

@@ -4,6 +4,8 @@ use std::fs::{File, OpenOptions};
 use std::io::{self, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
+use sinew_core::Revision;
+
 use super::Log;
 use super::text::{end, head, push_entry};
 
@@ -15,10 +17,14 @@ pub struct Journal {
     file: File,
     /// Commands in the file; `None` as long as it is empty.
     entries: Option<usize>,
+    /// The list of commands that they begin.
+    beginning: Option<Revision>,
     /// Bytes of the file that are whole lines.
     length: u64,
-    /// True if something could not be written, so that the file may end within a line.
+    /// True if something could not be written.
     has_failed: bool,
+    /// True if there may be more in the file than the whole lines.
+    has_rest: bool,
     text: String,
 }
 
@@ -66,8 +72,10 @@ impl Journal {
                 path,
                 file,
                 entries: None,
+                beginning: None,
                 length: 0,
                 has_failed: false,
+                has_rest: false,
                 text: String::new(),
             }),
             Ok(None) => Err(JournalError::Exists { path }),
@@ -86,13 +94,13 @@ impl Journal {
     /// # Errors
     /// [`JournalError`].
     pub fn begin_anew(&mut self) -> Result<(), JournalError> {
-        (self.entries, self.length, self.has_failed) = (None, 0, false);
-        let emptied = self.file.set_len(0).and_then(|()| self.file.rewind());
-        emptied.map_err(|source| self.error(source))
+        (self.entries, self.beginning) = (None, None);
+        (self.length, self.has_failed, self.has_rest) = (0, false, true);
+        self.cut().map_err(|source| self.error(source))
     }
 
     /// Adds the commands that are new in a log, except those after the last step: poses among them may be replaced by
-    /// later ones. Commands that could not be written are tried again, and the failure is reported once.
+    /// later ones. Where the log went back, as that of a world that was restored, the file is written anew. Commands that could not be written are tried again, and the failure is reported once.
     ///
     /// # Errors
     /// [`JournalError`].
@@ -100,11 +108,15 @@ impl Journal {
         let settled = log
             .entries()
             .partition_point(|entry| entry.step < log.steps());
-        if settled == 0 {
-            return Ok(());
-        }
+        self.go_back_with(log);
         let is_known = self.has_failed;
-        self.add(log, settled).or_else(|error| match is_known {
+        let kept = match settled {
+            // Without a command a file is taken over.
+            0 => self.cut().map_err(|source| self.error(source)),
+            _ => self.add(log, settled),
+        };
+        self.has_failed = kept.is_err();
+        kept.or_else(|error| match is_known {
             true => Ok(()),
             false => Err(error),
         })
@@ -115,9 +127,19 @@ impl Journal {
     /// # Errors
     /// [`JournalError`] where the file does not hold the whole log.
     pub fn finish(mut self, log: &Log) -> Result<(), JournalError> {
+        self.go_back_with(log);
         self.add(log, log.entries().len())?;
         let written = self.file.write_all(end(log).as_bytes());
         written.map_err(|source| self.error(source))
+    }
+
+    /// Takes back all that was written if it does not begin the log.
+    fn go_back_with(&mut self, log: &Log) {
+        if self.beginning.replace(log.beginning) == Some(log.beginning) {
+            return;
+        }
+        self.has_rest |= self.length > 0;
+        (self.entries, self.length) = (None, 0);
     }
 
     /// Adds the commands up to an index in a log.
@@ -131,7 +153,7 @@ impl Journal {
             push_entry(&mut self.text, entry);
         }
         let written = self.append();
-        self.has_failed = written.is_err();
+        self.has_rest = written.is_err();
         written.map_err(|source| self.error(source))?;
         self.entries = Some(first.max(until));
         self.length += self.text.len() as u64;
@@ -140,11 +162,18 @@ impl Journal {
 
     /// Writes the text behind what stands whole in the file. A part of a line that a full disk left is written over.
     fn append(&mut self) -> io::Result<()> {
-        if self.has_failed {
+        self.cut()?;
+        self.file.write_all(self.text.as_bytes())
+    }
+
+    /// Takes away what follows the whole lines.
+    fn cut(&mut self) -> io::Result<()> {
+        if self.has_rest {
             self.file.set_len(self.length)?;
             self.file.seek(SeekFrom::Start(self.length))?;
+            self.has_rest = false;
         }
-        self.file.write_all(self.text.as_bytes())
+        Ok(())
     }
 
     fn error(&self, source: io::Error) -> JournalError {

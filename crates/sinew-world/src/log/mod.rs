@@ -10,6 +10,7 @@ pub use error::{LogError, LogFault};
 pub use journal::{Journal, JournalError};
 
 use serde::{Deserialize, Serialize};
+use sinew_core::Revision;
 use sinew_scene::Scene;
 
 use crate::command::Command;
@@ -28,7 +29,34 @@ pub struct Header {
     pub values: Vec<String>,
 }
 
+/// Identity of a scene, by its text and the files that it reads.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct SceneIdentity {
+    /// SHA-256 in hexadecimal digits.
+    pub(crate) sha256: String,
+    pub(crate) key: SceneKey,
+}
+
+/// A few digits of the identity of a scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub(crate) struct SceneKey(u64);
+
 impl Header {
+    /// Identity of the scene.
+    pub(crate) fn scene_identity(&self) -> SceneIdentity {
+        let hashes = self.inputs.iter().map(|file| file.sha256.as_str());
+        let hashes: Vec<&str> = std::iter::once(self.scene.as_str()).chain(hashes).collect();
+        let sha256 = sha256(hashes.join("\n").as_bytes());
+        let key = sha256.bytes().take(16).fold(0, |key, digit| {
+            let digit = char::from(digit).to_digit(16).unwrap_or_default();
+            key << 4 | u64::from(digit)
+        });
+        SceneIdentity {
+            sha256,
+            key: SceneKey(key),
+        }
+    }
+
     /// Header of a scene and this program.
     ///
     /// # Errors
@@ -57,13 +85,30 @@ pub struct Entry {
 }
 
 /// All commands of a session, each with the number of steps before it, and the number of steps at its end.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, Serialize)]
 pub struct Log {
     header: Header,
     entries: Vec<Entry>,
     steps: usize,
     #[serde(skip)]
     is_cut_off: bool,
+    /// The same as long as commands are only added: what was written of it stays true.
+    #[serde(skip)]
+    beginning: Revision,
+}
+
+impl PartialEq for Log {
+    fn eq(&self, other: &Self) -> bool {
+        let Self {
+            header,
+            entries,
+            steps,
+            is_cut_off,
+            beginning: _,
+        } = self;
+        (header, entries) == (&other.header, &other.entries)
+            && (steps, is_cut_off) == (&other.steps, &other.is_cut_off)
+    }
 }
 
 impl Log {
@@ -73,6 +118,7 @@ impl Log {
             entries: Vec::new(),
             steps: 0,
             is_cut_off: false,
+            beginning: Revision::new(),
         }
     }
 
@@ -117,6 +163,7 @@ impl Log {
     pub(crate) fn restore(&mut self, entries: &[Entry], steps: usize) {
         self.entries = entries.to_vec();
         self.steps = steps;
+        self.beginning = Revision::new();
     }
 
     pub(crate) fn note_values(&mut self, values: Vec<String>) {

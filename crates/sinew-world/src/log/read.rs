@@ -3,6 +3,8 @@
 use std::fs;
 use std::path::Path;
 
+use sinew_core::Revision;
+
 use super::error::{LogError, LogFault};
 use super::text::{KIND, VERSION};
 use super::words::Words;
@@ -179,6 +181,7 @@ impl Reading {
             },
             steps: self.end.unwrap_or(least),
             is_cut_off: self.end.is_none(),
+            beginning: Revision::new(),
             entries: self.entries,
         })
     }

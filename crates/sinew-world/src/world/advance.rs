@@ -3,12 +3,12 @@
 use std::cell::OnceCell;
 use std::sync::Arc;
 
-use sinew_core::{Batch, Outcome, RecordedSteps, Run, SimulateError, StepReport};
+use sinew_core::{Batch, Clock, Outcome, RecordedSteps, Run, SimulateError, StepReport};
 use sinew_scene::SceneBody;
 use sinew_tools::Pose;
 
 use super::{Ended, World};
-use crate::error::{AdvanceError, WorldStepError};
+use crate::error::{AdvanceError, AdvanceToError, WorldStepError};
 use crate::recorder::{BodyCut, Recorder, Shown};
 
 impl World {
@@ -47,17 +47,24 @@ impl World {
         self.advance_shown(steps, &mut shown)
     }
 
-    /// Takes the steps of [`World::dt`] that cover the time up to `t` (s).
+    /// Takes the steps of [`World::dt`] that cover the time up to `t` (s): none for the present time, and for one that the
+    /// last step passed.
     ///
     /// # Errors
-    /// [`AdvanceError`].
+    /// [`AdvanceToError`], also for a time before the last step, and one that is not finite.
     pub fn advance_to<R: Recorder + ?Sized>(
         &mut self,
         t: f64,
         recorder: &mut R,
-    ) -> Result<Ended, AdvanceError> {
-        let steps = Run::covering(t - self.t(), self.dt()).steps;
-        self.advance(steps, recorder)
+    ) -> Result<Ended, AdvanceToError> {
+        let now = self.t();
+        let last = self.state.clock.last_step().unwrap_or(0.0);
+        let is_reached = t > now - last || t >= now - Clock::ROUNDING * now.abs();
+        if !t.is_finite() || !is_reached {
+            return Err(AdvanceToError::Time { t, now });
+        }
+        let steps = Run::covering(t - now, self.dt()).steps;
+        Ok(self.advance(steps, recorder)?)
     }
 
     /// A recorder that has not seen the present state.
@@ -85,13 +92,17 @@ impl World {
     /// Between two acts of a blade steps are taken in batches, as by [`sinew_core::simulate()`].
     ///
     /// # Errors
-    /// [`AdvanceError`] where a step or the recorder fails. A step that fails is counted as in [`World::step`].
+    /// [`AdvanceError`] where a step or the recorder fails, and for a motion that failed already, also for no steps. A step
+    /// that fails is counted as in [`World::step`].
     pub fn advance_shown<R: Recorder + ?Sized>(
         &mut self,
         steps: usize,
         shown: &mut Shown<'_, R>,
     ) -> Result<Ended, AdvanceError> {
-        let end = shown.steps() + steps;
+        if let Some(failure) = &self.failure {
+            return Err(failure.clone().into());
+        }
+        let end = shown.steps().saturating_add(steps);
         // The body before any cut is what stands at the beginning.
         let ended = self.take(0, shown)?;
         if steps == 0 || ended != Ended::Finished {

@@ -9,10 +9,10 @@ use crate::command::{Command, CommandError, LoadId, ToolId};
 use crate::log::Entry;
 
 /// Largest number of a pose (m or rad): far beyond any body, and far from overflow.
-const FARTHEST: f64 = 1e6;
+pub(super) const FARTHEST: f64 = 1e6;
 
 /// Largest factor of a load.
-const STRONGEST: f64 = 1e6;
+pub(super) const STRONGEST: f64 = 1e6;
 
 impl World {
     /// Checks a command, which takes effect with the next step, and keeps it in the log.
@@ -31,7 +31,7 @@ impl World {
                 position,
                 rotation_vector,
             } => {
-                let ToolId(tool) = self.tool(tool)?;
+                let tool = self.tool(tool)?.place;
                 self.tools[tool].target = Some((*position, *rotation_vector));
             }
             Command::LoadFactor { load, factor } => self.turn(load, *factor)?,
@@ -159,7 +159,8 @@ impl World {
         position: [f64; 3],
         rotation_vector: [f64; 3],
     ) -> Result<(), CommandError> {
-        let tool = self.tools.get(tool.0).map(|tool| Arc::clone(&tool.name));
+        let own = (tool.scene == self.identity.key).then(|| self.tools.get(tool.place));
+        let tool = own.flatten().map(|tool| Arc::clone(&tool.name));
         self.command(Command::Pose {
             tool: tool.ok_or_else(|| self.foreign_id())?,
             position,
@@ -172,7 +173,8 @@ impl World {
     /// # Errors
     /// [`CommandError`]; the session continues as before.
     pub fn scale_load(&mut self, load: LoadId, factor: f64) -> Result<(), CommandError> {
-        let load = self.loads.get(load.0).map(|load| Arc::clone(&load.name));
+        let own = (load.scene == self.identity.key).then(|| self.loads.get(load.place));
+        let load = own.flatten().map(|load| Arc::clone(&load.name));
         self.command(Command::LoadFactor {
             load: load.ok_or_else(|| self.foreign_id())?,
             factor,
@@ -199,7 +201,9 @@ impl World {
                 .map(|tool| &tool.name)
         };
         let place = names().position(|known| known == name);
-        place.map(ToolId).ok_or_else(|| CommandError::NoTool {
+        let scene = self.identity.key;
+        let id = place.map(|place| ToolId { scene, place });
+        id.ok_or_else(|| CommandError::NoTool {
             name: name.to_owned(),
             known: names().cloned().collect(),
         })
@@ -211,14 +215,16 @@ impl World {
     /// [`CommandError::NoLoad`].
     pub fn load(&self, name: &str) -> Result<LoadId, CommandError> {
         let place = self.loads.iter().position(|load| &*load.name == name);
-        place.map(LoadId).ok_or_else(|| CommandError::NoLoad {
+        let scene = self.identity.key;
+        let id = place.map(|place| LoadId { scene, place });
+        id.ok_or_else(|| CommandError::NoLoad {
             name: name.to_owned(),
             known: (self.loads.iter().map(|load| load.name.to_string())).collect(),
         })
     }
 
     fn turn(&mut self, name: &str, factor: f64) -> Result<(), CommandError> {
-        let LoadId(place) = self.load(name)?;
+        let place = self.load(name)?.place;
         if !self.drives_loads() {
             (self.body, self.method) = self.driven_method()?;
             // These loads give the forces that led to the state.

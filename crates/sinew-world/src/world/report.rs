@@ -114,7 +114,8 @@ impl World {
     /// The tools of the scene.
     pub fn tools(&self) -> impl ExactSizeIterator<Item = ToolId> + use<> {
         let tools = self.body.model().tools();
-        (0..tools.map_or(0, |tools| tools.tools().len())).map(ToolId)
+        let scene = self.identity.key;
+        (0..tools.map_or(0, |tools| tools.tools().len())).map(move |place| ToolId { scene, place })
     }
 
     /// The pose of a tool. Ids of a world of another scene give the identity.
@@ -122,14 +123,14 @@ impl World {
     pub fn tool_pose(&self, tool: ToolId) -> Pose {
         let tools = self.tools_with(tool);
         tools.map_or(Pose::identity(), |tools| {
-            tools.pose(&self.state, &self.inputs, tool.0)
+            tools.pose(&self.state, &self.inputs, tool.place)
         })
     }
 
     /// Forces, impulses and contacts of a tool after the last step; `None` for an id of a world of another scene.
     #[must_use]
     pub fn tool_report(&self, tool: ToolId) -> Option<ToolReport> {
-        Some(self.tools_with(tool)?.report(&self.state, tool.0))
+        Some(self.tools_with(tool)?.report(&self.state, tool.place))
     }
 
     /// The distance (m) between a tool and the cell or triangle that is nearest to it, negative inside; `None` where it
@@ -137,7 +138,8 @@ impl World {
     #[must_use]
     pub fn tool_gap(&self, tool: ToolId) -> Option<Depth> {
         let pose = self.tool_pose(tool);
-        self.tools_with(tool)?.deepest(&self.state.u, &pose, tool.0)
+        self.tools_with(tool)?
+            .deepest(&self.state.u, &pose, tool.place)
     }
 
     /// Deepest overlap now of parts or surfaces of the body, between which there is no contact. A check costs some
@@ -160,7 +162,8 @@ impl World {
 
     fn tools_with(&self, tool: ToolId) -> Option<&Tools> {
         let tools = self.body.model().tools()?;
-        (tool.0 < tools.tools().len()).then_some(tools)
+        let is_own = tool.scene == self.identity.key && tool.place < tools.tools().len();
+        is_own.then_some(tools)
     }
 
     /// Computes the velocity (m/s) of the degrees of freedom at the time of the state.

@@ -4,21 +4,27 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 use sinew_core::bytes::{self, BytesError, Kind};
-use sinew_core::{Options, SavedInputs, SavedState};
+use sinew_core::{Clock, Options, SavedInputs, SavedState};
 use sinew_scene::{Cutter, SavedCuts};
 
+use super::commands::{FARTHEST, STRONGEST};
 use super::{Method, Sheet, World};
-use crate::error::RestoreError;
+use crate::error::{RestoreError, WorldStepError};
 use crate::log::Entry;
 
 const KIND: Kind = Kind {
-    name: b"sinew world v1\r\n",
+    name: b"sinew world v2\r\n",
     words: "saved world",
 };
 
 /// All that the motion of a world continues from: a value that other processes read.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Saved {
+    /// SHA-256 of the scene with the files that it reads, in hexadecimal digits.
+    scene: String,
+    /// Time (s) after the last step that was taken whole.
+    reached: f64,
+    failure: Option<SavedFailure>,
     /// `None` if nothing can cut.
     cuts: Option<SavedCuts>,
     state: SavedState,
@@ -41,7 +47,13 @@ struct Commanded {
     blade: Option<[[f64; 3]; 2]>,
     steps: usize,
     log: Vec<Entry>,
-    log_steps: usize,
+}
+
+/// A failure from which only a reset continues.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+enum SavedFailure {
+    Diverged { t: f64, place: String },
+    InWords(String),
 }
 
 /// Position (m) and rotation vector (rad) that a tool goes to.
@@ -65,6 +77,63 @@ impl Saved {
     }
 }
 
+impl SavedFailure {
+    fn of(failure: &WorldStepError) -> Self {
+        match failure {
+            WorldStepError::Diverged { t, place } => Self::Diverged {
+                t: *t,
+                place: place.clone(),
+            },
+            other => Self::InWords(other.to_string()),
+        }
+    }
+
+    fn restored(&self) -> WorldStepError {
+        match self {
+            Self::Diverged { t, place } => WorldStepError::Diverged {
+                t: *t,
+                place: place.clone(),
+            },
+            Self::InWords(words) => WorldStepError::Earlier(words.clone()),
+        }
+    }
+}
+
+impl Commanded {
+    /// The first part that no commands lead to.
+    fn impossible_part(&self) -> Option<&'static str> {
+        let within = |values: &[f64], most: f64| values.iter().all(|value| value.abs() <= most);
+        let is_place = |ends: &[[f64; 3]]| within(ends.as_flattened(), FARTHEST);
+        let targets = self.tools.iter().filter_map(|(target, _)| *target);
+        let factors: Vec<f64> = self.factors.iter().copied().flatten().collect();
+        let in_order = |pair: &[Entry]| pair[0].step <= pair[1].step;
+        let last = self.log.last().map_or(0, |entry| entry.step);
+        let is_possible = [
+            ("step", self.dt.is_finite() && self.dt > 0.0),
+            ("number of steps", self.steps as u64 <= Clock::MOST_STEPS),
+            (
+                "log",
+                last <= self.steps && self.log.windows(2).all(in_order),
+            ),
+            (
+                "pose of a tool",
+                targets
+                    .into_iter()
+                    .all(|(position, turn)| is_place(&[position, turn])),
+            ),
+            ("factor of a load", within(&factors, STRONGEST)),
+            (
+                "blade",
+                (self.sheets.iter().flatten().chain(&self.blade)).all(|ends| is_place(ends)),
+            ),
+        ];
+        let broken = is_possible
+            .into_iter()
+            .find(|(_, is_possible)| !is_possible);
+        broken.map(|(part, _)| part)
+    }
+}
+
 impl World {
     /// Keeps all that the motion continues from.
     #[must_use]
@@ -82,9 +151,11 @@ impl World {
             blade: self.blade,
             steps: self.steps,
             log: self.log.entries().to_vec(),
-            log_steps: self.log.steps(),
         });
         Saved {
+            scene: self.identity.sha256.clone(),
+            reached: self.reached,
+            failure: self.failure.as_ref().map(SavedFailure::of),
             cuts: self.cutter.as_ref().map(Cutter::save),
             state: SavedState::of(&self.state, self.body.system()),
             commanded,
@@ -92,13 +163,25 @@ impl World {
     }
 
     /// Continues from what [`World::save`] kept of this world, or of another one of the same scene that was built in the
-    /// same way. The log is that of the motion that is continued.
+    /// same way. The log is that of the motion that is continued, and one that failed needs a reset here too. Scenes are
+    /// the same if their texts and the files that they read are.
     ///
     /// # Errors
-    /// [`RestoreError`] for what another scene left; the world stays as it was.
+    /// [`RestoreError`] for what another scene left, and for values that no motion has; the world stays as it was.
     pub fn restore(&mut self, saved: &Saved) -> Result<(), RestoreError> {
+        if saved.scene != self.identity.sha256 {
+            return Err(RestoreError::OtherScene);
+        }
         if saved.commanded.is_some() == self.follows {
             return Err(RestoreError::OtherWorld);
+        }
+        let impossible = match &saved.commanded {
+            _ if !saved.reached.is_finite() => Some("time"),
+            Some(commanded) => commanded.impossible_part(),
+            None => None,
+        };
+        if let Some(part) = impossible {
+            return Err(RestoreError::Impossible { part });
         }
         let before = self.cutter.as_ref().map(Cutter::save);
         let restored = self.take_saved(saved);
@@ -115,7 +198,7 @@ impl World {
         let cut = match (&mut self.cutter, &saved.cuts) {
             (Some(cutter), Some(cuts)) => cutter.restore(cuts, self.scene.body())?,
             (None, None) => None,
-            _ => return Err(RestoreError::OtherScene),
+            _ => return Err(RestoreError::Impossible { part: "cuts" }),
         };
         let undriven = cut.map_or_else(|| Arc::clone(self.scene.body()), Arc::new);
         let drives_loads = (saved.commanded.as_ref()).is_some_and(|kept| kept.drives_loads);
@@ -134,8 +217,9 @@ impl World {
         self.topology_epoch += u64::from(!is_same);
         self.method.stable_step.take();
         self.state = state;
-        self.reached = self.state.t();
-        (self.change, self.failure) = (None, None);
+        self.reached = saved.reached;
+        self.change = None;
+        self.failure = saved.failure.as_ref().map(SavedFailure::restored);
         Ok(())
     }
 
@@ -153,7 +237,9 @@ impl World {
                 inputs.channel_count(),
             ]
         {
-            return Err(RestoreError::OtherScene);
+            return Err(RestoreError::Impossible {
+                part: "number of tools and loads",
+            });
         }
         let (id, options) = &commanded.method;
         if self.method.asked != commanded.method {
@@ -170,7 +256,7 @@ impl World {
         self.sheets.clone_from(&commanded.sheets);
         self.blade = commanded.blade;
         self.steps = commanded.steps;
-        self.log.restore(&commanded.log, commanded.log_steps);
+        self.log.restore(&commanded.log, commanded.steps);
         Ok(())
     }
 }

@@ -3,7 +3,8 @@
 use crate::common::{CUBE, scene, session};
 use sinew_core::{LinearModel, LinearOperators, Load, Options, Ramp, Run, State, simulate};
 use sinew_testkit::scenes::ROLLED;
-use sinew_world::{Command, CommandError, World, WorldStepError};
+use sinew_tools::Pose;
+use sinew_world::{Command, CommandError, Ended, World, WorldStepError};
 
 fn steps(session: &mut World, count: usize) {
     for _ in 0..count {
@@ -62,6 +63,49 @@ fn ids_of_another_world_are_refused_as_such() {
     let scaled = bare.scale_load(load, 0.5);
     assert!(matches!(scaled, Err(CommandError::ForeignId)));
     assert!(bare.log().entries().is_empty());
+}
+
+/// An id means the same in each world of its scene, and nothing in those of others, though they have a tool at its
+/// place.
+#[test]
+fn ids_are_of_a_scene_and_not_of_the_place_in_its_list() {
+    let (own, mut same) = (session(CUBE), session(CUBE));
+    let mut other = session(&CUBE.replace("\"ball\"", "\"hammer\""));
+    let (ball, pull) = (own.tool("ball").unwrap(), own.load("pull").unwrap());
+    let steered = other.steer(ball, [0.04, 0.04, 0.2], [0.0; 3]);
+    assert!(matches!(steered, Err(CommandError::ForeignId)));
+    let scaled = other.scale_load(pull, 0.5);
+    assert!(matches!(scaled, Err(CommandError::ForeignId)));
+    assert!(other.log().entries().is_empty());
+    assert!(other.tool_report(ball).is_none() && other.tool_gap(ball).is_none());
+    assert_eq!(other.tool_pose(ball), Pose::identity());
+    same.steer(ball, [0.04, 0.04, 0.2], [0.0; 3]).unwrap();
+    same.scale_load(pull, 0.5).unwrap();
+    assert!(same.tool_report(ball).is_some());
+    assert_eq!(same.tools().next(), Some(ball));
+}
+
+#[test]
+fn a_time_that_is_past_or_none_is_refused() {
+    let mut world = session(CUBE);
+    world.advance_to(0.1, &mut ()).unwrap();
+    let before = world.save();
+    for t in [0.05, -1.0, f64::NAN, f64::NEG_INFINITY, f64::INFINITY] {
+        let refused = world.advance_to(t, &mut ()).expect_err("a past time");
+        let said = refused.to_string();
+        let from = format!("t = {t} s: expected a finite time from {} s on", world.t());
+        assert_eq!(said, from);
+        assert!(world.save() == before);
+    }
+    for t in [0.1, world.t()] {
+        assert_eq!(world.advance_to(t, &mut ()).unwrap(), Ended::Finished);
+        assert!(world.save() == before);
+    }
+    // A time that the last step passed is reached.
+    world.advance_to(0.1005, &mut ()).unwrap();
+    let t = world.t();
+    world.advance_to(0.101, &mut ()).unwrap();
+    assert_eq!(world.t(), t);
 }
 
 #[test]

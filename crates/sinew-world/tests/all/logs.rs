@@ -6,7 +6,7 @@ use std::path::Path;
 use crate::common::{CUBE, session};
 use proptest::prelude::*;
 use sinew_core::{OptionValue, Options};
-use sinew_world::{Command, Journal, Log, Replay};
+use sinew_world::{Command, Journal, Log, Replay, World};
 
 fn parse(text: &str) -> Result<Log, String> {
     Log::parse(Path::new("s.log"), text).map_err(|error| error.to_string())
@@ -183,6 +183,44 @@ fn a_journal_holds_what_no_later_pose_can_replace_and_in_the_end_all() {
     journal.begin_anew().unwrap();
     journal.finish(session.log()).unwrap();
     assert_eq!(text(), session.log().to_text());
+}
+
+/// A world that is restored goes back in its log, and so does the file.
+#[test]
+fn a_journal_follows_a_log_that_goes_back() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("s.log");
+    let text = || fs::read_to_string(&path).unwrap();
+    let mut world = session(CUBE);
+    let mut journal = Journal::create(path.clone()).unwrap();
+    let mut drive = |world: &mut World, factors: &[f64]| {
+        for factor in factors {
+            let load = "pull".into();
+            let factor = *factor;
+            world.command(Command::LoadFactor { load, factor }).unwrap();
+            world.step().unwrap();
+            journal.keep_up(world.log()).unwrap();
+            let kept = Log::read(&path).unwrap();
+            assert_eq!(kept.entries(), world.log().entries());
+        }
+    };
+    let begun = world.save();
+    drive(&mut world, &[0.1, 0.2, 0.3]);
+    let saved = world.save();
+    drive(&mut world, &[0.4, 0.5, 0.6, 0.7, 0.8]);
+    world.restore(&saved).unwrap();
+    drive(&mut world, &[5.0, 6.0, 7.0, 8.0]);
+    world.restore(&begun).unwrap();
+    drive(&mut world, &[9.0]);
+    // As many commands as before it was restored.
+    world.restore(&begun).unwrap();
+    drive(&mut world, &[10.0]);
+    world.restore(&begun).unwrap();
+    journal.keep_up(world.log()).unwrap();
+    assert_eq!(text(), "", "no command is left");
+    world.step().unwrap();
+    journal.finish(world.log()).unwrap();
+    assert_eq!(text(), world.log().to_text());
 }
 
 #[test]

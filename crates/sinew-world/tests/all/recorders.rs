@@ -126,6 +126,34 @@ fn a_motion_in_parts_is_one_motion() {
     assert_eq!((whole.rows, whole.steps), (parts.rows, parts.steps));
 }
 
+#[test]
+fn a_recorder_ends_a_motion_of_any_number_of_steps() {
+    let mut world = spring();
+    let mut stops = StopsAt(5);
+    let mut shown = world.show(&mut stops);
+    world.advance_shown(2, &mut shown).unwrap();
+    let ended = world.advance_shown(usize::MAX, &mut shown).unwrap();
+    assert_eq!((ended, shown.steps()), (Ended::Stopped, 5));
+}
+
+/// Stops a motion after so many steps.
+struct StopsAt(usize);
+
+impl sinew_core::Recorder for StopsAt {
+    fn next(&mut self, step: usize) -> Option<usize> {
+        Some(step)
+    }
+
+    fn record(&mut self, moment: &Moment<'_>) -> Result<Verdict, RecordError> {
+        Ok(match moment.step >= self.0 {
+            true => Verdict::Stop,
+            false => Verdict::Continue,
+        })
+    }
+}
+
+impl Recorder for StopsAt {}
+
 /// A recorder is notified of each cut between the last step on the body before and the first on the body after, and
 /// watches the new body.
 #[test]

@@ -3,8 +3,10 @@
 use std::fmt::Debug;
 
 use serde::{Serialize, de::DeserializeOwned};
-use sinew_scene::Scene;
-use sinew_world::{Command, CommandError, Replay, RestoreError, World};
+use serde_json::json;
+use sinew_core::Options;
+use sinew_scene::{Scene, SceneSource};
+use sinew_world::{Command, CommandError, Replay, RestoreError, Saved, World};
 
 use crate::common::{CUBE, build, following, scene, session};
 
@@ -101,6 +103,143 @@ fn a_world_takes_the_motion_of_its_own_scene_and_kind_only() {
         following(other).restore(&saved),
         Err(RestoreError::State(_) | RestoreError::Cutting(_))
     ));
+}
+
+/// Every difference between scenes counts, also one that neither the body nor the numbers of tools and loads show; and
+/// what was cut brings a body of its own along.
+#[test]
+fn the_state_of_another_scene_is_refused_also_after_a_cut() {
+    let mut world = session(&cube());
+    drive(&mut world, 0..25);
+    assert!(world.cuts().unwrap().changes > 0);
+    let before = world.save();
+    for (ours, theirs) in [
+        ("edge = 0.06", "edge = 0.061"),
+        ("[80.0, 0.0, 40.0]", "[81.0, 0.0, 40.0]"),
+        ("-9.81]", "9.81]"),
+        ("radius = 0.012", "radius = 0.011"),
+        ("snap = 0.2", "snap = 0.25"),
+        ("\"plate\"", "\"board\""),
+        ("youngs_modulus = 6000.0", "youngs_modulus = 6001.0"),
+    ] {
+        for steps in [0, 25] {
+            let text = cube().replace(ours, theirs);
+            let mut other = session(&text);
+            drive(&mut other, 0..steps);
+            let refused = world.restore(&other.save()).expect_err(theirs).to_string();
+            assert!(refused.contains("another scene"), "{theirs}: {refused}");
+            assert!(world.save() == before, "{theirs}");
+            let mut followed = following(build(&cube()));
+            let refused = followed.restore(&following(build(&text)).save());
+            let refused = refused.expect_err(theirs).to_string();
+            assert!(refused.contains("another scene"), "{theirs}: {refused}");
+        }
+    }
+}
+
+#[test]
+fn a_file_with_other_content_makes_another_scene() {
+    let folder = tempfile::tempdir().unwrap();
+    let table = folder.path().join("pull.csv");
+    let text = cube().replace(
+        "{ kind = \"sin2\", rise = 0.05 }",
+        "{ table = \"pull.csv\" }",
+    );
+    let world = |last: f64| {
+        std::fs::write(&table, format!("t_s,factor\n0.0,0.0\n0.1,{last}\n")).unwrap();
+        let source = SceneSource::new(folder.path().join("cube.toml"), text.clone());
+        World::new(Scene::parse(source).unwrap()).unwrap()
+    };
+    let (mut one, other) = (world(1.0), world(2.0));
+    let refused = one.restore(&other.save()).unwrap_err().to_string();
+    assert!(refused.contains("another scene"), "{refused}");
+    one.restore(&world(1.0).save()).unwrap();
+}
+
+#[test]
+fn a_motion_by_another_method_is_restored_where_the_scene_is_the_same() {
+    let mut world = session(&cube());
+    let switch = Command::Integrator {
+        id: "central-difference".to_owned(),
+        options: Options::new(),
+    };
+    world.command(switch).unwrap();
+    world.step().unwrap();
+    let saved = world.save();
+    let mut fresh = session(&cube());
+    fresh.restore(&saved).unwrap();
+    assert_eq!(fresh.integrator().id(), "central-difference");
+    assert!(fresh.save() == saved);
+}
+
+#[test]
+fn a_motion_that_failed_is_restored_as_one_that_failed() {
+    let mut world = session(&cube());
+    world.command(Command::Dt(0.2)).unwrap();
+    let failed = (0..1000).find_map(|_| world.step().err()).unwrap();
+    assert!(world.advance(0, &mut ()).is_err(), "it does not go on");
+    let bytes = world.save().to_bytes().unwrap();
+    let mut fresh = session(&cube());
+    fresh.restore(&Saved::from_bytes(&bytes).unwrap()).unwrap();
+    assert_eq!(fresh.failure(), Some(&failed));
+    assert!(fresh.save().to_bytes().unwrap() == bytes);
+    let refused = fresh.command(Command::Dt(0.001));
+    assert!(matches!(refused, Err(CommandError::Failed)));
+    assert_eq!(fresh.step().unwrap_err(), failed);
+    assert!(fresh.advance(0, &mut ()).is_err());
+    for world in [&mut world, &mut fresh] {
+        world.command(Command::Reset).unwrap();
+        world.advance(3, &mut ()).unwrap();
+    }
+    assert!(world.save() == fresh.save());
+    assert_eq!(world.log(), fresh.log());
+}
+
+/// Numbers that no motion has are refused at once, and do not end the program later.
+#[test]
+fn a_motion_with_numbers_that_cannot_be_is_refused() {
+    let mut world = session(&cube());
+    drive(&mut world, 0..25);
+    let (saved, before) = (serde_json::to_value(world.save()).unwrap(), world.save());
+    for (place, value) in [
+        ("/commanded/steps", json!(u64::MAX)),
+        ("/commanded/dt", json!(0.0)),
+        ("/commanded/dt", json!(-0.002)),
+        ("/commanded/tools/0/0/0/0", json!(1e300)),
+        ("/commanded/factors/0", json!(1e300)),
+        ("/commanded/blade/0/0", json!(1e300)),
+        ("/commanded/log/0/step", json!(u64::MAX)),
+        ("/cuts/cut/epoch", json!(u64::MAX)),
+        ("/cuts/totals/changes", json!(u64::MAX)),
+        ("/state/state/clock/steps", json!(u64::MAX)),
+        ("/state/state/clock/dt", json!(-0.002)),
+    ] {
+        let mut altered = saved.clone();
+        *altered.pointer_mut(place).expect(place) = value;
+        let altered: Saved = serde_json::from_value(altered).expect(place);
+        assert!(world.restore(&altered).is_err(), "{place}");
+        assert!(world.save() == before, "{place}");
+    }
+    world
+        .restore(&serde_json::from_value(saved).unwrap())
+        .unwrap();
+}
+
+#[test]
+fn what_is_read_of_a_saved_motion_under_a_guard_is_equal_to_it() {
+    // Without tools, whose work the limits of a guard do not know.
+    let (body, run) = (
+        CUBE.split("[[tool]]").next().unwrap(),
+        &CUBE[CUBE.find("[run]").unwrap()..],
+    );
+    let text = format!("{body}{run}saturation = \"auto\"\n");
+    let mut world = session(&text);
+    world.advance(3, &mut ()).unwrap();
+    let saved = world.save();
+    assert_eq!(
+        Saved::from_bytes(&saved.to_bytes().unwrap()).unwrap(),
+        saved
+    );
 }
 
 /// Writes a value and reads it again.

@@ -16,7 +16,7 @@ use sinew_scene::output::{OutputError, complain};
 use sinew_scene::{CuttingError, RefusedLoad, SceneError, Simulation, Warning};
 #[cfg(feature = "live")]
 use sinew_world::JournalError;
-use sinew_world::{AdvanceError, LogError, ReplayError, ReportError, WorldStepError};
+use sinew_world::{AdvanceError, LogError, ReplayError, ReportError, WorldError, WorldStepError};
 
 /// Exit code for input that cannot be used.
 const REFUSED: u8 = 2;
@@ -67,6 +67,9 @@ pub(crate) enum Failure {
     /// A body that cannot be cut.
     #[error(transparent)]
     Cutting(#[from] CuttingError),
+    /// A scene that cannot be set in motion.
+    #[error(transparent)]
+    World(WorldError),
     /// A load that the scene's integrator refuses.
     #[error(transparent)]
     Load(#[from] RefusedLoad),
@@ -308,6 +311,16 @@ impl From<LawCurvesError> for Failure {
     }
 }
 
+impl From<WorldError> for Failure {
+    fn from(error: WorldError) -> Self {
+        match error {
+            WorldError::Scene(error) => Self::Scene(error),
+            WorldError::Cutting(error) => Self::Cutting(error),
+            other => Self::World(other),
+        }
+    }
+}
+
 impl Failure {
     /// The failure of a world whose time is `t` (s).
     pub(crate) fn of_advance(error: AdvanceError, t: f64) -> Self {
@@ -357,6 +370,7 @@ impl Failure {
             | Self::SceneForMesh { .. }
             | Self::Load(_)
             | Self::Cutting(_)
+            | Self::World(_)
             | Self::Option(_)
             | Self::Warnings { .. }
             | Self::Advice { .. }
