@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use sinew_core::{OptionError, Options, StepError};
 use sinew_scene::{CuttingError, DrivenLoadError};
 
-use crate::log::SceneKey;
+use crate::scene_identity::SceneKey;
 
 /// A tool of a scene, by its place there. It is known in all worlds of the scene, and in no others.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]

@@ -11,6 +11,7 @@ mod input_file;
 mod log;
 mod recorder;
 mod replay;
+mod scene_identity;
 mod world;
 
 pub use command::{Command, CommandError, LoadId, ToolId};

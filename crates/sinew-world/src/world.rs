@@ -19,8 +19,9 @@ use sinew_scene::{
 use sinew_tools::Steering;
 
 use crate::error::{WorldError, WorldStepError};
-use crate::log::{Header, Log, SceneIdentity};
+use crate::log::{Header, Log};
 use crate::recorder::BodyCut;
+use crate::scene_identity::SceneIdentity;
 
 pub use saved::Saved;
 

@@ -5,9 +5,9 @@ use std::sync::{Arc, OnceLock};
 use sinew_core::{State, StepReport, System};
 use sinew_integrators::Stepper;
 
+use super::held_place::HeldPlace;
 use super::model::SceneModel;
 use super::probe::Probe;
-use super::reaction::HeldPlace;
 use super::{set_up, step, tool_end};
 use crate::error::SceneError;
 use crate::scene::Scene;

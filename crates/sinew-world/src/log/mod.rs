@@ -15,6 +15,7 @@ use sinew_scene::Scene;
 
 use crate::command::Command;
 use crate::input_file::{InputFile, InputFileError, sha256};
+use crate::scene_identity::SceneIdentity;
 
 /// Identity of the program and the scene of a log.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -29,32 +30,13 @@ pub struct Header {
     pub values: Vec<String>,
 }
 
-/// Identity of a scene, by its text and the files that it reads.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct SceneIdentity {
-    /// SHA-256 in hexadecimal digits.
-    pub(crate) sha256: String,
-    pub(crate) key: SceneKey,
-}
-
-/// A few digits of the identity of a scene.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub(crate) struct SceneKey(u64);
-
 impl Header {
     /// Identity of the scene.
     pub(crate) fn scene_identity(&self) -> SceneIdentity {
         let hashes = self.inputs.iter().map(|file| file.sha256.as_str());
         let hashes: Vec<&str> = std::iter::once(self.scene.as_str()).chain(hashes).collect();
         let sha256 = sha256(hashes.join("\n").as_bytes());
-        let key = sha256.bytes().take(16).fold(0, |key, digit| {
-            let digit = char::from(digit).to_digit(16).unwrap_or_default();
-            key << 4 | u64::from(digit)
-        });
-        SceneIdentity {
-            sha256,
-            key: SceneKey(key),
-        }
+        SceneIdentity::of(sha256)
     }
 
     /// Header of a scene and this program.

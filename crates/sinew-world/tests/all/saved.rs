@@ -101,7 +101,7 @@ fn a_world_takes_the_motion_of_its_own_scene_and_kind_only() {
     let other = Scene::build(other).unwrap();
     assert!(matches!(
         following(other).restore(&saved),
-        Err(RestoreError::State(_) | RestoreError::Cutting(_))
+        Err(RestoreError::OtherScene)
     ));
 }
 
