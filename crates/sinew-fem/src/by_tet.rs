@@ -8,9 +8,10 @@ use sinew_mesh::{TetData, TetMesh};
 
 use crate::Problem;
 use crate::error::{Cause, FemError, Item};
+use crate::frame::{Frame, frame, unit};
 use crate::from_mesh::{DataError, FromMesh};
 use crate::shares::Shares;
-use crate::tissue::{Direction, Tissue, frame, unit};
+use crate::tissue::{Direction, Tissue};
 
 /// Properties per tetrahedron, read from the mesh's data and checked.
 #[derive(Debug, Default)]
@@ -35,27 +36,26 @@ pub(crate) struct RegionByTet {
     pub(crate) densities: [f64; 2],
 }
 
-/// Three perpendicular unit vectors in the material at rest, the third the cross product of the others.
-pub(crate) type Frame = [[f64; 3]; 3];
-
 /// The axes of a material.
 #[derive(Clone)]
 pub(crate) enum Axes {
     /// The same in the whole region.
-    Everywhere(Frame),
+    Everywhere(Box<Frame>),
     /// Those of each tetrahedron of the mesh.
     Each(Arc<[Frame]>),
 }
 
 impl Axes {
     /// The axes of coordinates.
-    pub(crate) const COORDINATES: Self =
-        Self::Everywhere([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);
+    pub(crate) fn of_coordinates() -> Self {
+        let axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        Self::Everywhere(Box::new(axes))
+    }
 
     /// The axes in a tetrahedron.
     pub(crate) fn of(&self, tet: usize) -> Frame {
         match self {
-            Self::Everywhere(frame) => *frame,
+            Self::Everywhere(frame) => **frame,
             Self::Each(all) => all[tet],
         }
     }
@@ -309,7 +309,8 @@ impl<'a> Members<'a> {
         }
         if let [Direction::Everywhere(first), Direction::Everywhere(second)] = directions {
             // Checked before.
-            return Ok(Axes::Everywhere(frame(*first, *second).unwrap_or_default()));
+            let frame = frame(*first, *second).unwrap_or_default();
+            return Ok(Axes::Everywhere(Box::new(frame)));
         }
         let mut frames = vec![Frame::default(); self.mesh.tets.len()];
         for tet in self.tets() {

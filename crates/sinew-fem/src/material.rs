@@ -5,8 +5,9 @@ use std::sync::Arc;
 use sinew_core::Hash;
 use sinew_mesh::TetMesh;
 
-use crate::by_tet::{Axes, Frame, RegionByTet, UnitVectors};
+use crate::by_tet::{Axes, RegionByTet, UnitVectors};
 use crate::error::{Cause, FemError, Item};
+use crate::frame::Frame;
 use crate::graph::Graph;
 use crate::hyperelastic::{Hyperelastic, Tensor};
 use crate::large::{Compiled, RegionLaw};
@@ -76,7 +77,7 @@ impl Material {
             Law::Hyperelastic { id, parameters } => {
                 let law = Hyperelastic::new(id, &parameters)
                     .map_err(|error| FemError::new(Item::Mesh, error.into()))?;
-                let of_coordinates = || law.has_axes().then_some(Axes::COORDINATES);
+                let of_coordinates = || law.has_axes().then(Axes::of_coordinates);
                 Kind::Hyperelastic {
                     axes: by_tet.axes.clone().or_else(of_coordinates),
                     law,

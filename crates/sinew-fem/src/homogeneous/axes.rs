@@ -1,8 +1,8 @@
 //! The axes of loads.
 
 use super::error::HomogeneousError;
+use crate::frame::unit;
 use crate::hyperelastic::{Tensor, dot};
-use crate::tissue::unit;
 
 /// Three axes at right angles: the first that of the pull, the second the other one of a sheet's plane.
 #[derive(Clone, Copy, Debug, PartialEq)]

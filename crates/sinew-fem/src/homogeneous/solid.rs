@@ -1,10 +1,11 @@
 //! A material at a point.
 
 use super::error::HomogeneousError;
+use crate::frame::frame;
 use crate::hyperelastic::fibres::Fibres;
 use crate::hyperelastic::{Deformation, Hyperelastic, LawError, SMALLEST_VOLUME_RATIO, Tensor};
 use crate::tetra;
-use crate::tissue::{Direction, frame};
+use crate::tissue::Direction;
 use crate::{Law, Region};
 
 /// The material of a region at a point, by its moduli as they are stated: instantaneous or long-term ones where stress

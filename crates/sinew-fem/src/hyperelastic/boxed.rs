@@ -4,6 +4,7 @@ use std::fmt::Debug;
 
 use sinew_sparse::simd::Number;
 
+use super::decomposition::MOST_LANES;
 use super::deformation::Deformation;
 use super::law::{HyperelasticLaw, Point};
 use super::parameters::{LawParameter, LawValues, ParameterError};
@@ -48,9 +49,6 @@ pub trait PointLaw: Debug + Send + Sync {
 /// A [`PointLaw`] as loops take it.
 #[derive(Clone, Copy, Debug)]
 pub struct Boxed<'a>(pub &'a dyn PointLaw);
-
-/// At most as many lanes as a vector has.
-pub(super) const MOST_LANES: usize = 16;
 
 /// The tensor of a lane.
 fn lane_of<N: Number>(tensor: Tensor<N>, lane: usize) -> Tensor<f64> {

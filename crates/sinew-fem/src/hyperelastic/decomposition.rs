@@ -163,15 +163,15 @@ pub(super) fn rotation<N: Number>(gradient: Tensor<N>, volume_ratio: N) -> Tenso
 }
 
 /// Lanes at most of any number.
-const LANES: usize = 16;
+pub(super) const MOST_LANES: usize = 16;
 
 /// The rotations where the volume ratio is above [`FLAT`], and elsewhere those by singular values, lane by lane: rare, and long
 /// where it is inlined.
 #[cold]
 #[inline(never)]
 fn mended<N: Number>(gradient: Tensor<N>, rotation: Tensor<N>, volume_ratio: N) -> Tensor<N> {
-    const { assert!(N::LANES <= LANES) };
-    let mut lanes = [[[0.0; 3]; 3]; LANES];
+    const { assert!(N::LANES <= MOST_LANES) };
+    let mut lanes = [[[0.0; 3]; 3]; MOST_LANES];
     for (lane, found) in lanes.iter_mut().enumerate().take(N::LANES) {
         let of = |tensor: Tensor<N>| Tensor(tensor.0.map(|row| row.map(|entry| entry.lane(lane))));
         *found = if volume_ratio.lane(lane) > FLAT {

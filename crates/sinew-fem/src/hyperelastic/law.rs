@@ -7,7 +7,7 @@ use sinew_sparse::simd::Number;
 
 use super::deformation::Deformation;
 use super::parameters::{LawParameter, LawValues, ParameterError, Parameters};
-use super::projection::semidefinite;
+use super::semidefinite::semidefinite;
 use super::tensor::{Tensor, dot};
 
 /// Volume ratio J below which a law that is not defined for inverted elements is refused.

@@ -40,6 +40,7 @@ pub mod prony;
 mod same;
 mod samples;
 mod second_invariant;
+mod semidefinite;
 pub(crate) mod stable_neo_hookean;
 pub(crate) mod stable_neo_hookean_log;
 mod stretches;
@@ -72,9 +73,9 @@ pub use orthotropic::Orthotropic;
 pub use parameters::{
     Column, LawParameter, LawValues, ParameterError, Parameters, Presence, Range,
 };
-pub(crate) use projection::semidefinite;
 pub use projection::{Linearised, Projection, TangentKind};
 pub use samples::sample_deformations;
+pub(crate) use semidefinite::semidefinite;
 pub use stable_neo_hookean::StableNeoHookean;
 pub use stable_neo_hookean_log::StableNeoHookeanLog;
 pub use stvk::Stvk;

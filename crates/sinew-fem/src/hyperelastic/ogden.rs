@@ -6,7 +6,7 @@ use super::deformation::Deformation;
 use super::law::{Bulk, HyperelasticLaw, NodeBlock, Point};
 use super::parameters::{Column, LawParameter, LawValues, ParameterError, Range};
 use super::powers::{SMALL, exp_m1, largest_exponent, sinh_share};
-use super::projection::surely_semidefinite;
+use super::semidefinite::surely_semidefinite;
 use super::stretches::Stretches;
 use super::tensor::Tensor;
 

@@ -4,9 +4,9 @@ use nalgebra::SMatrix;
 pub use sinew_core::TangentKind;
 use sinew_sparse::simd::Number;
 
-use super::boxed::MOST_LANES;
-use super::decomposition::SingularValues;
+use super::decomposition::{MOST_LANES, SingularValues};
 use super::law::{Bulk, HyperelasticLaw, Point};
+use super::semidefinite::semidefinite;
 use super::tensor::Tensor;
 
 /// The tangent of a law at a deformation.
@@ -196,24 +196,4 @@ impl<N: Number> Projection<N> {
         }
         (self.left * result).times_transposed(self.right)
     }
-}
-
-/// [`semidefinite`] with what that loses by rounding where negative eigenvalues are the larger ones: the own block of a
-/// node for a tangent that may be indefinite.
-#[inline(always)]
-pub(super) fn surely_semidefinite<N: Number>(block: Tensor<N>) -> Tensor<N> {
-    let rounding = block.largest() * N::of(8.0 * N::EPSILON);
-    semidefinite(block.symmetric()) + Tensor::diagonal(rounding)
-}
-
-/// A symmetric tensor without its negative eigenvalues: half the sum of the tensor and its positive square root's square, which is `V |s| V'`.
-#[inline(always)]
-pub(crate) fn semidefinite<N: Number>(tensor: Tensor<N>) -> Tensor<N> {
-    let SingularValues { values, right, .. } = SingularValues::of(tensor);
-    let half = N::of(0.5);
-    let mut sum = tensor.scaled(half);
-    for (value, axis) in values.into_iter().zip(right) {
-        sum = sum.plus(half * value.abs(), Tensor::outer(axis, axis));
-    }
-    sum
 }

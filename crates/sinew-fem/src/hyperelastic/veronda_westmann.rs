@@ -8,8 +8,8 @@ use super::law::{Bulk, HyperelasticLaw, NodeBlock, Point};
 use super::mooney_rivlin::Isochoric;
 use super::parameters::{LawParameter, LawValues, ParameterError, Range};
 use super::powers::{SHARE_OF_EXPONENT, exp_m1, largest_exponent};
-use super::projection::surely_semidefinite;
 use super::second_invariant;
+use super::semidefinite::surely_semidefinite;
 use super::tensor::Tensor;
 
 /// `psi = c1 (exp(c2 i) - 1) - c1 c2/2 (J^-4/3 I2 - 3) + kappa/2 (J - 1)^2` with `i = J^-2/3 I1 - 3`, `mu = c1 c2` and

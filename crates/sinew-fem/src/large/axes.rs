@@ -21,7 +21,7 @@ impl RegionAxes {
     /// The axes in the tetrahedra at these places.
     pub(super) fn new(axes: &Axes, slots: &[Slot]) -> Self {
         match axes {
-            Axes::Everywhere(axes) => Self::Everywhere(Tensor(*axes)),
+            Axes::Everywhere(axes) => Self::Everywhere(Tensor(**axes)),
             Axes::Each(all) => {
                 let entries = std::array::from_fn(|entry| {
                     let of_slot = |slot: &Slot| all[slot.tet as usize][entry / 3][entry % 3];

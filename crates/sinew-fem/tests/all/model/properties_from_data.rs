@@ -678,7 +678,7 @@ fn data_that_cannot_give_a_property_are_refused_by_name_and_tag() {
     let along = |name: &str| {
         let direction = Direction::Data(name.to_owned());
         refused(&mesh, &|region| {
-            region.tissue.fibres = fibres(direction.clone())
+            region.tissue.fibres = fibres(direction.clone());
         })
     };
     let young = |name: &str| FromMesh {
