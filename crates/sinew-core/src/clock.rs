@@ -42,6 +42,7 @@ impl Clock {
     }
 
     /// False for a clock that no steps lead to, as bytes from elsewhere may give it.
+    #[cfg(feature = "serde")]
     pub(crate) fn is_sound(self) -> bool {
         let is_step = self.dt > 0.0 || (self.steps == 0 && self.dt == 0.0);
         is_step && self.dt.is_finite() && self.base.is_finite() && self.steps <= Self::MOST_STEPS

@@ -65,6 +65,7 @@ pub struct StepCut {
 
 impl StepCut {
     /// False for a cut that no method leaves.
+    #[cfg(feature = "serde")]
     pub(crate) fn is_sound(self) -> bool {
         let Self {
             parts,

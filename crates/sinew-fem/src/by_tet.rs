@@ -1,14 +1,12 @@
 //! Properties of materials that differ from tetrahedron to tetrahedron.
 
-use std::fmt;
-use std::ops::Deref;
 use std::sync::Arc;
 
 use sinew_mesh::{TetData, TetMesh};
 
 use crate::Problem;
 use crate::error::{Cause, FemError, Item};
-use crate::frame::{Frame, frame, unit};
+use crate::frame::{Axes, Frame, UnitVectors, frame, unit};
 use crate::from_mesh::{DataError, FromMesh};
 use crate::shares::Shares;
 use crate::tissue::{Direction, Tissue};
@@ -34,72 +32,6 @@ pub(crate) struct RegionByTet {
     pub(crate) axes: Option<Axes>,
     /// The least and the largest factor of the density.
     pub(crate) densities: [f64; 2],
-}
-
-/// The axes of a material.
-#[derive(Clone)]
-pub(crate) enum Axes {
-    /// The same in the whole region.
-    Everywhere(Box<Frame>),
-    /// Those of each tetrahedron of the mesh.
-    Each(Arc<[Frame]>),
-}
-
-impl Axes {
-    /// The axes of coordinates.
-    pub(crate) fn of_coordinates() -> Self {
-        let axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-        Self::Everywhere(Box::new(axes))
-    }
-
-    /// The axes in a tetrahedron.
-    pub(crate) fn of(&self, tet: usize) -> Frame {
-        match self {
-            Self::Everywhere(frame) => **frame,
-            Self::Each(all) => all[tet],
-        }
-    }
-
-    /// All numbers.
-    pub(crate) fn values(&self) -> &[f64] {
-        match self {
-            Self::Everywhere(frame) => frame.as_flattened(),
-            Self::Each(all) => all.as_flattened().as_flattened(),
-        }
-    }
-}
-
-impl fmt::Debug for Axes {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Everywhere(frame) => frame.fmt(f),
-            Self::Each(_) => f.write_str("of each tetrahedron"),
-        }
-    }
-}
-
-/// Unit vectors in each tetrahedron of a mesh.
-#[derive(Clone)]
-pub(crate) struct UnitVectors(Arc<[[f64; 3]]>);
-
-impl From<Vec<[f64; 3]>> for UnitVectors {
-    fn from(all: Vec<[f64; 3]>) -> Self {
-        Self(all.into())
-    }
-}
-
-impl Deref for UnitVectors {
-    type Target = [[f64; 3]];
-
-    fn deref(&self) -> &[[f64; 3]] {
-        &self.0
-    }
-}
-
-impl fmt::Debug for UnitVectors {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("of each tetrahedron")
-    }
 }
 
 impl Default for RegionByTet {

@@ -1,4 +1,8 @@
-//! Axes of a material at rest.
+//! Directions and axes of a material at rest.
+
+use std::fmt;
+use std::ops::Deref;
+use std::sync::Arc;
 
 use sinew_mesh::vector::cross;
 
@@ -32,4 +36,70 @@ pub(crate) fn unit(vector: [f64; 3]) -> Option<[f64; 3]> {
     let scaled = vector.map(|d| d / largest);
     let length = scaled.iter().map(|d| d * d).sum::<f64>().sqrt();
     Some(scaled.map(|d| d / length))
+}
+
+/// The axes of a material.
+#[derive(Clone)]
+pub(crate) enum Axes {
+    /// The same in the whole region.
+    Everywhere(Box<Frame>),
+    /// Those of each tetrahedron of the mesh.
+    Each(Arc<[Frame]>),
+}
+
+impl Axes {
+    /// The axes of coordinates.
+    pub(crate) fn of_coordinates() -> Self {
+        let axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        Self::Everywhere(Box::new(axes))
+    }
+
+    /// The axes in a tetrahedron.
+    pub(crate) fn of(&self, tet: usize) -> Frame {
+        match self {
+            Self::Everywhere(frame) => **frame,
+            Self::Each(all) => all[tet],
+        }
+    }
+
+    /// All numbers.
+    pub(crate) fn values(&self) -> &[f64] {
+        match self {
+            Self::Everywhere(frame) => frame.as_flattened(),
+            Self::Each(all) => all.as_flattened().as_flattened(),
+        }
+    }
+}
+
+impl fmt::Debug for Axes {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Everywhere(frame) => frame.fmt(f),
+            Self::Each(_) => f.write_str("of each tetrahedron"),
+        }
+    }
+}
+
+/// Unit vectors in each tetrahedron of a mesh.
+#[derive(Clone)]
+pub(crate) struct UnitVectors(Arc<[[f64; 3]]>);
+
+impl From<Vec<[f64; 3]>> for UnitVectors {
+    fn from(all: Vec<[f64; 3]>) -> Self {
+        Self(all.into())
+    }
+}
+
+impl Deref for UnitVectors {
+    type Target = [[f64; 3]];
+
+    fn deref(&self) -> &[[f64; 3]] {
+        &self.0
+    }
+}
+
+impl fmt::Debug for UnitVectors {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("of each tetrahedron")
+    }
 }

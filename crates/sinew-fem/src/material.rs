@@ -5,9 +5,9 @@ use std::sync::Arc;
 use sinew_core::Hash;
 use sinew_mesh::TetMesh;
 
-use crate::by_tet::{Axes, RegionByTet, UnitVectors};
+use crate::by_tet::RegionByTet;
 use crate::error::{Cause, FemError, Item};
-use crate::frame::Frame;
+use crate::frame::{Axes, Frame, UnitVectors};
 use crate::graph::Graph;
 use crate::hyperelastic::{Hyperelastic, Tensor};
 use crate::large::{Compiled, RegionLaw};

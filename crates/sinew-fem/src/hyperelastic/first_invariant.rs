@@ -3,8 +3,8 @@
 use sinew_sparse::simd::Number;
 
 use super::deformation::Deformation;
+use super::isochoric::Isochoric;
 use super::law::{Point, block_of};
-use super::mooney_rivlin::Isochoric;
 use super::tensor::Tensor;
 
 /// First and second derivative (Pa) of an energy by `i = J^-2/3 I1 - 3`.

@@ -24,6 +24,7 @@ pub mod fibres;
 mod first_invariant;
 pub(crate) mod fung;
 pub(crate) mod gent;
+mod isochoric;
 pub(crate) mod law;
 pub(crate) mod law_error;
 pub(crate) mod mooney_rivlin;

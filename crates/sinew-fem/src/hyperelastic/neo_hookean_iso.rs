@@ -3,8 +3,9 @@
 use sinew_sparse::simd::Number;
 
 use super::deformation::Deformation;
+use super::isochoric::Isochoric;
 use super::law::{Bulk, HyperelasticLaw, NodeBlock, Point};
-use super::mooney_rivlin::{Isochoric, MooneyRivlin};
+use super::mooney_rivlin::MooneyRivlin;
 use super::parameters::{LawParameter, LawValues, ParameterError};
 use super::tensor::Tensor;
 

@@ -3,7 +3,7 @@
 use sinew_sparse::simd::Number;
 
 use super::deformation::Deformation;
-use super::mooney_rivlin::Isochoric;
+use super::isochoric::Isochoric;
 use super::tensor::Tensor;
 
 /// A stress with `a (B - 2 I2/(3J) c)`, `B = I1 F - F C`, by parts that are 0 at rest.

@@ -4,8 +4,8 @@ use sinew_sparse::simd::Number;
 
 use super::deformation::Deformation;
 use super::first_invariant::{self, Slopes};
+use super::isochoric::Isochoric;
 use super::law::{Bulk, HyperelasticLaw, NodeBlock, Point};
-use super::mooney_rivlin::Isochoric;
 use super::parameters::{LawParameter, LawValues, ParameterError, Range};
 use super::powers::{SHARE_OF_EXPONENT, exp_m1, largest_exponent};
 use super::second_invariant;

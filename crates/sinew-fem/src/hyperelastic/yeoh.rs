@@ -4,8 +4,8 @@ use sinew_sparse::simd::Number;
 
 use super::deformation::Deformation;
 use super::first_invariant::{self, Slopes};
+use super::isochoric::Isochoric;
 use super::law::{Bulk, HyperelasticLaw, Point};
-use super::mooney_rivlin::Isochoric;
 use super::parameters::{LawParameter, LawValues, ParameterError, Range};
 use super::tensor::Tensor;
 

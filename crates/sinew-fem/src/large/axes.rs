@@ -5,7 +5,7 @@ use std::sync::Arc;
 use sinew_sparse::simd::{Aligned, Number, Real};
 
 use super::chunks::Slot;
-use crate::by_tet::Axes;
+use crate::frame::Axes;
 use crate::hyperelastic::{HyperelasticLaw, Point, Tensor};
 
 /// Perpendicular unit vectors at rest, by the rows of a tensor.

@@ -11,7 +11,7 @@ use super::fibres::{Directions, RegionFibres};
 use super::memory::RegionMemory;
 use super::rest::Rest;
 use super::stiffness::Stiffness;
-use crate::by_tet::{Axes, UnitVectors};
+use crate::frame::{Axes, UnitVectors};
 use crate::hyperelastic::Tensor;
 use crate::shares::Shares;
 use crate::smoothing::{Average, Sets, Smoothing};

@@ -40,8 +40,8 @@ pub struct RegionCurves {
     pub law: String,
     /// Lame's constants (lambda, mu) (Pa) at rest, without fibres.
     pub lame: (f64, f64),
-    /// True if its stress depends on the direction of the pull.
-    pub has_directions: bool,
+    /// True if it has fibres, which the constants at rest are without.
+    pub has_fibres: bool,
     /// Sentences about what the curves are of.
     pub notes: Vec<String>,
     /// One curve for each load.
@@ -130,7 +130,7 @@ pub fn curves_of_laws(
                 group: region.group.clone(),
                 law: region.law.to_string(),
                 lame: solid.lame(),
-                has_directions: solid.has_directions(),
+                has_fibres: !region.tissue.fibres.is_empty(),
                 notes,
                 curves: Load::ALL.map(curve).to_vec(),
             })
@@ -165,7 +165,9 @@ fn at_a_point(
     }
     notes.extend(region.tissue.fibres.iter().map(ToString::to_string));
     if let Some([first, second]) = &region.tissue.axes {
-        notes.push(format!("axes by {first} and {second}"));
+        notes.push(format!(
+            "axes by {first} and {second}; the constants at rest are means over all directions"
+        ));
     }
     if given.tissue.takes_data() {
         notes.push(

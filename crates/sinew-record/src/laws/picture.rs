@@ -210,7 +210,7 @@ mod tests {
             group: Some("<liver>".to_owned()),
             law: law.to_string(),
             lame: solid.lame(),
-            has_directions: false,
+            has_fibres: false,
             notes: Vec::new(),
             curves: Load::ALL.map(curve).to_vec(),
         }

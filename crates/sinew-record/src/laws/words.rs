@@ -24,8 +24,8 @@ pub(super) fn moduli(region: &RegionCurves) -> String {
     let e = 9.0 * kappa * mu / (3.0 * kappa + mu);
     let nu = lambda / (2.0 * (lambda + mu));
     let [e, nu, mu, kappa] = [e, nu, mu, kappa].map(short);
-    let without = if region.has_directions {
-        ", by the mean of its shear moduli and without fibres"
+    let without = if region.has_fibres {
+        ", without fibres"
     } else {
         ""
     };
