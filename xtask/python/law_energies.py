@@ -131,11 +131,24 @@ def arruda_boyce(f, la, mu, shear_modulus=None, locking_stretch="2.8"):
     return own * sum(c[k] * over**k * (i1 ** (k + 1) - 3 ** (k + 1)) for k in range(5)) + volume(f, la, mu)
 
 
-def veronda_westmann(f, la, mu, c1=None, c2=1):
+def veronda_westmann(f, la, mu, c1=None, c2="0.5"):
     """c1 is mu/c2."""
     c2 = mpf(c2)
     second = mp.cbrt(determinant(f)) ** -4 * second_invariant(f) - 3
     return mu / c2 * (mp.exp(c2 * (isochoric_first(f) - 3)) - 1) - mu / 2 * second + volume(f, la, mu)
+
+
+def fung(f, la, mu, c=None, b=("0.02", "0.02", "0.02", "0.005", "0.005", "0.005", "0.015", "0.015", "0.015")):
+    """In the axes of coordinates; c follows from the mean of the shear moduli at small strain."""
+    b11, b22, b33, b12, b23, b31, g12, g23, g31 = (mpf(entry) for entry in b)
+    own = (g12 + g23 + g31 + b11 + b22 + b33 - (b11 + b22 + b33 + 2 * (b12 + b23 + b31)) / 3) / 10
+    scale = mp.cbrt(determinant(f)) ** -2
+    squared = [[sum(f[k][i] * f[k][j] for k in range(3)) for j in range(3)] for i in range(3)]
+    e = [[(scale * squared[i][j] - (i == j)) / 2 for j in range(3)] for i in range(3)]
+    normal = b11 * e[0][0] ** 2 + b22 * e[1][1] ** 2 + b33 * e[2][2] ** 2
+    coupled = 2 * (b12 * e[0][0] * e[1][1] + b23 * e[1][1] * e[2][2] + b31 * e[2][2] * e[0][0])
+    shear = 2 * (g12 * e[0][1] ** 2 + g23 * e[1][2] ** 2 + g31 * e[2][0] ** 2)
+    return mu / own / 2 * (mp.exp(normal + coupled + shear) - 1) + volume(f, la, mu)
 
 
 def ogden(f, la, mu, terms=(1000, mpf("1.3"), 200, 5, 50, -2)):
@@ -157,6 +170,7 @@ LAWS = {
     "neo-hookean-iso": neo_hookean_iso,
     "stable-neo-hookean-log": stable_neo_hookean_log,
     "yeoh": yeoh,
+    "fung": fung,
     "gent": gent,
     "arruda-boyce": arruda_boyce,
     "veronda-westmann": veronda_westmann,
@@ -164,7 +178,7 @@ LAWS = {
 }
 
 # Parameters that laws take beside moduli.
-OWN = ["c1_over_c2", "c", "shear_modulus", "limit", "locking_stretch", "c1", "c2", "terms"]
+OWN = ["c1_over_c2", "c", "b", "shear_modulus", "limit", "locking_stretch", "c1", "c2", "terms"]
 
 INVERTIBLE = ["stable-neo-hookean", "corotational", "stvk", "stable-neo-hookean-log"]
 

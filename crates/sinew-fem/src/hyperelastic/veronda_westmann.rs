@@ -33,7 +33,7 @@ const C1: LawParameter = LawParameter::number(
     "c1",
     "The modulus c1 before the exponential. The shear modulus at small strain is c1 c2.",
     Range::above_zero("a finite modulus above 0 Pa"),
-    &[1200.0],
+    &[2400.0],
 )
 .unit("Pa");
 
@@ -42,7 +42,7 @@ const C2: LawParameter = LawParameter::number(
     "c2",
     "The factor c2 of I1 - 3 in the exponent, I1 being the first invariant without change of volume.",
     Range::above_zero("a finite number above 0"),
-    &[1.0],
+    &[0.5],
 );
 
 /// Values cached per deformation gradient.

@@ -317,7 +317,7 @@ fn a_scene_of_values_is_that_of_its_text_and_errors_name_keys() {
             "gravity: gravity = [0, 0, 18446744073709551615]: expected whole numbers of at most 9223372036854775807 in size",
         ),
         (
-            serde_json::json!({ "run": { "duration": u64::MAX } }),
+            serde_json::json!({ "run": { "duration": u64::MAX, "integrator": "newmark", "dt": 0.01 } }),
             "run.duration: duration = 18446744073709551615: expected whole numbers of at most 9223372036854775807 in size",
         ),
     ] {

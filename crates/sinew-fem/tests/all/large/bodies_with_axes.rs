@@ -177,7 +177,10 @@ fn axes_that_are_none_or_do_not_go_together_are_refused() {
         5 => [[1.0, 0.0, 0.0]; 2],
         _ => AXES,
     });
-    assert_eq!(refused(&parallel, &by_data(Element::P1)), "");
+    assert_eq!(
+        refused(&parallel, &by_data(Element::P1)),
+        "region 1: axes: the first two axes are [1.0, 0.0, 0.0] and [1.0, 0.0, 0.0] in tetrahedron 6: expected directions that are not parallel"
+    );
     let edges = Element::FbarEdge {
         edge_share: 0.9,
         patch: None,

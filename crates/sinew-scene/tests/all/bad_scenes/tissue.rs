@@ -84,11 +84,34 @@ fn dispersion_of_quadratic_fibres() {
 }
 
 #[test]
-fn split_exponential_fibres() {
-    insta::assert_snapshot!(
-        refused_fibres("direction = [1, 0, 0], k1 = 1.0, k2 = 1.0, split = true"),
-        @"scene.toml:9: [[region]] 1 fibres: `split` goes with `eta` only"
-    );
+fn five_families_of_fibres() {
+    let family = "{ direction = [1, 0, 0], eta = 1.0 }";
+    let families = [family; 5].join(", ");
+    insta::assert_snapshot!(refused(&format!("model = \"neo-hookean\"\nfibres = [{families}]")), @"");
+}
+
+#[test]
+fn a_list_of_no_fibres() {
+    insta::assert_snapshot!(refused("model = \"neo-hookean\"\nfibres = []"), @"");
+}
+
+#[test]
+fn axes_of_a_law_without_any() {
+    insta::assert_snapshot!(refused("model = \"neo-hookean\"\naxes = [[1, 0, 0], [0, 1, 0]]"), @"");
+}
+
+#[test]
+fn axes_that_are_parallel_or_missing_or_mixed() {
+    let fung = |axes: &str| {
+        let springs =
+            "model = \"springs\"\nyoungs_modulus = 3500.0\nsprings = { rule = \"lloyd\" }\n";
+        let law = "model = \"fung\"\nc = 1000.0\nb = [2, 2, 2, 0.5, 0.5, 0.5, 1, 1, 1]\nbulk_modulus = 1.0e5\n";
+        refusal(BODY, springs, &format!("{law}{axes}\n"))
+    };
+    insta::assert_snapshot!(fung("axes = [[1, 0, 0], [2, 0, 0]]"), @"");
+    insta::assert_snapshot!(fung(""), @"");
+    insta::assert_snapshot!(fung("axes = [[1, 0, 0], { data = \"two\" }]"), @"");
+    insta::assert_snapshot!(fung("axes = [[1, 0, 0]]"), @"");
 }
 
 /// The refusal of these lines in a region of this law.
