@@ -96,6 +96,7 @@ mod motion;
 mod network;
 mod number;
 mod on;
+mod orthotropic;
 mod parts;
 mod places;
 mod problem;

@@ -32,7 +32,6 @@ pub(crate) mod neo_hookean;
 pub(crate) mod neo_hookean_iso;
 pub(crate) mod neo_hookean_log;
 pub(crate) mod ogden;
-mod orthotropic;
 pub(crate) mod parameters;
 mod powers;
 mod projection;
@@ -55,6 +54,7 @@ pub use crate::law_registry::{
     Hyperelastic, KEYS_OF_REGIONS, KnownLaw, MakeBoxed, RegisterError, known_law, known_laws,
     register, register_boxed,
 };
+pub use crate::orthotropic::Orthotropic;
 pub use arruda_boyce::ArrudaBoyce;
 pub use boxed::{Boxed, PointLaw};
 pub use corotational::Corotational;
@@ -70,7 +70,6 @@ pub use neo_hookean::NeoHookean;
 pub use neo_hookean_iso::NeoHookeanIso;
 pub use neo_hookean_log::NeoHookeanLog;
 pub use ogden::Ogden;
-pub use orthotropic::Orthotropic;
 pub use parameters::{
     Column, LawParameter, LawValues, ParameterError, Parameters, Presence, Range,
 };

@@ -2,7 +2,7 @@
 
 use nalgebra::Matrix6;
 
-use super::tensor::Tensor;
+use crate::hyperelastic::Tensor;
 use crate::law_registry::Hyperelastic;
 
 /// The nine constants of an orthotropic material at small strain.
