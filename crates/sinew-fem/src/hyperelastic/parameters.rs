@@ -271,7 +271,8 @@ impl LawParameter {
         let quantity = self.name;
         let (least, most) = self.list.unwrap_or((1, 1));
         let width = self.width();
-        if !(least..=most).contains(&(values.len() / width)) || values.len() % width != 0 {
+        if !(least..=most).contains(&(values.len() / width)) || !values.len().is_multiple_of(width)
+        {
             let (found, expected) = (values.len(), [least * width, most * width]);
             return Err(ParameterError::Length {
                 quantity,

@@ -154,7 +154,7 @@ mod tests {
             let mut worst = 0.0_f64;
             for step in -800..=800 {
                 let size = 1.03_f64.powi(step);
-                let sign = |lane: usize| if lane % 2 == 0 { 1.0 } else { -1.0 };
+                let sign = |lane: usize| if lane.is_multiple_of(2) { 1.0 } else { -1.0 };
                 let x = N::from_lanes(|lane| sign(lane) * size * (1.0 + 0.01 * lane as f64));
                 if size < 60.0 {
                     let found = exp_m1(x);

@@ -75,7 +75,7 @@ def unloaded(law, shape, axis, start):
 
 
 def show(law, load, by, *figures):
-    print("    (" + ", ".join([f'"{law}"', f"Load::{load}", by] + [mp.nstr(f, 16, strip_zeros=False) for f in figures]) + "),")
+    print("    (" + ", ".join([f'"{law}"', f"Load::{load}", by] + [mp.nstr(f, 16, strip_zeros=True) for f in figures]) + "),")
 
 
 def main():

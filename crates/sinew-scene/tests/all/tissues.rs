@@ -44,7 +44,7 @@ fn every_row_is_pulled_and_pressed_by_a_twentieth_and_pushes_back() {
         let (name, region) = (&row["name"], row["region"].as_table().unwrap());
         for stretch in [1.05, 0.95] {
             let scene = Scene::from_value(&stretched(region, stretch), Path::new("."));
-            let simulation = scene.and_then(|scene| scene.build());
+            let simulation = scene.and_then(Scene::build);
             let simulation = simulation.unwrap_or_else(|error| panic!("{name}: {error}"));
             let mut integrator = simulation.integrator().unwrap();
             let mut state = simulation.initial_state().clone();
