@@ -131,7 +131,7 @@ impl HyperelasticLaw for MooneyRivlin {
     }
 
     /// The exact block, but with the coefficient 16/9 in place of 14/9 in the contribution of I2 along c g
-    /// ([`second_invariant::SQUARE`]). The part of I1 is rank-one convex.
+    /// (the shared part of laws in I2). The part of I1 is rank-one convex.
     #[inline(always)]
     fn node_block<N: Number>(
         &self,
