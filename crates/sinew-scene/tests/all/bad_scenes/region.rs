@@ -337,7 +337,7 @@ fn an_unknown_key_of_a_law_lists_the_keys_of_that_law() {
     let said = refused_yeoh("c9 = 600.0\npoissons_ratio = 0.45\n");
     insta::assert_snapshot!(said, @"
     scene.toml:7: [[region]] 1: unknown key `c9`; did you mean `c`?
-    help: the keys here are `group`, `where`, `density`, `model`, `poissons_ratio`, `c`, `bulk_modulus`, `element`, `edge_share`, `patch`, `fibres`, `prony`, `viscous_part`, `moduli`
+    help: the keys here are `group`, `where`, `density`, `model`, `poissons_ratio`, `bulk_modulus`, `c`, `element`, `edge_share`, `patch`, `fibres`, `prony`, `viscous_part`, `moduli`
     ");
 }
 
