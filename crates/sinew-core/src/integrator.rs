@@ -177,11 +177,16 @@ impl Batch<'_> {
         self.count(work);
         self.check(integrator.id(), state)?;
         integrator.run(self, state)?;
+        self.ended(integrator.id(), state)
+    }
+
+    /// Refuses a batch of which steps are left, after `by`, an integrator or a machine, said that it took them.
+    ///
+    /// # Errors
+    /// [`StepError::Stalled`].
+    pub fn ended(&self, by: &'static str, state: &State) -> Result<(), StepError> {
         match self.goes_on() {
-            true => Err(StepError::Stalled {
-                by: integrator.id(),
-                t: state.t(),
-            }),
+            true => Err(StepError::Stalled { by, t: state.t() }),
             false => Ok(()),
         }
     }

@@ -228,6 +228,11 @@ impl<'a> Members<'a> {
 
     /// The axes by their first two directions.
     fn axes(self, directions: &[Direction; 2]) -> Result<Axes, DataError> {
+        if let [Direction::Everywhere(first), Direction::Everywhere(second)] = directions {
+            // Checked before.
+            let frame = frame(*first, *second).unwrap_or_default();
+            return Ok(Axes::Everywhere(Box::new(frame)));
+        }
         let mut all = Vec::new();
         for direction in directions {
             all.push(match direction {
@@ -238,11 +243,6 @@ impl<'a> Members<'a> {
                     vectors
                 }
             });
-        }
-        if let [Direction::Everywhere(first), Direction::Everywhere(second)] = directions {
-            // Checked before.
-            let frame = frame(*first, *second).unwrap_or_default();
-            return Ok(Axes::Everywhere(Box::new(frame)));
         }
         let mut frames = vec![Frame::default(); self.mesh.tets.len()];
         for tet in self.tets() {

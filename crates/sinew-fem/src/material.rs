@@ -401,8 +401,9 @@ fn add_anisotropy(
     let (lambda, mu) = law.lame();
     let axes = Tensor(axes);
     let stress = |change: Tensor<f64>| {
-        let in_axes = (axes * change).times_transposed(axes);
-        let whole = axes.transposed_times(law.tangent(Tensor::zero(), in_axes) * axes);
+        let whole = law
+            .tangent(Tensor::zero(), change.in_axes(axes))
+            .out_of_axes(axes);
         let isotropic = Tensor::diagonal(lambda * change.trace());
         whole - isotropic.plus(2.0 * mu, change.symmetric())
     };

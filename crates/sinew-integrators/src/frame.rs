@@ -362,13 +362,7 @@ impl<S: StepByHand> Ready<S> {
             Self::Program(loaded) => {
                 loaded.guard(batch);
                 loaded.machine.run(batch, state)?;
-                match batch.goes_on() {
-                    true => Err(StepError::Stalled {
-                        by: loaded.machine.name(),
-                        t: state.t(),
-                    }),
-                    false => Ok(()),
-                }
+                batch.ended(loaded.machine.name(), state)
             }
         }
     }

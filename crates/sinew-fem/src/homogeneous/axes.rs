@@ -1,8 +1,8 @@
 //! The axes of loads.
 
 use super::error::HomogeneousError;
-use crate::frame::unit;
-use crate::hyperelastic::{Tensor, dot};
+use crate::frame::{frame, unit};
+use crate::hyperelastic::Tensor;
 
 /// Three axes at right angles: the first that of the pull, the second the other one of a sheet's plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,12 +23,9 @@ impl Axes {
         let nearest = (0..3).rev().max_by(by_size).unwrap_or_default();
         let mut second = [0.0; 3];
         second[(nearest + 1) % 3] = 1.0;
-        let share = dot(first, second);
-        let second = [0, 1, 2].map(|i| second[i] - share * first[i]);
-        let second = unit(second).ok_or(HomogeneousError::NoAxis)?;
-        let ([a, b, c], [d, e, f]) = (first, second);
-        let third = [b * f - c * e, c * d - a * f, a * e - b * d];
-        Ok(Self([first, second, third]))
+        frame(first, second)
+            .map(Self)
+            .ok_or(HomogeneousError::NoAxis)
     }
 
     /// The axes as unit vectors.
@@ -39,20 +36,19 @@ impl Axes {
 
     /// A tensor given in these axes, in those of the mesh.
     pub(super) fn in_mesh(&self, entries: [[f64; 3]; 3]) -> Tensor<f64> {
-        let axes = Tensor::from_columns(self.0);
-        (axes * Tensor(entries)).times_transposed(axes)
+        Tensor(entries).out_of_axes(Tensor(self.0))
     }
 
     /// A tensor given in the axes of the mesh, in these.
     pub(super) fn of_mesh(&self, tensor: Tensor<f64>) -> [[f64; 3]; 3] {
-        let axes = Tensor::from_columns(self.0);
-        (axes.transposed_times(tensor) * axes).0
+        tensor.in_axes(Tensor(self.0)).0
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::hyperelastic::dot;
 
     #[test]
     fn axes_are_at_right_angles_and_right_handed() {

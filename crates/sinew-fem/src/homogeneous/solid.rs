@@ -91,7 +91,7 @@ impl Solid {
     /// A tensor in the axes of the material.
     fn in_axes(&self, tensor: Tensor<f64>) -> Tensor<f64> {
         match self.axes {
-            Some(axes) => (axes * tensor).times_transposed(axes),
+            Some(axes) => tensor.in_axes(axes),
             None => tensor,
         }
     }
@@ -99,7 +99,7 @@ impl Solid {
     /// A tensor that is given in the axes of the material.
     fn out_of_axes(&self, tensor: Tensor<f64>) -> Tensor<f64> {
         match self.axes {
-            Some(axes) => axes.transposed_times(tensor) * axes,
+            Some(axes) => tensor.out_of_axes(axes),
             None => tensor,
         }
     }

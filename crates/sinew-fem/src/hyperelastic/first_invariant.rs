@@ -25,11 +25,34 @@ pub(super) fn exactly_beyond<N: Number>(at: &Point<N, Isochoric<N>>) -> N {
 
 /// `F - I1/(3J) c`, by parts that are 0 at rest: half the gradient of i over `J^-2/3`.
 #[inline(always)]
-fn half_gradient<N: Number>(deformation: &Deformation<N>, own: &Isochoric<N>) -> Tensor<N> {
+pub(super) fn half_gradient<N: Number>(
+    deformation: &Deformation<N>,
+    own: &Isochoric<N>,
+) -> Tensor<N> {
     let beyond = own.beyond_rest(own.first, deformation.volume_change);
     deformation
         .distortion
         .plus(beyond * N::of(-1.0 / 3.0), deformation.cofactor)
+}
+
+/// The change of `J^-2/3 (F - I1/(3J) c)` by a change of F, over `J^-2/3`.
+#[inline(always)]
+pub(super) fn changed_half_gradient<N: Number>(
+    deformation: &Deformation<N>,
+    own: &Isochoric<N>,
+    change: Tensor<N>,
+) -> Tensor<N> {
+    let (f, c) = (deformation.gradient, deformation.cofactor);
+    // dJ/J.
+    let relative = c.contracted(change) * own.over;
+    let turned = deformation.cofactor_change(change);
+    let third = N::of(1.0 / 3.0);
+    let along = f.contracted(change);
+    let of_c = third * own.over * (N::of(5.0) * third * own.i1() * relative - (along + along));
+    change
+        .plus(N::of(-2.0) * third * relative, f)
+        .plus(of_c, c)
+        .plus(-(third * own.i1() * own.over), turned)
 }
 
 /// `2 psi' J^-2/3 (F - I1/(3J) c)`.
@@ -50,20 +73,9 @@ pub(super) fn tangent<N: Number>(
     [slope, curvature]: Slopes<N>,
     change: Tensor<N>,
 ) -> Tensor<N> {
-    let (f, c) = (deformation.gradient, deformation.cofactor);
     let twice = N::of(2.0) * own.scale;
-    // dJ/J.
-    let relative = c.contracted(change) * own.over;
-    let turned = deformation.cofactor_change(change);
-    let third = N::of(1.0 / 3.0);
-    let along = f.contracted(change);
-    let of_c = third * own.over * (N::of(5.0) * third * own.i1() * relative - (along + along));
-    let first = change
-        .plus(N::of(-2.0) * third * relative, f)
-        .plus(of_c, c)
-        .plus(-(third * own.i1() * own.over), turned);
     let half = half_gradient(deformation, own);
-    first
+    changed_half_gradient(deformation, own, change)
         .scaled(slope * twice)
         .plus(curvature * twice * twice * half.contracted(change), half)
 }

@@ -8,6 +8,7 @@ use super::law::{HyperelasticLaw, Point};
 use super::parameters::{LawParameter, LawValues, ParameterError, Range};
 use super::powers::{SHARE_OF_EXPONENT, exp_m1, largest_exponent};
 use super::tensor::Tensor;
+use super::volume;
 
 /// `psi = c/2 (exp Q - 1) + kappa/2 (J - 1)^2`, with `Q = b11 E11^2 + b22 E22^2 + b33 E33^2 + 2 (b12 E11 E22 + b23 E22 E33
 /// + b31 E33 E11) + 2 (g12 E12^2 + g23 E23^2 + g31 E31^2)` of `E = (J^-2/3 C - I)/2` in the material's axes.
@@ -183,12 +184,12 @@ impl HyperelasticLaw for Fung {
         let half = N::of(0.5);
         let twice_green = deformation.twice_green_strain();
         let strain = Tensor::diagonal(half * shrink).plus(half * scale, twice_green);
-        let strain = (*axes * strain).times_transposed(*axes);
+        let strain = strain.in_axes(*axes);
         let slope = self.form(strain);
         let exponent = half * slope.contracted(strain);
         let risen = exp_m1(exponent);
         let grown = N::of(self.half) * (risen + N::of(1.0));
-        let stress = axes.transposed_times(slope * *axes).scaled(grown);
+        let stress = slope.out_of_axes(*axes).scaled(grown);
         let squared = twice_green + Tensor::identity();
         let over = deformation.volume_ratio.recip();
         Strained {
@@ -207,19 +208,17 @@ impl HyperelasticLaw for Fung {
 
     #[inline(always)]
     fn energy<N: Number>(&self, at: &Point<N, Strained<N>>) -> N {
-        let volume = at.volume_change;
-        let local = N::of(self.half) * at.own.risen;
-        (N::of(0.5) * self.of_volume::<N>() * volume).mul_add(volume, local)
+        volume::energy(at, self.of_volume(), N::of(self.half) * at.own.risen)
     }
 
     /// `J^-2/3 (F S - (S : F'F)/(3 J) c) + 2/3 mu (J - 1) c` with `S = c/2 exp Q dQ/dE`.
     #[inline(always)]
     fn stress<N: Number>(&self, at: &Point<N, Strained<N>>) -> Tensor<N> {
         let own = &at.own;
-        (at.gradient * own.stress)
+        let local = (at.gradient * own.stress)
             .plus(-own.pressure, at.cofactor)
-            .scaled(own.scale)
-            .plus(self.of_volume::<N>() * at.volume_change, at.cofactor)
+            .scaled(own.scale);
+        volume::stress(at, self.of_volume(), local)
     }
 
     #[inline(always)]
@@ -234,26 +233,21 @@ impl HyperelasticLaw for Fung {
         let strain = squared
             .plus(shrink, own.squared)
             .scaled(N::of(0.5) * own.scale);
-        let in_axes = (own.axes * strain).times_transposed(own.axes);
+        let in_axes = strain.in_axes(own.axes);
         let exponent = own.slope.contracted(in_axes);
         let slope = self.form(in_axes).scaled(own.grown);
-        let stress = own
-            .axes
-            .transposed_times(slope * own.axes)
-            .plus(exponent, own.stress);
+        let stress = slope.out_of_axes(own.axes).plus(exponent, own.stress);
         let work = stress.contracted(own.squared) + own.stress.contracted(squared);
         let pressure = N::of(1.0 / 3.0) * own.over * work - own.pressure * relative;
         let turned = at.cofactor_change(change);
         let isochoric = (f * own.stress).plus(-own.pressure, c);
         let changed = (change * own.stress) + (f * stress);
-        let bulk = self.of_volume::<N>();
-        changed
+        let local = changed
             .plus(shrink, isochoric)
             .plus(-pressure, c)
             .plus(-own.pressure, turned)
-            .scaled(own.scale)
-            .plus(bulk * volume, c)
-            .plus(bulk * at.volume_change, turned)
+            .scaled(own.scale);
+        volume::tangent(at, self.of_volume(), local, change)
     }
 }
 

@@ -7,7 +7,7 @@ use sinew_sparse::simd::Number;
 
 use super::deformation::Deformation;
 use super::parameters::{LawParameter, LawValues, ParameterError, Parameters};
-use super::semidefinite::semidefinite;
+use super::semidefinite::surely_semidefinite;
 use super::tensor::{Tensor, dot};
 
 /// Volume ratio J below which a law that is not defined for inverted elements is refused.
@@ -150,8 +150,8 @@ pub trait HyperelasticLaw: Copy + Debug + Send + Sync {
             self.tangent(at, change).on(gradient)
         });
         let normal = self.dilation_gradient(at).on(gradient);
-        let local = Tensor::from_columns(columns).symmetric();
-        semidefinite(local).plus(bulk.modulus, Tensor::outer(normal, normal))
+        let local = surely_semidefinite(Tensor::from_columns(columns));
+        local.plus(bulk.modulus, Tensor::outer(normal, normal))
     }
 
     /// The deformation with the values that the law caches for it.

@@ -48,6 +48,7 @@ pub(crate) mod stvk;
 pub(crate) mod tensor;
 pub(crate) mod veronda_westmann;
 mod viscous;
+mod volume;
 pub(crate) mod yeoh;
 
 pub use crate::law_registry::{

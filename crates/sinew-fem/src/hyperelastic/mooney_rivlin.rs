@@ -8,6 +8,7 @@ use super::law::{Bulk, HyperelasticLaw, Point, block_of};
 use super::parameters::{LawParameter, LawValues, ParameterError, Range};
 use super::second_invariant;
 use super::tensor::Tensor;
+use super::{first_invariant, volume};
 
 /// `psi = C1 (J^-2/3 I1 - 3) + C2 (J^-4/3 I2 - 3) + kappa/2 (J - 1)^2` with `mu = 2 (C1 + C2)` and `kappa = lambda + 2/3 mu`.
 ///
@@ -27,6 +28,12 @@ impl MooneyRivlin {
     /// The law by its own constants (Pa); C2 may be 0.
     pub(super) fn of(lambda: f64, c1: f64, c2: f64) -> Self {
         Self { lambda, c1, c2 }
+    }
+
+    /// Second derivative (Pa) of the local energy of volume, `mu/3 (J - 1)^2`.
+    #[inline(always)]
+    fn of_volume<N: Number>(&self) -> N {
+        N::of(4.0 / 3.0 * (self.c1 + self.c2))
     }
 }
 
@@ -87,14 +94,9 @@ impl HyperelasticLaw for MooneyRivlin {
     #[inline(always)]
     fn stress<N: Number>(&self, at: &Point<N, Isochoric<N>>) -> Tensor<N> {
         let own = &at.own;
-        let volume = at.volume_change;
         let a1 = N::of(2.0 * self.c1) * own.scale;
-        let third = N::of(-1.0 / 3.0);
-        // F - I1/(3J) c, and B - 2 I2/(3J) c, by what is 0 at rest.
-        let first = own.beyond_rest(own.first, volume) * third;
-        let stress = at.distortion.plus(first, at.cofactor).scaled(a1);
-        let bulk = N::of(4.0 / 3.0 * (self.c1 + self.c2)) * volume;
-        let stress = stress.plus(bulk, at.cofactor);
+        let first = first_invariant::half_gradient(at, own).scaled(a1);
+        let stress = volume::stress(at, self.of_volume(), first);
         if self.c2 == 0.0 {
             return stress;
         }
@@ -105,24 +107,9 @@ impl HyperelasticLaw for MooneyRivlin {
     #[inline(always)]
     fn tangent<N: Number>(&self, at: &Point<N, Isochoric<N>>, change: Tensor<N>) -> Tensor<N> {
         let own = &at.own;
-        let (f, c) = (at.gradient, at.cofactor);
         let a1 = N::of(2.0 * self.c1) * own.scale;
-        let volume = c.contracted(change);
-        // dJ/J.
-        let relative = volume * own.over;
-        let turned = at.cofactor_change(change);
-        let third = N::of(1.0 / 3.0);
-        let along = f.contracted(change);
-        let of_c = third * own.over * (N::of(5.0) * third * own.i1() * relative - (along + along));
-        let first = change
-            .plus(N::of(-2.0) * third * relative, f)
-            .plus(of_c, c)
-            .plus(-(third * own.i1() * own.over), turned);
-        let bulk = N::of(4.0 / 3.0 * (self.c1 + self.c2));
-        let tangent = first
-            .scaled(a1)
-            .plus(bulk * volume, c)
-            .plus(bulk * at.volume_change, turned);
+        let first = first_invariant::changed_half_gradient(at, own, change).scaled(a1);
+        let tangent = volume::tangent(at, self.of_volume(), first, change);
         if self.c2 == 0.0 {
             return tangent;
         }
@@ -143,7 +130,7 @@ impl HyperelasticLaw for MooneyRivlin {
         let (f, c) = (at.gradient, at.cofactor);
         let a1 = N::of(2.0 * self.c1) * own.scale;
         let squared = own.over * own.over;
-        let of_volume = N::of(4.0 / 3.0 * (self.c1 + self.c2)) + bulk.modulus;
+        let of_volume = self.of_volume::<N>() + bulk.modulus;
         let first = a1 * N::of(5.0 / 9.0) * own.i1() * squared;
         let (along, normal) = (f.on(gradient), c.on(gradient));
         let mixed = Tensor::outer(along, normal).symmetric();

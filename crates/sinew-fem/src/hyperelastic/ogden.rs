@@ -3,12 +3,12 @@
 use sinew_sparse::simd::Number;
 
 use super::deformation::Deformation;
-use super::law::{Bulk, HyperelasticLaw, NodeBlock, Point};
+use super::law::{HyperelasticLaw, Point};
 use super::parameters::{Column, LawParameter, LawValues, ParameterError, Range};
 use super::powers::{SMALL, exp_m1, largest_exponent, sinh_share};
-use super::semidefinite::surely_semidefinite;
 use super::stretches::Stretches;
 use super::tensor::Tensor;
+use super::volume;
 
 /// `psi = sum 2 mu/alpha^2 (l1^alpha + l2^alpha + l3^alpha - 3) + kappa/2 (J - 1)^2` over terms [mu, alpha], with
 /// principal stretches `l = J^-1/3 lambda` without change of volume; the shear modulus at small strain is the sum of
@@ -134,7 +134,6 @@ impl HyperelasticLaw for Ogden {
     };
     const DEFINED_WHEN_INVERTED: bool = false;
     const HAS_ISOCHORIC_PART: bool = true;
-    const NODE_BLOCK: NodeBlock = NodeBlock::Majorant;
 
     type Own<N: Number> = Spectral<N>;
 
@@ -226,8 +225,7 @@ impl HyperelasticLaw for Ogden {
 
     #[inline(always)]
     fn energy<N: Number>(&self, at: &Point<N, Spectral<N>>) -> N {
-        let volume = at.volume_change;
-        (N::of(0.5) * self.of_volume::<N>() * volume).mul_add(volume, at.own.energy)
+        volume::energy(at, self.of_volume(), at.own.energy)
     }
 
     /// The sum of `tau_a/l_a^2 F v_a v_a'` over axes v, and `2/3 mu (J - 1) c`.
@@ -238,11 +236,11 @@ impl HyperelasticLaw for Ogden {
         } = &at.own;
         let Stretches { axes, images, .. } = stretches;
         let over = &stretches.over;
-        Tensor::outer(images[0], axes[0])
+        let local = Tensor::outer(images[0], axes[0])
             .scaled(stress[0] * over[0])
             .plus(stress[1] * over[1], Tensor::outer(images[1], axes[1]))
-            .plus(stress[2] * over[2], Tensor::outer(images[2], axes[2]))
-            .plus(self.of_volume::<N>() * at.volume_change, at.cofactor)
+            .plus(stress[2] * over[2], Tensor::outer(images[2], axes[2]));
+        volume::stress(at, self.of_volume(), local)
     }
 
     /// In the axes, with `m_ab = F v_a . dF v_b`, `o_a = 1/l_a^2` and tau's slopes A by the logarithms of stretches:
@@ -252,7 +250,7 @@ impl HyperelasticLaw for Ogden {
     fn tangent<N: Number>(&self, at: &Point<N, Spectral<N>>, change: Tensor<N>) -> Tensor<N> {
         let own = &at.own;
         let stretches = &own.stretches;
-        let (over, stress, bulk) = (stretches.over, own.stress, self.of_volume::<N>());
+        let (over, stress) = (stretches.over, own.stress);
         let axes = Tensor::from_columns(stretches.axes);
         let images = Tensor::from_columns(stretches.images);
         let m = (images.transposed_times(change) * axes).0;
@@ -278,27 +276,8 @@ impl HyperelasticLaw for Ogden {
             turned.0[a][b] = (over[a] * shear).mul_add(m[a][b], cross * m[b][a]);
             turned.0[b][a] = (over[b] * shear).mul_add(m[b][a], cross * m[a][b]);
         }
-        ((images * turned).times_transposed(axes))
-            .plus(bulk * at.cofactor.contracted(change), at.cofactor)
-            .plus(bulk * at.volume_change, at.cofactor_change(change))
-    }
-
-    /// The exact block of the local energy with its negative eigenvalues put to 0, and that of the dilation.
-    #[inline(always)]
-    fn node_block<N: Number>(
-        &self,
-        at: &Point<N, Spectral<N>>,
-        bulk: Bulk<N>,
-        gradient: [N; 3],
-    ) -> Tensor<N> {
-        let [x, y, z] = Tensor::<N>::identity().0;
-        let local = Tensor::from_columns([
-            self.tangent(at, Tensor::outer(x, gradient)).on(gradient),
-            self.tangent(at, Tensor::outer(y, gradient)).on(gradient),
-            self.tangent(at, Tensor::outer(z, gradient)).on(gradient),
-        ]);
-        let normal = at.cofactor.on(gradient);
-        surely_semidefinite(local).plus(bulk.modulus, Tensor::outer(normal, normal))
+        let local = (images * turned).times_transposed(axes);
+        volume::tangent(at, self.of_volume(), local, change)
     }
 }
 

@@ -129,6 +129,20 @@ impl<N: Number> Tensor<N> {
         self.transposed() * other
     }
 
+    /// The tensor in perpendicular axes, given by the rows of `axes`.
+    #[inline(always)]
+    #[must_use]
+    pub fn in_axes(self, axes: Self) -> Self {
+        (axes * self).times_transposed(axes)
+    }
+
+    /// The tensor that is this one in perpendicular axes.
+    #[inline(always)]
+    #[must_use]
+    pub fn out_of_axes(self, axes: Self) -> Self {
+        axes.transposed_times(self * axes)
+    }
+
     /// The product with a vector.
     #[inline(always)]
     #[must_use]

@@ -11,6 +11,7 @@ use super::powers::{SHARE_OF_EXPONENT, exp_m1, largest_exponent};
 use super::second_invariant;
 use super::semidefinite::surely_semidefinite;
 use super::tensor::Tensor;
+use super::volume;
 
 /// `psi = c1 (exp(c2 i) - 1) - c1 c2/2 (J^-4/3 I2 - 3) + kappa/2 (J - 1)^2` with `i = J^-2/3 I1 - 3`, `mu = c1 c2` and
 /// `kappa = lambda + 2/3 mu`.
@@ -128,14 +129,13 @@ impl HyperelasticLaw for VerondaWestmann {
     #[inline(always)]
     fn energy<N: Number>(&self, at: &Point<N, Grown<N>>) -> N {
         let (own, three) = (&at.own.invariants, N::of(3.0));
-        let volume = at.volume_change;
-        let shrink = (N::of(-2.0 / 3.0) * volume.ln_1p()).exp_m1();
+        let shrink = (N::of(-2.0 / 3.0) * at.volume_change.ln_1p()).exp_m1();
         let first = own.scale.mul_add(own.first, three * shrink);
         let squared = shrink * (shrink + N::of(2.0));
         let second = (own.scale * own.scale).mul_add(own.second, three * squared);
         let local = N::of(self.c1) * exp_m1(N::of(self.c2) * first);
         let local = N::of(-0.5 * self.shear()).mul_add(second, local);
-        (N::of(0.5) * self.of_volume::<N>() * volume).mul_add(volume, local)
+        volume::energy(at, self.of_volume(), local)
     }
 
     /// `2 c1 c2 exp(c2 i) J^-2/3 (F - I1/(3J) c) - c1 c2 J^-4/3 (B - 2 I2/(3J) c) + 2/3 mu (J - 1) c`.
@@ -143,19 +143,18 @@ impl HyperelasticLaw for VerondaWestmann {
     fn stress<N: Number>(&self, at: &Point<N, Grown<N>>) -> Tensor<N> {
         let own = &at.own.invariants;
         let [slope, _] = self.slopes(&at.own);
-        let stress = first_invariant::stress(at, own, slope)
-            .plus(self.of_volume::<N>() * at.volume_change, at.cofactor);
+        let first = first_invariant::stress(at, own, slope);
+        let stress = volume::stress(at, self.of_volume(), first);
         second_invariant::stress_with(stress, at, own, self.of_second(own))
     }
 
     #[inline(always)]
     fn tangent<N: Number>(&self, at: &Point<N, Grown<N>>, change: Tensor<N>) -> Tensor<N> {
-        let (own, bulk) = (&at.own.invariants, self.of_volume::<N>());
+        let own = &at.own.invariants;
         let second = second_invariant::tangent(at, own, change);
-        first_invariant::tangent(at, own, self.slopes(&at.own), change)
-            .plus(self.of_second(own), second)
-            .plus(bulk * at.cofactor.contracted(change), at.cofactor)
-            .plus(bulk * at.volume_change, at.cofactor_change(change))
+        let local = first_invariant::tangent(at, own, self.slopes(&at.own), change)
+            .plus(self.of_second(own), second);
+        volume::tangent(at, self.of_volume(), local, change)
     }
 
     /// The exact block of the local energy with its negative eigenvalues put to 0, and that of the dilation: the part

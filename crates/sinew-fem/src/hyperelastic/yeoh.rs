@@ -8,6 +8,7 @@ use super::isochoric::Isochoric;
 use super::law::{Bulk, HyperelasticLaw, Point};
 use super::parameters::{LawParameter, LawValues, ParameterError, Range};
 use super::tensor::Tensor;
+use super::volume;
 
 /// `psi = c1 i + c2 i^2 + c3 i^3 + kappa/2 (J - 1)^2` with `i = J^-2/3 I1 - 3`, `mu = 2 c1` and
 /// `kappa = lambda + 2/3 mu`.
@@ -88,27 +89,24 @@ impl HyperelasticLaw for Yeoh {
 
     #[inline(always)]
     fn energy<N: Number>(&self, at: &Point<N, Isochoric<N>>) -> N {
-        let volume = at.volume_change;
         let beyond = first_invariant::exactly_beyond(at);
         let [c1, c2, c3] = self.c.map(N::of);
         let local = c3.mul_add(beyond, c2).mul_add(beyond, c1) * beyond;
-        (N::of(0.5) * self.of_volume::<N>() * volume).mul_add(volume, local)
+        volume::energy(at, self.of_volume(), local)
     }
 
     /// `2 psi' J^-2/3 (F - I1/(3J) c) + 2/3 mu (J - 1) c`.
     #[inline(always)]
     fn stress<N: Number>(&self, at: &Point<N, Isochoric<N>>) -> Tensor<N> {
         let [slope, _] = self.slopes(&at.own);
-        first_invariant::stress(at, &at.own, slope)
-            .plus(self.of_volume::<N>() * at.volume_change, at.cofactor)
+        let local = first_invariant::stress(at, &at.own, slope);
+        volume::stress(at, self.of_volume(), local)
     }
 
     #[inline(always)]
     fn tangent<N: Number>(&self, at: &Point<N, Isochoric<N>>, change: Tensor<N>) -> Tensor<N> {
-        let bulk = self.of_volume::<N>();
-        first_invariant::tangent(at, &at.own, self.slopes(&at.own), change)
-            .plus(bulk * at.cofactor.contracted(change), at.cofactor)
-            .plus(bulk * at.volume_change, at.cofactor_change(change))
+        let local = first_invariant::tangent(at, &at.own, self.slopes(&at.own), change);
+        volume::tangent(at, self.of_volume(), local, change)
     }
 
     /// The exact block, with derivatives of psi by i that are below 0 taken as 0.

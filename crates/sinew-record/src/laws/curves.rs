@@ -146,8 +146,7 @@ fn with_room([low, high]: [f64; 2]) -> [f64; 2] {
 }
 
 /// A region with the properties of one place where the mesh's data give them, and sentences about what its curves are
-/// of. `moduli` are the least and the
-/// largest of its tetrahedra (Pa).
+/// of. `moduli` are the least and the largest of its tetrahedra (Pa).
 fn at_a_point(
     (given, stated): (&Region, &Region),
     moduli: Option<[f64; 2]>,

@@ -21,8 +21,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "NUMBER|GROUP")]
     region: Option<String>,
     /// The least and the largest stretch; an amount of shear goes from FROM - 1 to TO - 1 [default: those of the
-    /// measured
-    /// points with some room, or 0.7 2]
+    /// measured points with some room, or 0.7 2]
     #[arg(long, num_args = 2, value_names = ["FROM", "TO"], value_parser = stretch, allow_negative_numbers = true)]
     stretch: Option<Vec<f64>>,
     /// The axis of the pull in the axes of the mesh; with fibres and axes the curves depend on it [default: 1,0,0, or

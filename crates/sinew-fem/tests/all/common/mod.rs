@@ -1,6 +1,8 @@
 //! Shared by the verification tests: small models, static solutions, and figures beside their references.
 
-use sinew_core::{ElasticLaw, LinearSystem, LoadTime, System, TangentKind, Trial};
+use sinew_core::{
+    ElasticLaw, ElementStiffness, Elements, LinearSystem, LoadTime, System, TangentKind, Trial,
+};
 use sinew_fem::{Element, Fixed, Law, LoadKind, LoadSpec, Model, Problem, Region, SpringRule};
 use sinew_mesh::structured::{self, Split};
 use sinew_mesh::{Group, GroupMembers, TetMesh};
@@ -232,4 +234,36 @@ pub(crate) const fn edges(edge_share: f64) -> Element {
         edge_share,
         patch: None,
     }
+}
+
+/// A displacement (m) of the cells that bends and stretches a body, of this size.
+pub(crate) fn bent(mesh: &TetMesh, model: &Model, size: f64) -> Vec<f64> {
+    on_cells(model, |node| {
+        let [x, y, z] = mesh.points[node];
+        [
+            size * (0.03 * (25.0 * z).sin() + 0.2 * x + 2.0 * y * z),
+            size * (0.02 * (31.0 * x + 8.0 * y).cos() - 0.3 * z),
+            size * (0.25 * z + 0.15 * y + 3.0 * x * x),
+        ]
+    })
+}
+
+/// The forces (N) of a displacement by the stiffness of the parts of a body at rest.
+pub(crate) fn by_elements(model: &Model, u: &[f64]) -> Vec<f64> {
+    let mut by_elements = vec![0.0; u.len()];
+    let mut part = ElementStiffness::default();
+    for number in 0..Elements::count(model) {
+        model.stiffness(number, &mut part);
+        let dofs: Vec<usize> = part
+            .cells
+            .iter()
+            .flat_map(|cell| [0, 1, 2].map(|axis| 3 * *cell as usize + axis))
+            .collect();
+        for (i, row) in dofs.iter().enumerate() {
+            for (j, column) in dofs.iter().enumerate() {
+                by_elements[*row] += part.matrix[i * dofs.len() + j] * u[*column];
+            }
+        }
+    }
+    by_elements
 }

@@ -2,10 +2,10 @@
 //! they are stated.
 
 use crate::common::{
-    ELEMENTS, at_most, body, build, dot, elastic, moved, product, relative_difference, uneven_cube,
-    waves,
+    ELEMENTS, at_most, bent, body, build, by_elements, dot, elastic, moved, product,
+    relative_difference, uneven_cube, waves,
 };
-use sinew_core::{ElementStiffness, Elements, System, TangentKind};
+use sinew_core::{System, TangentKind};
 use sinew_fem::hyperelastic::Parameters;
 use sinew_fem::{Cause, Direction, Element, Law, Model, Problem};
 use sinew_mesh::{TetData, TetMesh};
@@ -27,17 +27,6 @@ fn with_axes(element: Element, axes: Option<[[f64; 3]; 2]>) -> Problem {
     problem.regions[0].element = element;
     problem.regions[0].tissue.axes = axes.map(|axes| axes.map(Direction::Everywhere));
     problem
-}
-
-fn bent(mesh: &TetMesh, model: &Model, size: f64) -> Vec<f64> {
-    crate::common::on_cells(model, |node| {
-        let [x, y, z] = mesh.points[node];
-        [
-            size * (0.03 * (25.0 * z).sin() + 0.2 * x + 2.0 * y * z),
-            size * (0.02 * (31.0 * x + 8.0 * y).cos() - 0.3 * z),
-            size * (0.25 * z + 0.15 * y + 3.0 * x * x),
-        ]
-    })
 }
 
 #[test]
@@ -78,21 +67,7 @@ fn elements_at_rest_are_the_tangent_at_rest() {
         for axes in [None, Some(AXES)] {
             let model = build(&mesh, &with_axes(element, axes));
             let u = waves(model.dofs(), 0.7);
-            let mut by_elements = vec![0.0; u.len()];
-            let mut part = ElementStiffness::default();
-            for number in 0..Elements::count(&model) {
-                model.stiffness(number, &mut part);
-                let dofs: Vec<usize> = part
-                    .cells
-                    .iter()
-                    .flat_map(|cell| [0, 1, 2].map(|axis| 3 * *cell as usize + axis))
-                    .collect();
-                for (i, row) in dofs.iter().enumerate() {
-                    for (j, column) in dofs.iter().enumerate() {
-                        by_elements[*row] += part.matrix[i * dofs.len() + j] * u[*column];
-                    }
-                }
-            }
+            let by_elements = by_elements(&model, &u);
             let rest = vec![0.0; u.len()];
             let expected = product(&model, TangentKind::Exact, &rest, &u);
             at_most(

@@ -1,16 +1,13 @@
 //! Bodies with fibres: forces are the gradient of one energy, tangents its second derivative, stresses those of the closed forms.
 
 use crate::common::{
-    ELEMENTS, at, at_most, body, build, dot, elastic, held, moved, product, relative_difference,
-    uneven_cube, waves,
+    ELEMENTS, at, at_most, bent, body, build, by_elements, dot, elastic, held, moved, product,
+    relative_difference, uneven_cube, waves,
 };
-use sinew_core::{
-    BlockMatrix, ElasticLaw, ElementStiffness, Elements, ForceLaw, Layers, System, TangentKind,
-};
+use sinew_core::{BlockMatrix, ElasticLaw, ForceLaw, Layers, System, TangentKind};
 use sinew_fem::hyperelastic::Parameters;
 use sinew_fem::hyperelastic::fibres::{Fibres, Stiffening};
 use sinew_fem::{Cause, FibreFamily, Law, Model, Problem, Tissue};
-use sinew_mesh::TetMesh;
 use sinew_mesh::structured::{self, Split};
 
 const QUADRATIC: Stiffening = Stiffening::Quadratic { eta: 2000.0 };
@@ -60,17 +57,6 @@ fn all() -> impl Iterator<Item = (String, Problem)> {
                 (format!("{law}, {said}, {element}"), problem)
             })
         })
-    })
-}
-
-fn bent(mesh: &TetMesh, model: &Model, size: f64) -> Vec<f64> {
-    crate::common::on_cells(model, |node| {
-        let [x, y, z] = mesh.points[node];
-        [
-            size * (0.03 * (25.0 * z).sin() + 0.2 * x + 2.0 * y * z),
-            size * (0.02 * (31.0 * x + 8.0 * y).cos() - 0.3 * z),
-            size * (0.25 * z + 0.15 * y + 3.0 * x * x),
-        ]
     })
 }
 
@@ -180,21 +166,7 @@ fn the_elements_and_the_spectrum_at_rest_have_the_fibres_as_if_they_were_pulled(
             problem.fixed = vec![held("bottom")];
             let model = build(&mesh, &problem);
             let u = waves(model.dofs(), 0.7);
-            let mut by_elements = vec![0.0; u.len()];
-            let mut part = ElementStiffness::default();
-            for number in 0..Elements::count(&model) {
-                model.stiffness(number, &mut part);
-                let dofs: Vec<usize> = part
-                    .cells
-                    .iter()
-                    .flat_map(|cell| [0, 1, 2].map(|axis| 3 * *cell as usize + axis))
-                    .collect();
-                for (i, row) in dofs.iter().enumerate() {
-                    for (j, column) in dofs.iter().enumerate() {
-                        by_elements[*row] += part.matrix[i * dofs.len() + j] * u[*column];
-                    }
-                }
-            }
+            let by_elements = by_elements(&model, &u);
             // All fibres are stretched a little.
             let pulled = crate::common::on_cells(&model, |node| {
                 let [x, y, z] = mesh.points[node];
