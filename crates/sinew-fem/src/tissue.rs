@@ -1,4 +1,4 @@
-//! Additions to an isotropic law: fibres and stress that relaxes.
+//! Additions to a law: fibres, axes and stress that relaxes.
 
 use std::fmt;
 
@@ -8,7 +8,7 @@ use crate::hyperelastic::fibres::Fibres;
 use crate::hyperelastic::prony::{self, Term};
 use crate::number::require_finite;
 
-/// Additions to an isotropic law; only laws of large deformation take any of them.
+/// Additions to a law; only laws of large deformation take any of them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Tissue {
     /// Families of fibres that stiffen it where they are stretched, up to [`Tissue::MOST_FAMILIES`].

@@ -8,7 +8,7 @@ use super::deformation::Deformation;
 use super::parameters::{ParameterError, within};
 use super::tensor::{Tensor, dot};
 
-/// A family of fibres, added to any isotropic law: an energy of `X = kd (I1 - 3) + (1 - 3 kd) (I4 - 1)`, `I4 = |F a0|^2`, which acts where X > 0.
+/// A family of fibres, added to any law: an energy of `X = kd (I1 - 3) + (1 - 3 kd) (I4 - 1)`, `I4 = |F a0|^2`, which acts where X > 0.
 ///
 /// I4 is that of F itself. With the invariant freed of volume change, `J^-2/3 I4`, a sphere stays a sphere under hydrostatic load and the switch of
 /// tension is misplaced (Vergori, Destrade, McGarry and Ogden, Computational Mechanics 52, 2013; Nolan, Gower, Destrade, Ogden and McGarry, Journal of the Mechanical Behavior of
