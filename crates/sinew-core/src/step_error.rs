@@ -189,7 +189,7 @@ pub enum StepError {
         /// Unbalanced force, relative to the largest of the forces.
         residual: f64,
         /// Reason why the iteration ended.
-        reason: &'static str,
+        reason: String,
     },
     /// The system refused a trial state.
     #[error("at t = {t} s: {source}")]

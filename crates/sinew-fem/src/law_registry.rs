@@ -123,6 +123,14 @@ pub fn register_boxed(
 
 fn add(law: KnownLaw) -> Result<(), RegisterError> {
     let id = law.id;
+    let is_name = |name: &str| {
+        let fits = |c: char| c.is_ascii_alphanumeric() || matches!(c, '-' | '_');
+        !name.is_empty() && name.chars().all(fits)
+    };
+    let mut names = std::iter::once(id).chain(law.parameters.iter().map(|own| own.name));
+    if let Some(name) = names.find(|name| !is_name(name)) {
+        return Err(RegisterError::NotAName { id, name });
+    }
     for (place, parameter) in law.parameters.iter().enumerate() {
         let key = parameter.name;
         if KEYS_OF_REGIONS.contains(&key) {
@@ -340,7 +348,7 @@ impl Hyperelastic {
     /// True if it is defined at a gradient of the displacement.
     #[must_use]
     pub fn is_defined_at(&self, h: Tensor<f64>) -> bool {
-        self.0.is_defined_at(h)
+        self.0.at(h, false, |at| at.admits())
     }
 
     /// True if its isochoric part can relax alone.
@@ -370,26 +378,33 @@ impl Hyperelastic {
     /// Energy density (J/m^3) of a tetrahedron without averages, by the gradient of the displacement.
     #[must_use]
     pub fn energy(&self, h: Tensor<f64>) -> f64 {
-        self.0.energy(h)
+        self.0.at(h, f64::NAN, |at| at.whole_energy())
     }
 
     /// First Piola-Kirchhoff stress (Pa) of a tetrahedron without averages, by the gradient of the displacement.
     #[must_use]
     pub fn stress(&self, h: Tensor<f64>) -> Tensor<f64> {
-        self.0.stress(h)
+        self.0.at(h, Tensor::zero(), |at| {
+            at.stress()
+                .plus(at.own_bulk().stress, at.dilation_gradient())
+        })
     }
 
     /// Change of [`Self::stress`] by a change of F.
     #[must_use]
     pub fn tangent(&self, h: Tensor<f64>, change: Tensor<f64>) -> Tensor<f64> {
-        self.0.tangent(h, change)
+        self.0.at(h, Tensor::zero(), |at| {
+            at.tangent_with(at.own_bulk(), change)
+        })
     }
 
     /// A node's own block (Pa/m^2) of a tetrahedron without averages, by the gradient (1/m) of its shape function
     /// ([`HyperelasticLaw::node_block`]).
     #[must_use]
     pub fn node_block(&self, h: Tensor<f64>, gradient: [f64; 3]) -> Tensor<f64> {
-        self.0.node_block(h, gradient)
+        self.0.at(h, Tensor::zero(), |at| {
+            at.node_block(at.own_bulk(), gradient)
+        })
     }
 
     /// [`crate::hyperelastic::sample_deformations`] of the law.
@@ -435,6 +450,16 @@ pub enum RegisterError {
         id: &'static str,
         /// The parameter.
         key: &'static str,
+    },
+    /// An id, or the name of a parameter, that could be no word of a scene.
+    #[error(
+        "the law {id:?} has the name {name:?}: expected letters, digits, `-` and `_` in its id and in the names of its parameters"
+    )]
+    NotAName {
+        /// The law's id.
+        id: &'static str,
+        /// The name.
+        name: &'static str,
     },
     /// Two parameters of one name.
     #[error("the law `{id}` has two parameters `{key}`: give one of them another name")]
@@ -529,6 +554,15 @@ mod tests {
         let expected =
             "the law `double` has two parameters `bulk_modulus`: give one of them another name";
         assert_eq!(said("double", &TWICE), expected);
+        static UNNAMED: [LawParameter; 1] = [LawParameter {
+            name: "",
+            ..LawParameter::BULK_MODULUS
+        }];
+        let expected = "the law \"bare\" has the name \"\": expected letters";
+        assert!(said("bare", &UNNAMED).starts_with(expected));
+        for id in ["", "two words", "line\nend", "\"quoted\""] {
+            assert!(said(id, &[]).starts_with(&format!("the law {id:?} has the name {id:?}")));
+        }
         for law in OURS {
             let mut names = law.parameters.iter().map(|parameter| parameter.name);
             assert!(

@@ -28,6 +28,20 @@ impl Axes {
             .ok_or(HomogeneousError::NoAxis)
     }
 
+    /// Axes with the first along a vector, and the second along another as far as that is at right angles to it.
+    ///
+    /// # Errors
+    ///
+    /// [`HomogeneousError::NoAxis`] for a vector without direction, [`HomogeneousError::NoSecondAxis`] for two along one
+    /// line.
+    pub fn spanned(first: [f64; 3], second: [f64; 3]) -> Result<Self, HomogeneousError> {
+        let first = unit(first).ok_or(HomogeneousError::NoAxis)?;
+        let second = unit(second).ok_or(HomogeneousError::NoAxis)?;
+        frame(first, second)
+            .map(Self)
+            .ok_or(HomogeneousError::NoSecondAxis)
+    }
+
     /// The axes as unit vectors.
     #[must_use]
     pub fn vectors(&self) -> [[f64; 3]; 3] {
@@ -78,6 +92,15 @@ mod tests {
         let [first, ..] = axes.vectors();
         let along = axes.in_mesh([[2.0, 0.0, 0.0], [0.0; 3], [0.0; 3]]);
         assert!((along - Tensor::outer(first, first).scaled(2.0)).largest() < 1e-15);
+    }
+
+    #[test]
+    fn a_second_axis_is_taken_as_far_as_it_is_across() {
+        let axes = Axes::spanned([0.0, 0.0, 2.0], [3.0, 0.0, 5.0]).unwrap();
+        let expected = [[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+        assert_eq!(axes.vectors(), expected);
+        let parallel = Axes::spanned([1.0, 1.0, 0.0], [-2.0, -2.0, 0.0]);
+        assert_eq!(parallel, Err(HomogeneousError::NoSecondAxis));
     }
 
     #[test]

@@ -52,29 +52,27 @@ pub struct End {
     pub lost: Option<f64>,
 }
 
+/// Way from one state to the next: of the logarithm of a stretch, and nearly that of a shear.
+const STEP: f64 = 0.005;
 /// Halvings of the way to the next state before the curve ends.
 const HALVINGS: u32 = 12;
 /// Halvings by which the limit of stability is found.
 const BISECTIONS: usize = 40;
+/// Golden sections by which a dip of the stiffness between states is followed.
+const SECTIONS: usize = 30;
 
 impl Solid {
-    /// The curve of a load between two amounts, with `intervals` states on the way from rest to the farther one. States
-    /// are found one after the other, from rest on; the
-    /// curve ends where there is no next one.
+    /// The curve of a load between two amounts. States are found one after the other, from rest on, at steps that do not
+    /// depend on the range, so that no verdict does; the curve ends where there is no next one. The amounts `at` are
+    /// states too.
     #[must_use]
-    pub fn curve(&self, load: Load, axes: &Axes, between: [f64; 2], intervals: usize) -> Curve {
+    pub fn curve(&self, load: Load, axes: &Axes, between: [f64; 2], at: &[f64]) -> Curve {
         let solid = self;
         let loaded = Loaded { solid, axes, load };
         let [low, high] = between;
         let rest = load.rest();
         let asked = [low.min(high).min(rest), low.max(high).max(rest)];
-        let longest = (asked[1] - rest).max(rest - asked[0]);
-        let [pressed, pulled] = asked.map(|to| {
-            let share = (to - rest).abs() / longest;
-            let count = (share * intervals as f64).ceil();
-            let count = if count.is_finite() { count as usize } else { 0 };
-            loaded.branch(to, count)
-        });
+        let [pressed, pulled] = asked.map(|to| loaded.branch(&amounts(load, to, at)));
         let ends = [pressed.end, pulled.end];
         let mut states = pressed.states;
         states.reverse();
@@ -89,59 +87,127 @@ impl Solid {
     }
 }
 
+/// The amounts of the states from rest to one side, without that of rest.
+fn amounts(load: Load, to: f64, at: &[f64]) -> Vec<f64> {
+    let (rest, side) = (load.rest(), if to < load.rest() { -1.0 } else { 1.0 });
+    let step = |number: usize| match load.is_shear() {
+        true => (side * STEP * number as f64).sinh(),
+        false => (side * STEP * number as f64).exp(),
+    };
+    let is_within = |amount: &f64| (amount - rest) * side > 0.0 && (to - amount) * side > 0.0;
+    let mut amounts: Vec<f64> = (1..).map(step).take_while(is_within).collect();
+    amounts.extend(at.iter().copied().filter(is_within));
+    if to != rest {
+        amounts.push(to);
+    }
+    amounts.sort_by(|a, b| (side * a).total_cmp(&(side * b)));
+    amounts.dedup();
+    amounts
+}
+
 /// States from rest to one side, without that at rest.
 struct Branch {
     states: Vec<LoadState>,
     end: End,
 }
 
+/// An amount with its free strains and the least stiffness (Pa) there.
+#[derive(Clone)]
+struct Found {
+    amount: f64,
+    free: DVector<f64>,
+    least: f64,
+}
+
 impl Loaded<'_> {
-    fn branch(&self, to: f64, count: usize) -> Branch {
-        let rest = self.load.rest();
-        let mut states: Vec<LoadState> = Vec::with_capacity(count);
+    fn branch(&self, amounts: &[f64]) -> Branch {
+        let mut states: Vec<LoadState> = Vec::with_capacity(amounts.len());
         let mut end = End::default();
-        let mut last = (rest, self.at_rest());
-        let mut before = None;
-        for number in 1..=count {
-            let share = number as f64 / count as f64;
-            let amount = if number == count {
-                to
-            } else {
-                rest + share * (to - rest)
-            };
-            let free = self.follow(&last, before.as_ref(), amount);
-            let state = free.as_ref().and_then(|free| self.state(amount, free));
-            let (Some(free), Some(mut state)) = (free, state) else {
-                end.lost = Some(last.0);
+        let mut last = self.found(self.load.rest(), self.at_rest());
+        let mut before: Option<Found> = None;
+        for amount in amounts {
+            let next = last.as_ref().and_then(|last| {
+                let free = self.follow(last, before.as_ref(), *amount)?;
+                self.found(*amount, free)
+            });
+            let state = next
+                .as_ref()
+                .and_then(|next| self.state(*amount, &next.free));
+            let (Some(next), Some(mut state), Some(here)) = (next, state, last) else {
+                let rest = self.load.rest();
+                end.lost = Some(states.last().map_or(rest, |state| state.amount));
                 break;
             };
-            if end.limit.is_none() && !state.is_stable {
-                end.limit = Some(self.limit(&last, (amount, &free)));
+            if end.limit.is_none() {
+                let dip = before
+                    .as_ref()
+                    .and_then(|before| self.dip(before, &here, &next));
+                end.limit = match dip {
+                    Some(unstable) => before.as_ref().map(|before| self.limit(before, unstable)),
+                    None if next.least > 0.0 => None,
+                    None => Some(self.limit(&here, next.amount)),
+                };
             }
             state.is_stable = end.limit.is_none();
             states.push(state);
-            before = Some(std::mem::replace(&mut last, (amount, free)));
+            before = Some(here);
+            last = Some(next);
+        }
+        if let Some(limit) = end.limit {
+            // A dip may have ended before the last states that were looked at.
+            for state in &mut states {
+                let is_within =
+                    (state.amount - self.load.rest()).abs() <= (limit - self.load.rest()).abs();
+                state.is_stable = is_within;
+            }
         }
         end.falls_from = falls_from(&states);
         Branch { states, end }
     }
 
+    fn found(&self, amount: f64, free: DVector<f64>) -> Option<Found> {
+        let least = least_stiffness(self.solid, self.gradient(amount, &free))?;
+        Some(Found {
+            amount,
+            free,
+            least,
+        })
+    }
+
+    /// An unstable amount between three stable states of which the one in the middle is the least stiff, if there is one.
+    fn dip(&self, a: &Found, b: &Found, c: &Found) -> Option<f64> {
+        if !(b.least > 0.0 && c.least > 0.0 && b.least < a.least && b.least < c.least) {
+            return None;
+        }
+        let at = |amount: f64| self.found(amount, self.solve(amount, &b.free)?);
+        let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
+        let (mut low, mut high) = (a.amount, c.amount);
+        for _ in 0..SECTIONS {
+            let way = golden * (high - low);
+            let (left, right) = (at(high - way)?, at(low + way)?);
+            let unstable = [&left, &right].into_iter().find(|found| found.least <= 0.0);
+            if let Some(found) = unstable {
+                return Some(found.amount);
+            }
+            match left.least < right.least {
+                true => high = right.amount,
+                false => low = left.amount,
+            }
+        }
+        None
+    }
+
     /// The free strains at an amount, by way of states between it and the last one where it cannot be reached at once.
-    fn follow(
-        &self,
-        last: &(f64, DVector<f64>),
-        before: Option<&(f64, DVector<f64>)>,
-        amount: f64,
-    ) -> Option<DVector<f64>> {
+    fn follow(&self, last: &Found, before: Option<&Found>, amount: f64) -> Option<DVector<f64>> {
         let ahead = before.and_then(|before| {
-            let share = (amount - last.0) / (last.0 - before.0);
-            self.solve(amount, &(&last.1 + share * (&last.1 - &before.1)))
+            let share = (amount - last.amount) / (last.amount - before.amount);
+            self.solve(amount, &(&last.free + share * (&last.free - &before.free)))
         });
-        if let Some(free) = ahead.or_else(|| self.solve(amount, &last.1)) {
+        if let Some(free) = ahead.or_else(|| self.solve(amount, &last.free)) {
             return Some(free);
         }
-        let mut at = last.clone();
-        let mut step = amount - last.0;
+        let mut at = (last.amount, last.free.clone());
+        let mut step = amount - last.amount;
         for _ in 0..HALVINGS {
             step *= 0.5;
             while let Some(free) = self.solve(at.0 + step, &at.1) {
@@ -175,26 +241,23 @@ impl Loaded<'_> {
             nominal_across: nominal[1][1],
             cauchy: cauchy[row][column],
             volume_ratio,
-            is_stable: least_stiffness(self.solid, h)? > 0.0,
+            is_stable: true,
         })
     }
 
     /// The amount between a stable state and an unstable one at which stability ends.
-    fn limit(&self, stable: &(f64, DVector<f64>), unstable: (f64, &DVector<f64>)) -> f64 {
-        let (mut inside, mut outside) = (stable.clone(), unstable.0);
+    fn limit(&self, stable: &Found, unstable: f64) -> f64 {
+        let (mut inside, mut outside) = (stable.clone(), unstable);
         for _ in 0..BISECTIONS {
-            let middle = 0.5 * (inside.0 + outside);
-            let Some(free) = self.solve(middle, &inside.1) else {
-                break;
-            };
-            let h = self.gradient(middle, &free);
-            if least_stiffness(self.solid, h).is_some_and(|least| least > 0.0) {
-                inside = (middle, free);
-            } else {
-                outside = middle;
+            let middle = 0.5 * (inside.amount + outside);
+            let free = self.solve(middle, &inside.free);
+            match free.and_then(|free| self.found(middle, free)) {
+                Some(found) if found.least > 0.0 => inside = found,
+                Some(_) => outside = middle,
+                None => break,
             }
         }
-        inside.0
+        inside.amount
     }
 }
 

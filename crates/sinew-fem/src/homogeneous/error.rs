@@ -17,4 +17,7 @@ pub enum HomogeneousError {
     /// An axis without direction.
     #[error("expected an axis [x, y, z], all finite, that is not 0")]
     NoAxis,
+    /// Two axes along one line.
+    #[error("expected a second axis [x, y, z] that is not along the first")]
+    NoSecondAxis,
 }

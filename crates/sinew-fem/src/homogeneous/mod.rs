@@ -20,7 +20,7 @@
 //!
 //! let region = Region::new(Law::linear(3500.0, 0.45), 1060.0); // Pa, kg/m3
 //! let solid = Solid::of(&region)?;
-//! let curve = solid.curve(Load::Uniaxial, &Axes::along([1.0, 0.0, 0.0])?, [0.9, 1.1], 20);
+//! let curve = solid.curve(Load::Uniaxial, &Axes::along([1.0, 0.0, 0.0])?, [0.9, 1.1], &[]);
 //! assert!((curve.at(1.1).expect("a point of the curve") - 350.0).abs() < 1e-9); // Pa
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```

@@ -29,9 +29,18 @@ pub(super) fn least_stiffness(solid: &Solid, h: Tensor<f64>) -> Option<f64> {
     });
     let matrix = Matrix6::from_fn(|i, j| rates[i].contracted(changes[j]));
     let symmetric = 0.5 * (matrix + matrix.transpose());
-    let least = SymmetricEigen::new(symmetric).eigenvalues.min();
-    least.is_finite().then_some(least)
+    let eigenvalues = SymmetricEigen::new(symmetric).eigenvalues;
+    let (least, largest) = (eigenvalues.min(), eigenvalues.amax());
+    // Where a law stiffens by many powers of ten, an eigenvalue of such a size is a rounding of the largest one.
+    let is_rounding = least.abs() <= ROUNDING * largest;
+    least.is_finite().then_some(match is_rounding {
+        true => ROUNDING * largest,
+        false => least,
+    })
 }
+
+/// Roundings of eigenvalues over the largest one.
+const ROUNDING: f64 = 1e-13;
 
 /// An orthonormal basis of symmetric tensors.
 fn rates() -> [Tensor<f64>; 6] {

@@ -13,7 +13,7 @@ fn region(id: &'static str, parameters: Parameters) -> Region {
 
 fn curve_of(region: &Region, load: Load, along: [f64; 3], between: [f64; 2]) -> Curve {
     let axes = Axes::along(along).unwrap();
-    Solid::of(region).unwrap().curve(load, &axes, between, 60)
+    Solid::of(region).unwrap().curve(load, &axes, between, &[])
 }
 
 /// The largest difference of the nominal stress from a formula, over the largest stress of the formula.
@@ -147,7 +147,7 @@ fn a_bar_of_saint_venant_and_kirchhoff_gives_way_where_its_stress_turns() {
     let region = region("stvk", Parameters::new(2000.0, 0.0));
     let axes = Axes::along(X).unwrap();
     let solid = Solid::of(&region).unwrap();
-    let curve = solid.curve(Load::Uniaxial, &axes, [0.3, 1.5], 2000);
+    let curve = solid.curve(Load::Uniaxial, &axes, [0.3, 1.5], &[]);
     let [pressed, pulled] = curve.ends;
     let limit = pressed.limit.unwrap();
     assert!((limit - 0.5_f64.sqrt()).abs() < 1e-9, "{limit}");
@@ -282,7 +282,7 @@ fn oblique_fibres_are_pulled_at_the_least_energy() {
             axes: &axes,
             load,
         };
-        let curve = solid.curve(load, &axes, [load.rest() - 0.4, load.rest() + 0.6], 24);
+        let curve = solid.curve(load, &axes, [load.rest() - 0.4, load.rest() + 0.6], &[]);
         assert_eq!(curve.ends.map(|end| end.lost), [None; 2]);
         // A sheet that is stretched alike along two axes does work along both.
         for state in curve.states.iter().step_by(5) {
@@ -361,7 +361,7 @@ fn a_material_with_axes_is_pulled_along_them() {
         let axes = Axes::along(along).unwrap();
         let solid = Solid::of(region).unwrap();
         assert!(solid.has_directions());
-        Load::ALL.map(|load| solid.curve(load, &axes, [load.rest() - 0.2, load.rest() + 0.3], 20))
+        Load::ALL.map(|load| solid.curve(load, &axes, [load.rest() - 0.2, load.rest() + 0.3], &[]))
     };
     let (x, y) = ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0]);
     let [expected, found, other] =
@@ -376,4 +376,71 @@ fn a_material_with_axes_is_pulled_along_them() {
         assert!((found / expected - 1.0).abs() < 1e-9);
         assert!((other / expected - 1.0).abs() > 1e-3);
     }
+}
+
+/// Constants of Yeoh's law whose stiffness dips below 0 within a few per cent of stretch.
+#[test]
+fn no_verdict_depends_on_the_range_that_is_drawn() {
+    for c2 in [-320.0, -308.0] {
+        let constants = Parameters::default()
+            .with("c", &[600.0, c2, 90.0])
+            .with("poissons_ratio", &[0.49]);
+        let region = region("yeoh", constants);
+        for load in Load::ALL {
+            let shift = load.rest() - 1.0;
+            let limits = [2.0, 5.0, 20.0, 100.0].map(|to| {
+                let curve = curve_of(&region, load, X, [0.7 + shift, to + shift]);
+                curve.ends[1].limit
+            });
+            let [first, others @ ..] = limits;
+            for other in others {
+                let same = match (first, other) {
+                    (Some(first), Some(other)) => (first - other).abs() < 1e-6,
+                    (None, None) => true,
+                    _ => false,
+                };
+                assert!(same, "{c2} {load}: {limits:?}");
+            }
+        }
+    }
+    let narrow = Parameters::default()
+        .with("c", &[600.0, -320.0, 90.0])
+        .with("poissons_ratio", &[0.49]);
+    let curve = curve_of(&region("yeoh", narrow), Load::Uniaxial, X, [0.7, 100.0]);
+    let limit = curve.ends[1].limit.unwrap();
+    assert!((limit - 1.508).abs() < 5e-4, "{limit}");
+    let beyond = curve.states.iter().find(|state| state.amount > 1.6);
+    assert!(beyond.is_some_and(|state| !state.is_stable));
+}
+
+/// Its least eigenvalue is that of volume, 3 kappa, where the others are 1e17 times as large and more.
+#[test]
+fn a_law_that_stiffens_by_many_powers_of_ten_is_stable() {
+    let skin = Parameters::default()
+        .with("c1", &[4.0])
+        .with("c2", &[300.0])
+        .with("poissons_ratio", &[0.49]);
+    let region = region("veronda-westmann", skin);
+    let curve = curve_of(&region, Load::SimpleShear, X, [-0.3, 0.7]);
+    assert_eq!(curve.ends.map(|end| end.limit), [None; 2]);
+}
+
+#[test]
+fn amounts_that_are_asked_for_are_states() {
+    let region = region("neo-hookean-iso", Parameters::new(3000.0, 0.45));
+    let axes = Axes::along(X).unwrap();
+    let solid = Solid::of(&region).unwrap();
+    let at = |to: f64, amounts: &[f64]| {
+        let curve = solid.curve(Load::Uniaxial, &axes, [0.7, to], amounts);
+        assert!(
+            curve
+                .states
+                .windows(2)
+                .all(|pair| pair[0].amount < pair[1].amount)
+        );
+        curve.at(1.2401).unwrap()
+    };
+    let exact = at(2.0, &[1.2401]);
+    assert!((at(100.0, &[0.8, 1.2401, 200.0, 1.2401]) / exact - 1.0).abs() < 1e-9);
+    assert!((at(100.0, &[]) / exact - 1.0).abs() < 1e-4);
 }

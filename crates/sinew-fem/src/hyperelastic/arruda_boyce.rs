@@ -130,10 +130,11 @@ impl HyperelasticLaw for ArrudaBoyce {
     #[inline(always)]
     fn energy<N: Number>(&self, at: &Point<N, Isochoric<N>>) -> N {
         let beyond = first_invariant::exactly_beyond(at);
-        let [c1, c2, c3, c4, c5] = self.c.map(N::of);
-        let local = c5.mul_add(beyond, c4).mul_add(beyond, c3);
-        let local = local.mul_add(beyond, c2).mul_add(beyond, c1) * beyond;
-        volume::energy(at, self.of_volume(), local)
+        let mut local = N::of(0.0);
+        for c in self.c.iter().rev() {
+            local = local.mul_add(beyond, N::of(*c));
+        }
+        volume::energy(at, self.of_volume(), local * beyond)
     }
 
     /// `2 psi' J^-2/3 (F - I1/(3J) c) + 2/3 mu (J - 1) c`, with the shear modulus at small strain in the second.

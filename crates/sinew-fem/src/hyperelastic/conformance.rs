@@ -64,6 +64,7 @@ use sinew_sparse::simd::{InstructionSet, Number, WithNumber};
 
 use super::decomposition::SingularValues;
 use super::law::{Bulk, HyperelasticLaw, NodeBlock, Point};
+use super::law_at::OwnAt;
 use super::projection::{Linearised, TangentKind};
 use super::samples::{Random, deformations};
 use super::tensor::Tensor;
@@ -382,7 +383,11 @@ pub fn projected_and_frozen_tangents_are_semidefinite<L: HyperelasticLaw>(law: L
         let at = law.at(h);
         for bulk in bulks(law, &at, &mut random) {
             for kind in SEMIDEFINITE {
-                let matrix = matrix(|change| Linearised::of(&law, &at, bulk, kind).on(change));
+                let at = OwnAt {
+                    law: &law,
+                    point: at,
+                };
+                let matrix = matrix(|change| Linearised::of(&at, bulk, kind).on(change));
                 let asymmetry = (matrix - matrix.transpose()).amax();
                 let values = matrix.symmetric_eigenvalues();
                 let size = values.amax() + scale_of(law);
@@ -406,7 +411,11 @@ pub fn projection_changes_nothing_that_is_semidefinite<L: HyperelasticLaw>(law: 
         let bulk = law.own_bulk(&at);
         let exact = matrix(|change| law.tangent_with(&at, bulk, change));
         let kind = TangentKind::Projected;
-        let projection = Linearised::of(&law, &at, bulk, kind);
+        let at = OwnAt {
+            law: &law,
+            point: at,
+        };
+        let projection = Linearised::of(&at, bulk, kind);
         let found = matrix(|change| projection.on(change));
         let mut eigen = exact.symmetric_eigen();
         eigen.eigenvalues.apply(|value| *value = value.max(0.0));

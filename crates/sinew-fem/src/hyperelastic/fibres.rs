@@ -6,6 +6,7 @@ use sinew_sparse::simd::Number;
 
 use super::deformation::Deformation;
 use super::parameters::{ParameterError, within};
+use super::powers::largest_lawful_exponent;
 use super::tensor::{Tensor, dot};
 
 /// A family of fibres, added to any law: an energy of `X = kd (I1 - 3) + (1 - 3 kd) (I4 - 1)`, `I4 = |F a0|^2`, which acts where X > 0.
@@ -191,6 +192,18 @@ impl Fibres {
         self.split
     }
 
+    /// True if the energy is of a size to compute with in all lanes: an exponential grows beyond all numbers.
+    #[inline(always)]
+    pub(crate) fn is_within_limit<N: Number>(&self, at: &FibrePoint<N>) -> bool {
+        match self.stiffening {
+            Stiffening::Quadratic { .. } => true,
+            Stiffening::Exponential { k2, .. } => {
+                let exponent = N::of(k2) * at.stretch * at.stretch;
+                N::all_le(exponent, N::of(largest_lawful_exponent::<N>()))
+            }
+        }
+    }
+
     /// The energy density (J/m^3).
     #[inline(always)]
     pub fn energy<N: Number>(&self, at: &FibrePoint<N>) -> N {
@@ -290,6 +303,12 @@ impl Fibres {
 }
 
 impl<N: Number> FibrePoint<N> {
+    /// X, and 0 in compression.
+    #[inline(always)]
+    pub(crate) fn stretch(&self) -> N {
+        self.stretch
+    }
+
     /// The same with the stiffness and the viscosity of fibres in tension where they are idle: no state near this one is stiffer by much.
     #[must_use]
     pub(crate) fn as_if_pulled(self) -> Self {

@@ -6,7 +6,7 @@ use sinew_sparse::simd::Number;
 use super::deformation::Deformation;
 use super::law::{HyperelasticLaw, Point};
 use super::parameters::{LawParameter, LawValues, ParameterError, Range};
-use super::powers::{SHARE_OF_EXPONENT, exp_m1, largest_exponent};
+use super::powers::{exp_m1, largest_lawful_exponent};
 use super::tensor::Tensor;
 use super::volume;
 
@@ -83,14 +83,19 @@ impl Fung {
     #[inline(always)]
     fn form<N: Number>(&self, strain: Tensor<N>) -> Tensor<N> {
         let [[xx, xy, xz], [_, yy, yz], [.., zz]] = strain.0;
-        let twice = |numbers: [f64; 3]| numbers.map(|b| N::of(2.0 * b));
-        let row = |row: usize| {
-            let [x, y, z] = twice(self.normal[row]);
-            x.mul_add(xx, y.mul_add(yy, z * zz))
-        };
-        let [g12, g23, g31] = twice(self.shear);
-        let (xy, yz, zx) = (g12 * xy, g23 * yz, g31 * xz);
-        Tensor([[row(0), xy, zx], [xy, row(1), yz], [zx, yz, row(2)]])
+        let mut normal = [xx; 3];
+        for (normal, [x, y, z]) in normal.iter_mut().zip(&self.normal) {
+            let last = twice::<N>(*y).mul_add(yy, twice::<N>(*z) * zz);
+            *normal = twice::<N>(*x).mul_add(xx, last);
+        }
+        let [x, y, z] = normal;
+        let [g12, g23, g31] = self.shear;
+        let (xy, yz, zx) = (
+            twice::<N>(g12) * xy,
+            twice::<N>(g23) * yz,
+            twice::<N>(g31) * xz,
+        );
+        Tensor([[x, xy, zx], [xy, y, yz], [zx, yz, z]])
     }
 
     /// Second derivative (Pa) of the local energy of volume, `mu/3 (J - 1)^2`.
@@ -116,6 +121,11 @@ impl Fung {
     }
 }
 
+#[inline(always)]
+fn twice<N: Number>(number: f64) -> N {
+    N::of(2.0 * number)
+}
+
 impl HyperelasticLaw for Fung {
     const ID: &'static str = "fung";
     const MEANING: &'static str = "stiffens exponentially, differently along three axes";
@@ -137,7 +147,7 @@ impl HyperelasticLaw for Fung {
         let least = moduli.into_iter().fold(f64::INFINITY, f64::min);
         let largest = moduli.into_iter().fold(0.0, f64::max);
         if least <= 1e-12 * largest {
-            let expected = "a form above 0 for every strain that keeps the volume, and this is its least value: enlarge b11, \
+            let expected = "nine numbers whose form Q is above 0 for every strain that keeps the volume: enlarge b11, \
                             b22, b33, or the g that is not above 0";
             return Err(B.refused(least / half, expected));
         }
@@ -162,12 +172,12 @@ impl HyperelasticLaw for Fung {
 
     #[inline(always)]
     fn limit(&self) -> Option<&str> {
-        Some("ends where exp(Q) is beyond all numbers, and the tetrahedron is there")
+        Some("ends where exp(Q) is beyond numbers to compute with, and the tetrahedron is there")
     }
 
     #[inline(always)]
     fn margin<N: Number>(&self, at: &Point<N, Strained<N>>) -> N {
-        N::of(SHARE_OF_EXPONENT * largest_exponent::<N>()) - at.own.exponent
+        N::of(largest_lawful_exponent::<N>()) - at.own.exponent
     }
 
     #[inline(always)]

@@ -145,10 +145,12 @@ pub trait HyperelasticLaw: Copy + Debug + Send + Sync {
         bulk: Bulk<N>,
         gradient: [N; 3],
     ) -> Tensor<N> {
-        let columns = Tensor::<N>::identity().0.map(|axis| {
-            let change = Tensor::outer(axis, gradient);
-            self.tangent(at, change).on(gradient)
-        });
+        // A loop, since a closure of this size is not inlined where vectors need it.
+        let mut columns = Tensor::<N>::identity().0;
+        for column in &mut columns {
+            let change = Tensor::outer(*column, gradient);
+            *column = self.tangent(at, change).on(gradient);
+        }
         let normal = self.dilation_gradient(at).on(gradient);
         let local = surely_semidefinite(Tensor::from_columns(columns));
         local.plus(bulk.modulus, Tensor::outer(normal, normal))

@@ -26,6 +26,7 @@ pub(crate) mod fung;
 pub(crate) mod gent;
 mod isochoric;
 pub(crate) mod law;
+mod law_at;
 pub(crate) mod law_error;
 pub(crate) mod mooney_rivlin;
 pub(crate) mod neo_hookean;
@@ -65,6 +66,7 @@ pub use fung::Fung;
 pub use gent::Gent;
 pub(crate) use law::SMALLEST_MARGIN;
 pub use law::{Bulk, HyperelasticLaw, NodeBlock, Point, SMALLEST_VOLUME_RATIO};
+pub(crate) use law_at::{LawAt, OwnAt};
 pub use law_error::LawError;
 pub use mooney_rivlin::MooneyRivlin;
 pub use neo_hookean::NeoHookean;
@@ -74,7 +76,8 @@ pub use ogden::Ogden;
 pub use parameters::{
     Column, LawParameter, LawValues, ParameterError, Parameters, Presence, Range,
 };
-pub use projection::{Linearised, Projection, TangentKind};
+pub(crate) use projection::{Linearised, projects};
+pub use projection::{Projection, TangentKind};
 pub use samples::sample_deformations;
 pub(crate) use semidefinite::semidefinite;
 pub use stable_neo_hookean::StableNeoHookean;

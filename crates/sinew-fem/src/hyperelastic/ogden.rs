@@ -5,7 +5,7 @@ use sinew_sparse::simd::Number;
 use super::deformation::Deformation;
 use super::law::{HyperelasticLaw, Point};
 use super::parameters::{Column, LawParameter, LawValues, ParameterError, Range};
-use super::powers::{SMALL, exp_m1, largest_exponent, sinh_share};
+use super::powers::{SMALL, exp_m1, largest_lawful_exponent, sinh_share};
 use super::stretches::Stretches;
 use super::tensor::Tensor;
 use super::volume;
@@ -57,9 +57,6 @@ const TERMS: LawParameter = LawParameter::number(
     1,
     MOST_TERMS,
 );
-
-/// Share of the largest exponent at which the law ends, so that stresses and tangents are numbers too.
-const SHARE_OF_EXPONENT: f64 = 0.5;
 
 /// Values cached per deformation gradient.
 #[derive(Clone, Copy, Debug)]
@@ -166,12 +163,14 @@ impl HyperelasticLaw for Ogden {
 
     #[inline(always)]
     fn limit(&self) -> Option<&str> {
-        Some("ends where a power of a stretch is beyond all numbers, and the tetrahedron is there")
+        Some(
+            "ends where a power of a stretch is beyond numbers to compute with, and the tetrahedron is there",
+        )
     }
 
     #[inline(always)]
     fn margin<N: Number>(&self, at: &Point<N, Spectral<N>>) -> N {
-        N::of(SHARE_OF_EXPONENT * largest_exponent::<N>()) - self.largest_power(&at.own.stretches)
+        N::of(largest_lawful_exponent::<N>()) - self.largest_power(&at.own.stretches)
     }
 
     #[inline(always)]

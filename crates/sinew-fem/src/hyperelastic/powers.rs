@@ -4,13 +4,16 @@ use sinew_sparse::simd::Number;
 
 /// The largest size of x for [`exp_m1`]: numbers end a little beyond it.
 #[inline(always)]
-pub(super) fn largest_exponent<N: Number>() -> f64 {
+fn largest_exponent<N: Number>() -> f64 {
     if is_double::<N>() { 700.0 } else { 86.0 }
 }
 
-/// Share of the largest exponent at which laws end that grow exponentially, so that their stresses and tangents are
-/// numbers too.
-pub(super) const SHARE_OF_EXPONENT: f64 = 0.75;
+/// The largest exponent of laws that grow exponentially: a quarter of [`largest_exponent`], so that squares of their
+/// stresses and tangents are numbers too.
+#[inline(always)]
+pub(super) fn largest_lawful_exponent<N: Number>() -> f64 {
+    0.25 * largest_exponent::<N>()
+}
 
 #[inline(always)]
 fn is_double<N: Number>() -> bool {

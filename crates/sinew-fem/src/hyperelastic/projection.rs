@@ -5,63 +5,39 @@ pub use sinew_core::TangentKind;
 use sinew_sparse::simd::Number;
 
 use super::decomposition::{MOST_LANES, SingularValues};
-use super::law::{Bulk, HyperelasticLaw, Point};
+use super::law::Bulk;
+use super::law_at::LawAt;
 use super::semidefinite::semidefinite;
 use super::tensor::Tensor;
 
 /// The tangent of a law at a deformation.
-#[derive(Clone, Copy, Debug)]
-pub struct Linearised<'a, N: Number, L: HyperelasticLaw> {
-    law: &'a L,
-    at: &'a Point<N, L::Own<N>>,
+#[derive(Debug)]
+pub(crate) struct Linearised<'a, N, A: ?Sized> {
+    at: &'a A,
     bulk: Bulk<N>,
     /// `None` where the law's own form serves.
     projection: Option<Projected<N>>,
     is_exact: bool,
 }
 
-impl<'a, N: Number, L: HyperelasticLaw> Linearised<'a, N, L> {
+impl<'a, N: Number, A: LawAt<N> + ?Sized> Linearised<'a, N, A> {
     /// The tangent of the local energy and of the dilation. A projection costs nine exact tangents and singular values, once.
     #[inline(always)]
-    #[must_use]
-    pub fn of(law: &'a L, at: &'a Point<N, L::Own<N>>, bulk: Bulk<N>, kind: TangentKind) -> Self {
-        let exact = |change| law.tangent_with(at, bulk, change);
+    pub(crate) fn of(at: &'a A, bulk: Bulk<N>, kind: TangentKind) -> Self {
+        let exact = |change| at.tangent_with(bulk, change);
         Self {
-            law,
-            at,
-            bulk,
-            projection: Self::projects(law, kind).then(|| match L::HAS_AXES {
-                false => Projected::Isotropic(Projection::of(at.gradient, exact)),
+            projection: projects(at, kind).then(|| match at.has_axes() {
+                false => Projected::Isotropic(Projection::of(at.deformation().gradient, exact)),
                 true => Projected::General(GeneralProjection::of(exact)),
             }),
-            is_exact: kind == TangentKind::Exact,
-        }
-    }
-
-    /// True if the tangent of a kind is a projection: a law without a rotation has no other that is semidefinite.
-    #[inline(always)]
-    pub(crate) fn projects(law: &L, kind: TangentKind) -> bool {
-        let freezes = || {
-            let at = law.at(Tensor::<f64>::zero());
-            law.frozen_tangent(&at, Tensor::zero()).is_some()
-        };
-        match kind {
-            TangentKind::Exact => false,
-            TangentKind::Projected => true,
-            TangentKind::Frozen => !freezes(),
+            ..Self::as_it_is(at, bulk, kind)
         }
     }
 
     /// [`Self::of`] without a projection: the exact tangent, or the frozen one of a law that has it.
     #[inline(always)]
-    pub(crate) fn as_it_is(
-        law: &'a L,
-        at: &'a Point<N, L::Own<N>>,
-        bulk: Bulk<N>,
-        kind: TangentKind,
-    ) -> Self {
+    pub(crate) fn as_it_is(at: &'a A, bulk: Bulk<N>, kind: TangentKind) -> Self {
         Self {
-            law,
             at,
             bulk,
             projection: None,
@@ -71,19 +47,38 @@ impl<'a, N: Number, L: HyperelasticLaw> Linearised<'a, N, L> {
 
     /// The change of the stress by a change of F.
     #[inline(always)]
-    #[must_use]
-    pub fn on(&self, change: Tensor<N>) -> Tensor<N> {
+    pub(crate) fn on(&self, change: Tensor<N>) -> Tensor<N> {
         if let Some(projection) = &self.projection {
-            return match projection {
-                Projected::Isotropic(projection) => projection.on(change),
-                Projected::General(projection) => projection.on(change),
-            };
+            return projection.on(change);
         }
         let frozen = match self.is_exact {
             true => None,
-            false => self.law.frozen_tangent_with(self.at, self.bulk, change),
+            false => self.at.frozen_tangent_with(self.bulk, change),
         };
-        frozen.unwrap_or_else(|| self.law.tangent_with(self.at, self.bulk, change))
+        frozen.unwrap_or_else(|| self.at.tangent_with(self.bulk, change))
+    }
+
+    /// Replaces changes of F by those of the stress.
+    #[inline(always)]
+    pub(crate) fn on_all(&self, changes: &mut [Tensor<N>]) {
+        match &self.projection {
+            Some(projection) => {
+                for change in changes {
+                    *change = projection.on(*change);
+                }
+            }
+            None => self.at.tangents_with(self.bulk, self.is_exact, changes),
+        }
+    }
+}
+
+/// True if the tangent of a kind is a projection: a law without a rotation has no other that is semidefinite.
+#[inline(always)]
+pub(crate) fn projects<N: Number, A: LawAt<N> + ?Sized>(at: &A, kind: TangentKind) -> bool {
+    match kind {
+        TangentKind::Exact => false,
+        TangentKind::Projected => true,
+        TangentKind::Frozen => !at.freezes(),
     }
 }
 
@@ -91,6 +86,16 @@ impl<'a, N: Number, L: HyperelasticLaw> Linearised<'a, N, L> {
 enum Projected<N> {
     Isotropic(Projection<N>),
     General(GeneralProjection<N>),
+}
+
+impl<N: Number> Projected<N> {
+    #[inline(always)]
+    fn on(&self, change: Tensor<N>) -> Tensor<N> {
+        match self {
+            Self::Isotropic(projection) => projection.on(change),
+            Self::General(projection) => projection.on(change),
+        }
+    }
 }
 
 /// The positive semidefinite tensor nearest to the tangent of any energy, by all nine eigenvalues.

@@ -69,9 +69,16 @@ pub(super) fn block_with<N: Number>(
     let squared = own.over * own.over;
     let normal = deformation.cofactor.on(gradient);
     // |D[w g']|^2 = w . (sum over k of D[e_k g']:D[e_l g']) w.
-    let unit = Tensor::<N>::identity().0;
-    let turned = unit.map(|axis| deformation.cofactor_change(Tensor::outer(axis, gradient)));
-    let turning = Tensor(turned.map(|a| turned.map(|b| a.contracted(b))));
+    let mut turned = [Tensor::zero(); 3];
+    for (turned, axis) in turned.iter_mut().zip(Tensor::<N>::identity().0) {
+        *turned = deformation.cofactor_change(Tensor::outer(axis, gradient));
+    }
+    let mut turning = Tensor::zero();
+    for (k, row) in turning.0.iter_mut().enumerate() {
+        for (l, entry) in row.iter_mut().enumerate() {
+            *entry = turned[k].contracted(turned[l]);
+        }
+    }
     let sloped = own.second_gradient(deformation.gradient).on(gradient);
     let mixed = Tensor::outer(sloped, normal).symmetric();
     let second = N::of(coefficient) * own.i2() * squared;

@@ -7,7 +7,7 @@ use super::first_invariant::{self, Slopes};
 use super::isochoric::Isochoric;
 use super::law::{Bulk, HyperelasticLaw, NodeBlock, Point};
 use super::parameters::{LawParameter, LawValues, ParameterError, Range};
-use super::powers::{SHARE_OF_EXPONENT, exp_m1, largest_exponent};
+use super::powers::{exp_m1, largest_lawful_exponent};
 use super::second_invariant;
 use super::semidefinite::surely_semidefinite;
 use super::tensor::Tensor;
@@ -107,12 +107,14 @@ impl HyperelasticLaw for VerondaWestmann {
 
     #[inline(always)]
     fn limit(&self) -> Option<&str> {
-        Some("ends where exp(c2 (I1 - 3)) is beyond all numbers, and the tetrahedron is there")
+        Some(
+            "ends where exp(c2 (I1 - 3)) is beyond numbers to compute with, and the tetrahedron is there",
+        )
     }
 
     #[inline(always)]
     fn margin<N: Number>(&self, at: &Point<N, Grown<N>>) -> N {
-        N::of(SHARE_OF_EXPONENT * largest_exponent::<N>()) - at.own.exponent
+        N::of(largest_lawful_exponent::<N>()) - at.own.exponent
     }
 
     #[inline(always)]

@@ -90,7 +90,8 @@ impl HyperelasticLaw for Yeoh {
     #[inline(always)]
     fn energy<N: Number>(&self, at: &Point<N, Isochoric<N>>) -> N {
         let beyond = first_invariant::exactly_beyond(at);
-        let [c1, c2, c3] = self.c.map(N::of);
+        let [c1, c2, c3] = self.c;
+        let (c1, c2, c3) = (N::of(c1), N::of(c2), N::of(c3));
         let local = c3.mul_add(beyond, c2).mul_add(beyond, c1) * beyond;
         volume::energy(at, self.of_volume(), local)
     }
@@ -117,7 +118,9 @@ impl HyperelasticLaw for Yeoh {
         bulk: Bulk<N>,
         gradient: [N; 3],
     ) -> Tensor<N> {
-        let slopes = self.slopes(&at.own).map(|of_psi| of_psi.max(N::of(0.0)));
+        let [first, second] = self.slopes(&at.own);
+        let none = N::of(0.0);
+        let slopes = [first.max(none), second.max(none)];
         let of_volume = self.of_volume::<N>() + bulk.modulus;
         first_invariant::node_block(at, &at.own, slopes, of_volume, gradient)
     }

@@ -6,11 +6,11 @@ use sinew_sparse::simd::{Aligned, Number, Real};
 
 use super::chunks::Slot;
 use crate::frame::Axes;
-use crate::hyperelastic::{HyperelasticLaw, Point, Tensor};
+use crate::hyperelastic::{HyperelasticLaw, OwnAt, Tensor};
 
 /// Perpendicular unit vectors at rest, by the rows of a tensor.
 #[derive(Clone, Debug)]
-pub(super) enum RegionAxes<T = f64> {
+pub(crate) enum RegionAxes<T = f64> {
     /// The same in all tetrahedra.
     Everywhere(Tensor<f64>),
     /// Others in each tetrahedron, one array for each entry.
@@ -52,39 +52,41 @@ impl<T: Real> RegionAxes<T> {
         match self {
             Self::Everywhere(axes) => Tensor::of(axes.0),
             Self::Each(all) => {
-                let entry = |place: usize| N::load(&all[place][first..]);
-                let row = |row: usize| [entry(3 * row), entry(3 * row + 1), entry(3 * row + 2)];
-                Tensor([row(0), row(1), row(2)])
+                let mut axes = Tensor::zero();
+                for (entry, all) in axes.0.as_flattened_mut().iter_mut().zip(&**all) {
+                    *entry = N::load(&all[first..]);
+                }
+                axes
             }
         }
     }
 }
 
-/// The mean deformation at edges side by side as a law of their region sees it: axes that differ do not go with edges.
-#[inline(always)]
-pub(super) fn point_at_edges<N: Number, L: HyperelasticLaw>(
-    law: &L,
-    displacement_gradient: Tensor<N>,
-    axes: Option<&RegionAxes<N::Real>>,
-) -> Point<N, L::Own<N>> {
-    match axes {
-        Some(RegionAxes::Everywhere(axes)) if L::HAS_AXES => {
-            law.at_in(displacement_gradient, &Tensor::of(axes.0))
-        }
-        _ => law.at(displacement_gradient),
-    }
+/// A place of a region's law.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Place {
+    /// The tetrahedra side by side from one on.
+    Tets(usize),
+    /// The means of some: axes that differ do not go with them.
+    Means,
 }
 
-/// The deformation of tetrahedra side by side as a law of their region sees it.
+/// A law at the deformation of a place, as it is in a region with these axes.
 #[inline(always)]
-pub(super) fn point<N: Number, L: HyperelasticLaw>(
-    law: &L,
+pub(super) fn at_place<'a, N: Number, L: HyperelasticLaw>(
+    law: &'a L,
     displacement_gradient: Tensor<N>,
     axes: Option<&RegionAxes<N::Real>>,
-    first: usize,
-) -> Point<N, L::Own<N>> {
-    match axes {
-        Some(axes) if L::HAS_AXES => law.at_in(displacement_gradient, &axes.of(first)),
-        _ => law.at(displacement_gradient),
-    }
+    place: Place,
+) -> OwnAt<'a, N, L> {
+    let axes = match (axes.filter(|_| L::HAS_AXES), place) {
+        (Some(axes), Place::Tets(first)) => Some(axes.of(first)),
+        (Some(RegionAxes::Everywhere(axes)), Place::Means) => Some(Tensor::of(axes.0)),
+        (None, _) | (Some(RegionAxes::Each(_)), Place::Means) => None,
+    };
+    let point = match axes {
+        Some(axes) => law.at_in(displacement_gradient, &axes),
+        None => law.at(displacement_gradient),
+    };
+    OwnAt { law, point }
 }

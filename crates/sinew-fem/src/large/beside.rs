@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use sinew_sparse::simd::{Number, Vectors, WithReal};
 
-use super::defined::{require_fibres, require_memory};
+use super::defined::{require_fibres, require_limit_of_fibres, require_memory};
 use super::fibres::{Directions, RegionFibres};
 use super::kept::{load_entries, store_entries};
 use super::memory::{Points, Relaxing};
@@ -59,6 +59,7 @@ impl<T: Vectors> WithReal<T> for StressBeside<'_, T> {
             require_fibres(families, &deformation, |lane| rest.tag(first + lane))?;
             for (RegionFibres { fibres, .. }, directions) in families.iter().zip(self.directions) {
                 let at = fibres.at(&deformation, directions.of::<N>(first));
+                require_limit_of_fibres(fibres, &at, |lane| rest.tag(first + lane))?;
                 stress = stress.plus(factor, fibres.stress(&at));
                 if self.with_energy {
                     density = factor.mul_add(fibres.energy(&at), density);

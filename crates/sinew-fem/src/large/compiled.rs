@@ -1,19 +1,19 @@
 //! All that is compiled for a law's own type, behind an object-safe trait.
 
 use std::fmt::Debug;
-use std::hint::black_box;
 use std::sync::Arc;
 
-use sinew_core::{Deformed, EvaluationError};
+use sinew_core::{Deformed, EvaluationError, TangentKind};
 use sinew_sparse::simd::Vectors;
 
+use super::axes::Place;
+use super::evaluator::{Last, Untyped};
 use super::force::Forces;
-use super::matrix::Tangents;
-use super::node_blocks::Blocks;
-use super::product::Products;
-use super::stress::Cauchy;
+use super::node_blocks::{self, Blocks};
+use super::product::{self, Products};
+use super::wanted::{OnLaw, Wanted};
 use crate::hyperelastic::{
-    Boxed, HyperelasticLaw, NodeBlock, PointLaw, Tensor, sample_deformations,
+    Boxed, HyperelasticLaw, LawAt, NodeBlock, PointLaw, Tensor, sample_deformations,
 };
 
 /// A law without its type: each method is one call for a region, with loops inside that are compiled for the type.
@@ -36,20 +36,8 @@ pub(crate) trait Compiled: Debug + Send + Sync {
     /// The tangent that own blocks of nodes belong to.
     fn node_block_kind(&self) -> NodeBlock;
 
-    /// True if the law is defined at a gradient of the displacement.
-    fn is_defined_at(&self, h: Tensor<f64>) -> bool;
-
-    /// Energy density (J/m^3) of a tetrahedron without averages, by the gradient of the displacement.
-    fn energy(&self, h: Tensor<f64>) -> f64;
-
-    /// First Piola-Kirchhoff stress (Pa) of a tetrahedron without averages.
-    fn stress(&self, h: Tensor<f64>) -> Tensor<f64>;
-
-    /// Change of the stress (Pa) by a change of F.
-    fn tangent(&self, h: Tensor<f64>, change: Tensor<f64>) -> Tensor<f64>;
-
-    /// A node's own block (Pa/m^2) by the gradient (1/m) of its shape function.
-    fn node_block(&self, h: Tensor<f64>, gradient: [f64; 3]) -> Tensor<f64>;
+    /// Calls `work` with the law, or with its viscosity, behind a pointer.
+    fn evaluated(&self, wanted: Wanted, work: &mut dyn FnMut(&mut (dyn Untyped + '_)));
 
     /// Gradients of displacements, each with a change, where the law is defined.
     fn samples(&self) -> Vec<[Tensor<f64>; 2]>;
@@ -58,20 +46,57 @@ pub(crate) trait Compiled: Debug + Send + Sync {
 
     fn forces_in_single(&self, forces: Forces<'_, f32>) -> Result<Deformed, EvaluationError>;
 
-    fn products(&self, products: Products<'_>) -> Result<(), EvaluationError>;
+    fn products(&self, products: &mut Products<'_>) -> Result<(), EvaluationError>;
 
-    fn blocks(&self, blocks: Blocks<'_>) -> Result<(), EvaluationError>;
-
-    fn tangents(&self, tangents: Tangents<'_, '_>) -> Result<(), EvaluationError>;
-
-    fn cauchy(&self, cauchy: Cauchy<'_>) -> [f64; 6];
+    fn blocks(&self, blocks: &mut Blocks<'_>) -> Result<(), EvaluationError>;
 
     #[cfg(test)]
     fn check_conformance(&self);
 }
 
+impl dyn Compiled + '_ {
+    /// The result of work with the law, or with its viscosity: one call for a region, with loops inside that are compiled
+    /// once for all laws.
+    pub(crate) fn with<R>(
+        &self,
+        wanted: Wanted,
+        without: R,
+        mut work: impl FnMut(&mut (dyn Untyped + '_)) -> R,
+    ) -> R {
+        let mut result = without;
+        self.evaluated(wanted, &mut |law| result = work(law));
+        result
+    }
+
+    /// The result of work with the law at a gradient of the displacement, in the axes of coordinates.
+    pub(crate) fn at<R>(
+        &self,
+        h: Tensor<f64>,
+        without: R,
+        mut work: impl FnMut(&dyn LawAt<f64>) -> R,
+    ) -> R {
+        self.with(Wanted::Kind(TangentKind::Exact), without, |law| {
+            work(law.at_point(h, None, Place::Means))
+        })
+    }
+}
+
+/// Work with a law behind a pointer.
+struct Work<'w>(&'w mut dyn FnMut(&mut (dyn Untyped + '_)));
+
+impl OnLaw for Work<'_> {
+    type Output = ();
+
+    fn run<L: HyperelasticLaw>(self, law: L) {
+        (self.0)(&mut Last {
+            law: &law,
+            at: None,
+        });
+    }
+}
+
 /// A law with its type.
-pub(crate) trait Typed: Debug + Send + Sync {
+pub(crate) trait WithType: Debug + Send + Sync {
     type Law<'a>: HyperelasticLaw
     where
         Self: 'a;
@@ -83,7 +108,7 @@ pub(crate) trait Typed: Debug + Send + Sync {
 #[derive(Debug)]
 pub(crate) struct Own<L>(pub(crate) L);
 
-impl<L: HyperelasticLaw + 'static> Typed for Own<L> {
+impl<L: HyperelasticLaw + 'static> WithType for Own<L> {
     type Law<'a> = L;
 
     fn law(&self) -> L {
@@ -91,7 +116,7 @@ impl<L: HyperelasticLaw + 'static> Typed for Own<L> {
     }
 }
 
-impl Typed for Arc<dyn PointLaw> {
+impl WithType for Arc<dyn PointLaw> {
     type Law<'a> = Boxed<'a>;
 
     fn law(&self) -> Boxed<'_> {
@@ -99,7 +124,7 @@ impl Typed for Arc<dyn PointLaw> {
     }
 }
 
-impl<T: Typed> Compiled for T {
+impl<T: WithType> Compiled for T {
     fn id(&self) -> &'static str {
         self.law().id()
     }
@@ -124,38 +149,12 @@ impl<T: Typed> Compiled for T {
         self.law().shear_moduli()
     }
 
-    fn is_defined_at(&self, h: Tensor<f64>) -> bool {
-        let law = self.law();
-        law.admits(&law.at(h))
-    }
-
     fn node_block_kind(&self) -> NodeBlock {
         <T::Law<'_> as HyperelasticLaw>::NODE_BLOCK
     }
 
-    // The barriers keep what is known of a deformation in memory: without them the optimizer of rustc 1.95 gives the law of Mooney
-    // and Rivlin a wrong stress in shear, in releases alone. `cargo xtask verify` holds the point methods to closed forms there.
-    fn energy(&self, h: Tensor<f64>) -> f64 {
-        let law = self.law();
-        law.whole_energy(&black_box(law.at(h)))
-    }
-
-    fn stress(&self, h: Tensor<f64>) -> Tensor<f64> {
-        let law = self.law();
-        let at = black_box(law.at(h));
-        law.stress_with(&at, law.own_bulk(&at))
-    }
-
-    fn tangent(&self, h: Tensor<f64>, change: Tensor<f64>) -> Tensor<f64> {
-        let law = self.law();
-        let at = black_box(law.at(h));
-        law.tangent_with(&at, law.own_bulk(&at), change)
-    }
-
-    fn node_block(&self, h: Tensor<f64>, gradient: [f64; 3]) -> Tensor<f64> {
-        let law = self.law();
-        let at = black_box(law.at(h));
-        law.node_block(&at, law.own_bulk(&at), gradient)
+    fn evaluated(&self, wanted: Wanted, work: &mut dyn FnMut(&mut (dyn Untyped + '_))) {
+        wanted.on(self.law(), Work(work));
     }
 
     fn samples(&self) -> Vec<[Tensor<f64>; 2]> {
@@ -170,20 +169,18 @@ impl<T: Typed> Compiled for T {
         forces.run(self.law())
     }
 
-    fn products(&self, products: Products<'_>) -> Result<(), EvaluationError> {
-        products.wanted.on(self.law(), products)
+    fn products(&self, products: &mut Products<'_>) -> Result<(), EvaluationError> {
+        let untyped = self;
+        products
+            .wanted
+            .on(self.law(), product::OfLaw { products, untyped })
     }
 
-    fn blocks(&self, blocks: Blocks<'_>) -> Result<(), EvaluationError> {
-        blocks.wanted.on(self.law(), blocks)
-    }
-
-    fn tangents(&self, tangents: Tangents<'_, '_>) -> Result<(), EvaluationError> {
-        tangents.wanted.on(self.law(), tangents)
-    }
-
-    fn cauchy(&self, cauchy: Cauchy<'_>) -> [f64; 6] {
-        cauchy.run(self.law())
+    fn blocks(&self, blocks: &mut Blocks<'_>) -> Result<(), EvaluationError> {
+        let untyped = self;
+        blocks
+            .wanted
+            .on(self.law(), node_blocks::OfLaw { blocks, untyped })
     }
 
     #[cfg(test)]

@@ -37,14 +37,26 @@ pub(super) fn memory_refused(tag: u64, volume_ratio: f64) -> EvaluationError {
     }
 }
 
+/// The error for a tetrahedron whose fibres are beyond their limit.
+#[cold]
+pub(super) fn limit_of_fibres_reached(tag: u64) -> EvaluationError {
+    EvaluationError {
+        element: tag,
+        reason: format!(
+            "its fibres are stretched until exp(k2 X^2) is beyond numbers to compute with: {AT_A_LIMIT}"
+        ),
+    }
+}
+
+/// Advice where a law ends.
+const AT_A_LIMIT: &str = "shorter steps avoid that unless the motion itself leads there, and then smaller loads or a softer law do";
+
 /// The error for a tetrahedron, or the mean of some, that is beyond the limit of a law.
 #[cold]
 pub(super) fn limit_reached(law: &str, limit: &str, tag: u64) -> EvaluationError {
     EvaluationError {
         element: tag,
-        reason: format!(
-            "the law `{law}` {limit}: shorter steps avoid that unless the motion itself leads there"
-        ),
+        reason: format!("the law `{law}` {limit}: {AT_A_LIMIT}"),
     }
 }
 

@@ -7,7 +7,7 @@ use std::ops::Range;
 use sinew_core::{Deformed, EvaluationError};
 use sinew_sparse::simd::{InstructionSet, Number, Real, SharedSlice, Vectors, WithReal};
 
-use super::axes::{point, point_at_edges};
+use super::axes::{Place, at_place};
 use super::beside::{StressBeside, carried_energy};
 use super::chunks::LANES;
 use super::defined::{require_law, require_memory};
@@ -173,8 +173,9 @@ impl<T: Vectors, L: HyperelasticLaw> Sweep<'_, T, L> {
         for first in chunk.slots.clone().step_by(N::LANES) {
             let own = first - chunk.slots.start;
             let gradient = rest.gradient_of::<N>(first, places.displacement);
-            let at = point(&self.law, gradient, self.numbers.axes.as_ref(), first);
-            require_law(&self.law, &at, |lane| rest.tag(first + lane))?;
+            let axes = self.numbers.axes.as_ref();
+            let at = at_place(&self.law, gradient, axes, Place::Tets(first));
+            require_law(&at, |lane| rest.tag(first + lane))?;
             let volume = rest.volumes::<N>(first);
             let dilation = volume * self.law.dilation(&at);
             dilation.store(&mut dilations[own..]);
@@ -231,12 +232,13 @@ impl<T: Vectors, L: HyperelasticLaw> Sweep<'_, T, L> {
             let volume = N::load(&self.numbers.edge_volumes[first..]);
             let over = N::select_le(volume, N::of(0.0), N::of(0.0), volume.recip());
             let gradient = load::<N>(&sums).scaled(over);
-            let at = point_at_edges(&self.law, gradient, self.numbers.axes.as_ref());
+            let axes = self.numbers.axes.as_ref();
+            let at = at_place(&self.law, gradient, axes, Place::Means);
             let tag = |lane: usize| {
                 let tets = region.edges.of(region.edge_at(first + lane));
                 tets.first().map_or(0, |tet| rest.tag(*tet as usize))
             };
-            require_law(&self.law, &at, tag)?;
+            require_law(&at, tag)?;
             let mut stress = self.law.stress(&at);
             if let Some(stiffness) = stiffness {
                 stress = stress.scaled(stiffness.at_edges(first));
@@ -352,8 +354,9 @@ impl<T: Vectors, L: HyperelasticLaw> Sweep<'_, T, L> {
             } else {
                 rest.gradient_of::<N>(first, places.displacement)
             };
-            let at = point(&self.law, gradient, self.numbers.axes.as_ref(), first);
-            require_law(&self.law, &at, |lane| rest.tag(first + lane))?;
+            let axes = self.numbers.axes.as_ref();
+            let at = at_place(&self.law, gradient, axes, Place::Tets(first));
+            require_law(&at, |lane| rest.tag(first + lane))?;
             let dilation = if is_smoothed {
                 N::load(&dilations[own..])
             } else {

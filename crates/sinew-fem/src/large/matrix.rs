@@ -2,17 +2,19 @@
 
 use sinew_core::{AssemblyError, BlockMatrix, ElementStiffness, EvaluationError};
 
-use super::axes::point;
+use super::axes::Place;
 use super::beside::TangentBeside;
+use super::compiled::Compiled;
+use super::evaluator::Untyped;
 use super::means::{at_edges, means, require, take_dilation};
 use super::memory::Relaxing;
 use super::product::{EdgeTangent, OwnTangent, left_of_smoothed, left_of_tets};
 use super::region::HyperelasticRegion;
 use super::scratch::Scratch;
-use super::wanted::{OnLaw, Wanted};
+use super::wanted::Wanted;
 use crate::cells::Cells;
 use crate::elements::moving_part;
-use crate::hyperelastic::{Deformation, HyperelasticLaw, Tensor};
+use crate::hyperelastic::Tensor;
 use crate::smoothing::Average;
 
 /// The tangent, or the viscosity, of a region, which is added to a matrix.
@@ -31,15 +33,21 @@ pub(crate) struct Sum<'o> {
     factor: f64,
     out: &'o mut BlockMatrix,
     average: Average,
+    /// Changes of F by the displacement of each of its nodes along each axis, and those of the stress (Pa).
+    changes: Vec<Tensor<f64>>,
+    stresses: Vec<Tensor<f64>>,
     /// Entries (N/m) of a part between all its nodes, row-major and node-major.
     whole: Vec<f64>,
     moving: ElementStiffness,
 }
 
-impl OnLaw for Tangents<'_, '_> {
-    type Output = Result<(), EvaluationError>;
+impl Tangents<'_, '_> {
+    /// Adds it.
+    pub(super) fn run(&mut self, law: &dyn Compiled) -> Result<(), EvaluationError> {
+        law.with(self.wanted, Ok(()), |law| self.add(law))
+    }
 
-    fn run<L: HyperelasticLaw>(self, law: L) -> Self::Output {
+    fn add(&mut self, law: &mut (dyn Untyped + '_)) -> Result<(), EvaluationError> {
         let Self {
             region,
             scratch,
@@ -48,42 +56,46 @@ impl OnLaw for Tangents<'_, '_> {
             sum,
         } = self;
         let kind = wanted.kind();
-        let (rest, lambda) = (&region.rest, law.lame().0);
-        let beside_of = |tet: usize, deformation: &Deformation<f64>| {
-            TangentBeside::of(region, &relaxing, tet, deformation, wanted)
-        };
-        if !region.is_smoothed() {
-            for tet in rest.tets() {
-                let gradient = rest.gradient_of::<f64>(tet, &scratch.displacement);
-                let at = point(&law, gradient, region.axes.as_ref(), tet);
-                require(&law, region, &relaxing, &at, tet)?;
-                let left = left_of_tets(region, &relaxing, &law, &at, tet);
-                let own = OwnTangent::of(&law, &at, left, kind);
-                let beside = beside_of(tet, &at.deformation);
-                sum.average.of(std::iter::once(region.tet(tet)));
-                sum.add(1.0, |change| beside.with(own.on(change), change))?;
-            }
+        let is_smoothed = region.is_smoothed();
+        if is_smoothed {
+            means(region, scratch, law, relaxing, false)?;
+        }
+        for tet in region.rest.tets() {
+            let gradient = match is_smoothed {
+                true => scratch.gradient(tet),
+                false => region.rest.gradient_of::<f64>(tet, &scratch.displacement),
+            };
+            let at = law.at_point(gradient, region.axes.as_ref(), Place::Tets(tet));
+            let left = if is_smoothed {
+                let [dilation, _] = scratch.dilations[region.patch_of[tet] as usize];
+                left_of_smoothed(region, relaxing, at, (tet, dilation))
+            } else {
+                require(at, region, relaxing, tet)?;
+                left_of_tets(region, relaxing, at, tet)
+            };
+            let own = OwnTangent::of::<true>(at, left, kind);
+            let beside = TangentBeside::of(region, relaxing, tet, at.deformation(), *wanted);
+            sum.average.of(std::iter::once(region.tet(tet)));
+            sum.add(1.0, |changes, stresses| {
+                own.on_all(stresses);
+                for (stress, change) in stresses.iter_mut().zip(changes) {
+                    *stress = beside.with(*stress, *change);
+                }
+            })?;
+        }
+        if !is_smoothed {
             return Ok(());
         }
-        means::<f64, L>(region, scratch, &law, &relaxing, false)?;
-        for tet in rest.tets() {
-            let at = point(&law, scratch.gradient(tet), region.axes.as_ref(), tet);
-            let [dilation, _] = scratch.dilations[region.patch_of[tet] as usize];
-            let left = left_of_smoothed(region, &relaxing, &law, &at, (tet, dilation));
-            let own = OwnTangent::of(&law, &at, left, kind);
-            let beside = beside_of(tet, &at.deformation);
-            sum.average.of(std::iter::once(region.tet(tet)));
-            sum.add(1.0, |change| beside.with(own.on(change), change))?;
-        }
         for (edge, average) in region.edge_averages().iter().enumerate() {
-            let at = at_edges::<f64, L>(region, &law, edge, &scratch.gradients, &relaxing)?;
-            let tangent = EdgeTangent::of(&law, &at, (region, &relaxing, edge), kind);
+            let at = at_edges(region, law, edge, &scratch.gradients, relaxing)?;
+            let tangent = EdgeTangent::of::<true>(at, (region, relaxing, edge), kind);
             sum.average.clone_from(average);
-            sum.add(region.edge_share / 6.0, |change| tangent.on(change))?;
+            let share = region.edge_share / 6.0;
+            sum.add(share, |changes, stresses| tangent.on_all(changes, stresses))?;
         }
         for patch in 0..region.patches.count() {
-            take_dilation(region, &law, patch, scratch, &mut sum.average);
-            let lambda = region.stiffness_of_patch(patch) * lambda;
+            let lambda = region.stiffness_of_patch(patch) * law.lame().0;
+            take_dilation(region, law, patch, scratch, &mut sum.average);
             let lambda = relaxing.factor_of_dilation() * lambda;
             let share = sum.factor;
             sum.average.stiffness(share, [lambda, 0.0], &mut sum.whole);
@@ -101,31 +113,38 @@ impl<'o> Sum<'o> {
             factor,
             out,
             average: Average::default(),
+            changes: Vec::new(),
+            stresses: Vec::new(),
             whole: Vec::new(),
             moving: ElementStiffness::default(),
         }
     }
 
-    /// Adds `V g_aJ H_iJkL g_bL` between the nodes of the average, for a share of its volume V.
+    /// Adds `V g_aJ H_iJkL g_bL` between the nodes of the average, for a share of its volume V. `tangent` is given changes of F,
+    /// and the same again to be replaced by those of the stress.
     fn add(
         &mut self,
         share: f64,
-        tangent: impl Fn(Tensor<f64>) -> Tensor<f64>,
+        tangent: impl Fn(&[Tensor<f64>], &mut [Tensor<f64>]),
     ) -> Result<(), AssemblyError> {
         let average = &self.average;
         let volume = self.factor * share * average.volume;
-        let columns = 3 * average.nodes.len();
-        self.whole.clear();
-        self.whole.resize(columns * columns, 0.0);
-        for (b, gradient) in average.gradients.iter().enumerate() {
-            for k in 0..3 {
+        self.changes.clear();
+        for gradient in &average.gradients {
+            self.changes.extend([0, 1, 2].map(|k| {
                 let mut moved = [0.0; 3];
                 moved[k] = volume;
-                let stress = tangent(Tensor::outer(moved, *gradient));
-                for (a, gradient) in average.gradients.iter().enumerate() {
-                    for (i, force) in stress.on(*gradient).into_iter().enumerate() {
-                        self.whole[(3 * a + i) * columns + 3 * b + k] = force;
-                    }
+                Tensor::outer(moved, *gradient)
+            }));
+        }
+        self.stresses.clone_from(&self.changes);
+        tangent(&self.changes, &mut self.stresses);
+        let columns = self.stresses.len();
+        self.whole.resize(columns * columns, 0.0);
+        for (column, stress) in self.stresses.iter().enumerate() {
+            for (a, gradient) in average.gradients.iter().enumerate() {
+                for (i, force) in stress.on(*gradient).into_iter().enumerate() {
+                    self.whole[(3 * a + i) * columns + column] = force;
                 }
             }
         }

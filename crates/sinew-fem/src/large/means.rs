@@ -3,23 +3,24 @@
 use sinew_core::EvaluationError;
 use sinew_sparse::simd::Number;
 
-use super::axes::{point, point_at_edges};
+use super::axes::Place;
 use super::chunks::LANES;
 use super::defined::{require_fibres, require_law, require_memory};
+use super::evaluator::{Evaluator, Untyped};
 use super::kept::{Rows, load, store};
 use super::memory::Relaxing;
 use super::region::HyperelasticRegion;
 use super::scratch::Scratch;
-use crate::hyperelastic::{HyperelasticLaw, Point, Tensor};
+use crate::hyperelastic::{LawAt, Tensor};
 use crate::smoothing::Average;
 
 /// Takes the gradient of the displacement in each tetrahedron and the mean dilation of each patch; with those of the change, where it is
 /// asked for.
 #[inline(always)]
-pub(super) fn means<N: Number<Real = f64>, L: HyperelasticLaw>(
+pub(super) fn means<N: Number<Real = f64>, E: Evaluator<N> + ?Sized>(
     region: &HyperelasticRegion,
     scratch: &mut Scratch,
-    law: &L,
+    law: &mut E,
     relaxing: &Relaxing<'_>,
     with_change: bool,
 ) -> Result<(), EvaluationError> {
@@ -28,15 +29,16 @@ pub(super) fn means<N: Number<Real = f64>, L: HyperelasticLaw>(
         let side_by_side = first..first + N::LANES;
         let gradient = rest.gradient_of::<N>(first, &scratch.displacement);
         store(gradient, &mut scratch.gradients[side_by_side.clone()]);
-        let at = point(law, gradient, region.axes.as_ref(), first);
-        require(law, region, relaxing, &at, first)?;
+        let at = law.at(gradient, region.axes.as_ref(), Place::Tets(first));
+        let at = &*at;
+        require(at, region, relaxing, first)?;
         let [dilations, changes] = &mut scratch.dilations_of_tets;
         let volume = rest.volumes::<N>(first);
-        (volume * law.dilation(&at)).store(&mut dilations[first..]);
+        (volume * at.dilation()).store(&mut dilations[first..]);
         if with_change {
             let change = rest.gradient_of::<N>(first, &scratch.change);
             store(change, &mut scratch.changes[side_by_side]);
-            let change = law.dilation_gradient(&at).contracted(change);
+            let change = at.dilation_gradient().contracted(change);
             (volume * change).store(&mut changes[first..]);
         }
     }
@@ -59,21 +61,21 @@ pub(super) fn means<N: Number<Real = f64>, L: HyperelasticLaw>(
 
 /// The mean deformation at edges side by side.
 #[inline(always)]
-pub(super) fn at_edges<N: Number<Real = f64>, L: HyperelasticLaw>(
+pub(super) fn at_edges<'e, N: Number<Real = f64>, E: Evaluator<N> + ?Sized>(
     region: &HyperelasticRegion,
-    law: &L,
+    law: &'e mut E,
     first: usize,
     gradients: &[Rows<f64>],
     relaxing: &Relaxing<'_>,
-) -> Result<Point<N, L::Own<N>>, EvaluationError> {
+) -> Result<E::Ref<'e>, EvaluationError> {
     let gradient = mean_at_edges::<N>(region, first, gradients);
-    let at = point_at_edges(law, gradient, region.axes.as_ref());
+    let at = law.at(gradient, region.axes.as_ref(), Place::Means);
     let tag = |lane: usize| {
         let tets = region.edges.of(region.edge_at(first + lane));
         tets.first().map_or(0, |tet| region.rest.tag(*tet as usize))
     };
-    require_law(law, &at, tag)?;
-    require_memory(relaxing, &at.deformation, tag)?;
+    require_law(&*at, tag)?;
+    require_memory(relaxing, at.deformation(), tag)?;
     Ok(at)
 }
 
@@ -105,16 +107,16 @@ pub(super) fn add(sum: &mut Rows<f64>, factor: f64, tensor: &Rows<f64>) {
 }
 
 /// Takes the derivative of a patch's mean dilation by the displacement of each of its nodes, in the place of a mean gradient.
-pub(super) fn take_dilation<L: HyperelasticLaw>(
+pub(super) fn take_dilation(
     region: &HyperelasticRegion,
-    law: &L,
+    law: &(dyn Untyped + '_),
     patch: usize,
     scratch: &Scratch,
     out: &mut Average,
 ) {
     out.of(region.patches.of(patch).iter().map(|tet| {
         let tet = *tet as usize;
-        let normal = law.dilation_gradient(&law.at(scratch.gradient(tet)));
+        let (_, normal) = law.dilation(scratch.gradient(tet));
         let (nodes, volume, gradients) = region.tet(tet);
         (nodes, volume, gradients.map(|gradient| normal.on(gradient)))
     }));
@@ -122,15 +124,14 @@ pub(super) fn take_dilation<L: HyperelasticLaw>(
 
 /// Refuses tetrahedra side by side that the law, the fibres or the memory are not defined for.
 #[inline(always)]
-pub(super) fn require<L: HyperelasticLaw, N: Number>(
-    law: &L,
+pub(super) fn require<N: Number, A: LawAt<N> + ?Sized>(
+    at: &A,
     region: &HyperelasticRegion,
     relaxing: &Relaxing<'_>,
-    at: &Point<N, L::Own<N>>,
     first: usize,
 ) -> Result<(), EvaluationError> {
     let tag = |lane: usize| region.rest.tag(first + lane);
-    require_law(law, at, tag)?;
-    require_memory(relaxing, &at.deformation, tag)?;
-    require_fibres(&region.fibres, &at.deformation, tag)
+    require_law(at, tag)?;
+    require_memory(relaxing, at.deformation(), tag)?;
+    require_fibres(&region.fibres, at.deformation(), tag)
 }

@@ -214,17 +214,14 @@ impl<'a, T: Real> Relaxing<'a, T> {
         }
         let (start, count) = memory.part(points);
         let all = &self.internal[start + place..];
-        let load = |k: usize| -> Symmetric<N> {
-            let entry = |c: usize| N::load(&all[(6 * k + c) * count..]);
-            [entry(0), entry(1), entry(2), entry(3), entry(4), entry(5)]
-        };
         let mut gains = 0.0;
         let mut carried = [N::of(0.0); 6];
         for (k, step) in self.steps.all().iter().enumerate() {
             gains += step.gain();
-            add(&mut carried, N::of(step.decay()), load(k + 1));
+            let of_term = &all[6 * (k + 1) * count..];
+            add(&mut carried, N::of(step.decay()), of_term, count);
         }
-        add(&mut carried, N::of(-gains), load(0));
+        add(&mut carried, N::of(-gains), all, count);
         Some(carried)
     }
 
@@ -324,10 +321,11 @@ impl<'a, T: Real> Remembering<'a, T> {
     }
 }
 
+/// Adds numbers, `count` apart from each other.
 #[inline(always)]
-fn add<N: Number>(sum: &mut Symmetric<N>, factor: N, term: Symmetric<N>) {
-    for (sum, term) in sum.iter_mut().zip(term) {
-        *sum = term.mul_add(factor, *sum);
+fn add<N: Number>(sum: &mut Symmetric<N>, factor: N, numbers: &[N::Real], count: usize) {
+    for (c, sum) in sum.iter_mut().enumerate() {
+        *sum = N::load(&numbers[c * count..]).mul_add(factor, *sum);
     }
 }
 

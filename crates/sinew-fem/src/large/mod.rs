@@ -6,6 +6,7 @@ mod chunks;
 mod compiled;
 mod defined;
 mod error;
+mod evaluator;
 mod fibres;
 mod force;
 mod found;
@@ -215,13 +216,14 @@ impl LargeDeformation {
     ) -> Result<(), EvaluationError> {
         scratch.corners.resize(4 * self.slots, [0.0; 4]);
         for (region, law) in self.with_laws() {
-            law.products(Products {
+            let mut products = Products {
                 region,
                 scratch,
                 relaxing: wanted.relaxing(region, past),
                 wanted,
                 set: self.set,
-            })?;
+            };
+            products.run(law)?;
         }
         self.all
             .gather
@@ -246,13 +248,14 @@ impl LargeDeformation {
     ) -> Result<(), EvaluationError> {
         let mut sum = Sum::new(cells, factor, out);
         self.with_laws().try_for_each(|(region, law)| {
-            law.tangents(Tangents {
+            let mut tangents = Tangents {
                 region,
                 scratch,
                 relaxing: wanted.relaxing(region, past),
                 wanted,
                 sum: &mut sum,
-            })
+            };
+            tangents.run(law)
         })
     }
 
@@ -265,14 +268,15 @@ impl LargeDeformation {
         mut add: impl FnMut(u32, [[f64; 3]; 3]),
     ) -> Result<(), EvaluationError> {
         self.with_laws().try_for_each(|(region, law)| {
-            law.blocks(Blocks {
+            let mut blocks = Blocks {
                 region,
                 scratch,
                 relaxing: wanted.relaxing(region, past),
                 wanted,
                 set: self.set,
                 add: &mut add,
-            })
+            };
+            blocks.run(law)
         })
     }
 
@@ -290,12 +294,13 @@ impl LargeDeformation {
             .with_laws()
             .rev()
             .find(|(region, _)| region.first <= place)?;
-        Some(law.cauchy(Cauchy {
+        let cauchy = Cauchy {
             region,
             tet: place - region.first,
             relaxing: Relaxing::of(region.memory.as_ref(), past),
             displacement: &displacement,
-        }))
+        };
+        Some(cauchy.run(law))
     }
 
     /// The regions with their laws.

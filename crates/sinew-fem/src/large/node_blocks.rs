@@ -3,9 +3,11 @@
 use sinew_core::EvaluationError;
 use sinew_sparse::simd::{InstructionSet, Number, Vectors, WithReal};
 
-use super::axes::point;
+use super::axes::Place;
 use super::beside::{block_beside, carried_block};
 use super::chunks::LANES;
+use super::compiled::Compiled;
+use super::evaluator::{Evaluator, Typed, Untyped};
 use super::kept::{load, store};
 use super::means::{at_edges, means, require, take_dilation};
 use super::memory::{Points, Relaxing};
@@ -13,7 +15,7 @@ use super::product::{left_of_smoothed, left_of_tets};
 use super::region::HyperelasticRegion;
 use super::scratch::Scratch;
 use super::wanted::{OnLaw, Wanted};
-use crate::hyperelastic::{Bulk, HyperelasticLaw, Point, Tensor};
+use crate::hyperelastic::{Bulk, HyperelasticLaw, LawAt, Tensor};
 use crate::smoothing::Average;
 
 /// Own blocks of nodes, computed by these instructions: calls `add` with each node and parts of its block (N/m).
@@ -26,54 +28,44 @@ pub(crate) struct Blocks<'a> {
     pub(super) add: &'a mut dyn FnMut(u32, [[f64; 3]; 3]),
 }
 
-impl OnLaw for Blocks<'_> {
-    type Output = Result<(), EvaluationError>;
-
-    fn run<L: HyperelasticLaw>(mut self, law: L) -> Self::Output {
-        let (set, blocks) = (self.set, &mut self);
-        if blocks.wanted.has_beside(blocks.region) {
-            Sweep::<L, true> { blocks, law }.run::<f64>()?;
+impl Blocks<'_> {
+    /// Computes them with vectors, unless the stress beside the law's contributes.
+    pub(super) fn run(&mut self, law: &dyn Compiled) -> Result<(), EvaluationError> {
+        if self.wanted.has_beside(self.region) {
+            self.with_numbers(law)?;
         } else {
-            f64::with_vectors_or_numbers(set, Sweep::<L, false> { blocks, law })?;
+            law.blocks(self)?;
         }
         if self.region.is_smoothed() {
-            self.at_edges_and_patches(&law)?;
+            law.with(self.wanted, Ok(()), |law| self.at_edges_and_patches(law))?;
         }
         Ok(())
     }
-}
 
-/// The loop over tetrahedra, for one law. `ALL` is true if it includes the stress beside the law's, which is compiled
-/// for plain numbers only.
-struct Sweep<'a, 'b, L, const ALL: bool> {
-    blocks: &'a mut Blocks<'b>,
-    law: L,
-}
+    /// Computes those of tetrahedra with plain numbers.
+    fn with_numbers(&mut self, law: &dyn Compiled) -> Result<(), EvaluationError> {
+        law.with(self.wanted, Ok(()), |law| self.tets::<true, f64, _>(law))
+    }
 
-impl<L: HyperelasticLaw, const ALL: bool> WithReal<f64> for Sweep<'_, '_, L, ALL> {
-    type Output = Result<(), EvaluationError>;
-
+    /// Computes those of tetrahedra. `ALL` is true if the stress beside the law's may contribute, which is compiled for
+    /// plain numbers only.
     #[inline(always)]
-    fn run<N: Number<Real = f64>>(self) -> Self::Output {
-        if !ALL && N::LANES == 1 {
-            return Sweep::<L, true> {
-                blocks: self.blocks,
-                law: self.law,
-            }
-            .run::<f64>();
-        }
-        let Blocks {
+    fn tets<const ALL: bool, N: Number<Real = f64>, E: Evaluator<N> + ?Sized>(
+        &mut self,
+        law: &mut E,
+    ) -> Result<(), EvaluationError> {
+        let Self {
             region,
             scratch,
             relaxing,
             wanted,
             add,
             ..
-        } = self.blocks;
-        let (rest, law) = (&region.rest, &self.law);
+        } = self;
+        let rest = &region.rest;
         let is_smoothed = region.is_smoothed();
         if is_smoothed {
-            means::<N, L>(region, scratch, law, relaxing, false)?;
+            means::<N, E>(region, scratch, law, relaxing, false)?;
             if region.edge_share == 1.0 && !ALL {
                 return Ok(());
             }
@@ -85,36 +77,39 @@ impl<L: HyperelasticLaw, const ALL: bool> WithReal<f64> for Sweep<'_, '_, L, ALL
             } else {
                 rest.gradient_of::<N>(first, &scratch.displacement)
             };
-            let at = point(law, gradient, region.axes.as_ref(), first);
+            let at = law.at(gradient, region.axes.as_ref(), Place::Tets(first));
+            let at = &*at;
             let left = if is_smoothed {
                 let patch = |lane: usize| region.patch_of[first + lane] as usize;
                 let dilation = N::from_lanes(|lane| scratch.dilations[patch(lane)][0]);
-                left_of_smoothed(region, relaxing, law, &at, (first, dilation))
+                left_of_smoothed(region, relaxing, at, (first, dilation))
             } else {
-                require(law, region, relaxing, &at, first)?;
-                left_of_tets(region, relaxing, law, &at, first)
+                require(at, region, relaxing, first)?;
+                left_of_tets(region, relaxing, at, first)
             };
             let gradients = rest.all_gradients::<N>(first);
             for (vertex, gradient) in gradients.into_iter().enumerate() {
-                let mut block = own_block(law, &at, left, gradient);
+                let mut block = own_block(at, left, gradient);
                 if ALL {
-                    let at = &at.deformation;
+                    let at = at.deformation();
                     block = block + block_beside(region, relaxing, first, at, (*wanted, gradient));
                 }
                 store(block.scaled(rest.volumes(first)), &mut lanes);
                 let nodes = rest.nodes_from(vertex, first);
                 for (node, block) in nodes.iter().zip(&lanes[..N::LANES]) {
-                    add(*node, block.map(|[x, y, z, _]| [x, y, z]));
+                    let [[xx, xy, xz, _], [yx, yy, yz, _], [zx, zy, zz, _]] = *block;
+                    add(*node, [[xx, xy, xz], [yx, yy, yz], [zx, zy, zz]]);
                 }
             }
         }
         Ok(())
     }
-}
 
-impl Blocks<'_> {
     /// Adds what belongs to means, where they are taken.
-    fn at_edges_and_patches<L: HyperelasticLaw>(self, law: &L) -> Result<(), EvaluationError> {
+    fn at_edges_and_patches(
+        &mut self,
+        law: &mut (dyn Untyped + '_),
+    ) -> Result<(), EvaluationError> {
         let Self {
             region,
             scratch,
@@ -123,21 +118,21 @@ impl Blocks<'_> {
             ..
         } = self;
         for (edge, average) in region.edge_averages().iter().enumerate() {
-            let at = at_edges::<f64, L>(region, law, edge, &scratch.gradients, &relaxing)?;
+            let at = at_edges(region, law, edge, &scratch.gradients, relaxing)?;
             let stiffness = region.stiffness_at_edges(edge);
-            let left = relaxing.left_of(stiffness, Bulk::none(), law.dilation(&at));
+            let left = relaxing.left_of(stiffness, Bulk::none(), at.dilation());
             let volume = region.edge_share / 6.0 * average.volume;
             for (node, gradient) in average.nodes.iter().zip(&average.gradients) {
-                let carried = carried_block(&relaxing, (Points::Edges, edge), *gradient);
-                let block = own_block(law, &at, left, *gradient) + carried;
+                let carried = carried_block(relaxing, (Points::Edges, edge), *gradient);
+                let block = own_block(at, left, *gradient) + carried;
                 add(*node, block.scaled(volume).0);
             }
         }
-        let lambda = relaxing.factor_of_dilation() * law.lame().0;
         let mut average = Average::default();
         for patch in 0..region.patches.count() {
-            let lambda = region.stiffness_of_patch(patch) * lambda;
+            let lambda = region.stiffness_of_patch(patch) * law.lame().0;
             take_dilation(region, law, patch, scratch, &mut average);
+            let lambda = relaxing.factor_of_dilation() * lambda;
             for (node, gradient) in average.nodes.iter().zip(&average.gradients) {
                 let block = Tensor::outer(*gradient, *gradient);
                 add(*node, block.scaled(lambda * average.volume).0);
@@ -147,12 +142,44 @@ impl Blocks<'_> {
     }
 }
 
+/// [`Blocks`] with the type of the law.
+pub(super) struct OfLaw<'b, 'a> {
+    pub(super) blocks: &'b mut Blocks<'a>,
+    pub(super) untyped: &'b dyn Compiled,
+}
+
+impl OnLaw for OfLaw<'_, '_> {
+    type Output = Result<(), EvaluationError>;
+
+    fn run<L: HyperelasticLaw>(self, law: L) -> Self::Output {
+        f64::with_vectors_or_numbers(self.blocks.set, Sweep { of: self, law })
+    }
+}
+
+struct Sweep<'b, 'a, L> {
+    of: OfLaw<'b, 'a>,
+    law: L,
+}
+
+impl<L: HyperelasticLaw> WithReal<f64> for Sweep<'_, '_, L> {
+    type Output = Result<(), EvaluationError>;
+
+    #[inline(always)]
+    fn run<N: Number<Real = f64>>(self) -> Self::Output {
+        let OfLaw { blocks, untyped } = self.of;
+        if N::LANES == 1 {
+            blocks.with_numbers(untyped)
+        } else {
+            blocks.tets::<false, N, _>(&mut Typed(&self.law))
+        }
+    }
+}
+
 /// The own blocks of nodes, for each m^3, of a share of the local energy and of the dilational one; nothing without a share, as the stress of a patch
 /// alone has none.
 #[inline(always)]
-fn own_block<N: Number, L: HyperelasticLaw>(
-    law: &L,
-    at: &Point<N, L::Own<N>>,
+fn own_block<N: Number, A: LawAt<N> + ?Sized>(
+    at: &A,
     (share, bulk): (N, Bulk<N>),
     gradient: [N; 3],
 ) -> Tensor<N> {
@@ -163,5 +190,5 @@ fn own_block<N: Number, L: HyperelasticLaw>(
         stress: bulk.stress / share,
         modulus: bulk.modulus / share,
     };
-    law.node_block(at, bulk, gradient).scaled(share)
+    at.node_block(bulk, gradient).scaled(share)
 }

@@ -89,7 +89,7 @@ impl Rest {
     }
 
     /// The mean over some tetrahedra by volume.
-    pub(super) fn mean(&self, tets: &[u32], of: impl Fn(usize) -> f64) -> f64 {
+    pub(super) fn mean(&self, tets: &[u32], mut of: impl FnMut(usize) -> f64) -> f64 {
         let (mut sum, mut volumes) = (0.0, 0.0);
         for tet in tets {
             let volume = self.volume(*tet as usize);

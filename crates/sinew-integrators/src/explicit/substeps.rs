@@ -311,7 +311,7 @@ impl Substepped {
             t: state.t(),
             reason: format!(
                 "the current stiffness takes more than {MOST_PARTS} parts of {dt} s, which takes two at rest: elements are squeezed flat, \
-                 fibres are stretched too far, or the displacement is not finite. A dt in seconds has no such bound"
+                 fibres or a law that stiffens are stretched too far, or the displacement is not finite. A dt in seconds has no such bound"
             ),
         }
     }

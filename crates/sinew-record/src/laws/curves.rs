@@ -9,8 +9,8 @@ use sinew_scene::{Scene, Subject};
 use super::error::LawCurvesError;
 use super::measured::Measured;
 
-/// States from rest to the farther end of a curve.
-const INTERVALS: usize = 200;
+/// Measured amounts of a load that are states of its curve; between more of them lines are straight.
+const MOST_AMOUNTS: usize = 5000;
 
 /// Stretches of a curve that nobody asked for.
 const USUAL: [f64; 2] = [0.7, 2.0];
@@ -25,6 +25,9 @@ pub struct AskedCurves {
     pub region: Option<String>,
     /// The axis of the pull; where there is none x, or for directions by data of the mesh that between them.
     pub along: Option<[f64; 3]>,
+    /// The second axis of sheets and shears, as far as it is at right angles to the first; where there is none the second
+    /// of the material's axes by data of the mesh, or the mesh's axis after the one that the first is nearest to.
+    pub across: Option<[f64; 3]>,
     /// The least and the largest stretch; an amount of shear is a stretch less 1. Where there are none, those of measured points with some room, or else from .7 to 2.
     pub stretch: Option<[f64; 2]>,
 }
@@ -117,13 +120,27 @@ pub fn curves_of_laws(
                 (None, true) => between_directions(&at_place[index]),
                 (None, false) => [1.0, 0.0, 0.0],
             };
-            let axes = Axes::along(along)?;
             let stated = &at_place[index];
+            let of_material = match (&stated.tissue.axes, by_data && asked.along.is_none()) {
+                (Some([_, Direction::Everywhere(second)]), true) => Some(*second),
+                _ => None,
+            };
+            let axes = match (asked.across, of_material) {
+                (Some(across), _) => Axes::spanned(along, across),
+                (None, Some(second)) => Axes::spanned(along, second),
+                (None, None) => Axes::along(along),
+            }?;
             let (region, notes) = at_a_point((region, stated), moduli[index], &axes);
             let solid = scene.solid(index, &region)?;
             let curve = |load: Load| {
                 let shift = load.rest() - 1.0;
-                solid.curve(load, &axes, between.map(|to| to + shift), INTERVALS)
+                let at = measured.map_or_else(Vec::new, |measured| measured.amounts(load));
+                let at = if at.len() > MOST_AMOUNTS {
+                    &[]
+                } else {
+                    &at[..]
+                };
+                solid.curve(load, &axes, between.map(|to| to + shift), at)
             };
             Ok(RegionCurves {
                 number: index + 1,

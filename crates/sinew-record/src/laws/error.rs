@@ -16,7 +16,7 @@ pub enum LawCurvesError {
     #[error(transparent)]
     Data(#[from] sinew_mesh::TetDataError),
     /// An axis without direction.
-    #[error("along: {0}")]
+    #[error("the axes of the pull: {0}")]
     Axis(#[from] HomogeneousError),
     /// A scene of an oscillator.
     #[error("{}: an oscillator has no law: its spring is the line `stiffness`", scene.display())]

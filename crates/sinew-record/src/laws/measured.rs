@@ -60,6 +60,9 @@ pub enum MeasuredFault {
     /// A file that cannot be read.
     #[error("cannot be read: {0}")]
     Unreadable(#[from] io::Error),
+    /// Bytes that are no text in UTF-8.
+    #[error("is no text in UTF-8: save the table as CSV (UTF-8)")]
+    NotText,
     /// Other columns.
     #[error("the first line is {found:?}: expected the names of the columns, {HEAD}")]
     Header {
@@ -104,7 +107,8 @@ impl Measured {
             line,
             fault,
         };
-        let text = fs::read_to_string(path).map_err(|error| at((None, error.into())))?;
+        let bytes = fs::read(path).map_err(|error| at((None, error.into())))?;
+        let text = String::from_utf8(bytes).map_err(|_| at((None, MeasuredFault::NotText)))?;
         Self::parse(&text).map_err(at)
     }
 
@@ -114,7 +118,7 @@ impl Measured {
             .zip(lines.map(str::trim))
             .filter(|(_, line)| !line.is_empty() && !line.starts_with('#'));
         let (number, head) = rows.next().ok_or((None, MeasuredFault::Empty))?;
-        let entries: Vec<&str> = head.split(',').map(str::trim).collect();
+        let entries: Vec<&str> = head.split(',').map(unquoted).collect();
         let fits = |(entry, names): (&&str, &&[&str])| names.contains(entry);
         if entries.len() != COLUMNS.len() || !entries.iter().zip(&COLUMNS).all(fits) {
             let found = shortened(head);
@@ -143,15 +147,27 @@ impl Measured {
         points.map(|(_, amount, stress)| (*amount, *stress))
     }
 
+    /// The amounts of a load, each once.
+    pub(crate) fn amounts(&self, load: Load) -> Vec<f64> {
+        let mut amounts: Vec<f64> = self.of(load).map(|(amount, _)| amount).collect();
+        amounts.sort_by(f64::total_cmp);
+        amounts.dedup();
+        amounts
+    }
+
     /// The misfit of a curve; `None` where nothing was measured under its load.
     pub(crate) fn misfit(&self, curve: &Curve) -> Option<Misfit> {
-        let (mut points, mut beyond, mut sum, mut largest) = (0, 0, 0.0, 0.0_f64);
+        let largest = self.of(curve.load).map(|(_, stress)| stress.abs());
+        let largest = largest.fold(0.0, f64::max);
+        // Squares of numbers of any size are numbers by this measure.
+        let scale = if largest > 0.0 { largest } else { 1.0 };
+        let (mut points, mut beyond, mut sum) = (0, 0, 0.0);
         for (amount, stress) in self.of(curve.load) {
-            largest = largest.max(stress.abs());
             match curve.at(amount) {
                 Some(found) => {
                     points += 1;
-                    sum += (found - stress) * (found - stress);
+                    let difference = found / scale - stress / scale;
+                    sum += difference * difference;
                 }
                 None => beyond += 1,
             }
@@ -159,14 +175,14 @@ impl Measured {
         (points + beyond > 0).then(|| Misfit {
             points,
             beyond,
-            root_mean_square: (sum / points as f64).sqrt(),
+            root_mean_square: scale * (sum / points as f64).sqrt(),
             largest,
         })
     }
 }
 
 fn point(line: &str) -> Result<(Load, f64, f64), MeasuredFault> {
-    let entries: Vec<&str> = line.split(',').map(str::trim).collect();
+    let entries: Vec<&str> = line.split(',').map(unquoted).collect();
     let [load, amount, stress] = entries[..] else {
         let found = entries.len();
         return Err(MeasuredFault::Count { found });
@@ -197,6 +213,15 @@ fn point(line: &str) -> Result<(Load, f64, f64), MeasuredFault> {
     Ok((load, amount, stress))
 }
 
+/// An entry without spaces and quotation marks round it.
+fn unquoted(entry: &str) -> &str {
+    let entry = entry.trim();
+    let inner = entry
+        .strip_prefix('"')
+        .and_then(|entry| entry.strip_suffix('"'));
+    inner.map_or(entry, str::trim)
+}
+
 fn shortened(text: &str) -> String {
     match text.char_indices().nth(SHOWN) {
         Some((end, _)) => format!("{}..", &text[..end]),
@@ -220,6 +245,13 @@ mod tests {
             ]
         );
         assert_eq!(measured.stretches(), [1.0, 1.5]);
+    }
+
+    #[test]
+    fn entries_in_quotation_marks_are_read() {
+        let text = "\"load\",\"stretch\",\"stress\"\r\n\"planar\",\"1.5\",900\r\n";
+        let measured = Measured::parse(text).unwrap();
+        assert_eq!(measured.points, [(Load::Planar, 1.5, 900.0)]);
     }
 
     #[test]

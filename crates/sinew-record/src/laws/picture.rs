@@ -19,6 +19,8 @@ const MOST: f64 = 8.0;
 /// Extent of a sheet's stress over that of the others': pressed along two axes it grows so fast that it would hide
 /// them.
 const OF_SHEET: f64 = 1.25;
+/// Dots of measured points of a load: more would hide each other and the curve.
+const MOST_DOTS: usize = 100;
 
 /// The picture of a region's law: stretches at the left, shear at the right. Lines are solid where the law is stable
 /// and dashed beyond; measured points are dots.
@@ -136,8 +138,10 @@ fn with_curve(plot: Plot, curve: &Curve) -> Plot {
 
 /// Measured points as dots without a line.
 fn with_points(plot: Plot, load: Load, measured: &Measured) -> Plot {
+    let all = measured.of(load).count();
+    let nth = all.div_ceil(MOST_DOTS).max(1);
     let gap = || Point::from((f64::NAN, f64::NAN));
-    let points = measured.of(load).flat_map(|(amount, stress)| {
+    let points = measured.of(load).step_by(nth).flat_map(|(amount, stress)| {
         let note = format!("measured, {load} {amount}: {stress} Pa");
         let point = Point {
             note,
@@ -153,7 +157,11 @@ fn with_points(plot: Plot, load: Load, measured: &Measured) -> Plot {
                 width: 0.0,
                 ..style(load)
             };
-            plot.with(Series::new(format!("measured, {load}"), dots, points))
+            let name = match nth {
+                1 => format!("measured, {load}"),
+                _ => format!("measured, {load}, one of {nth}"),
+            };
+            plot.with(Series::new(name, dots, points))
         }
     }
 }
@@ -203,7 +211,7 @@ mod tests {
         let axes = Axes::along([1.0, 0.0, 0.0]).unwrap();
         let curve = |load: Load| {
             let shift = load.rest() - 1.0;
-            solid.curve(load, &axes, [0.5 + shift, 1.5 + shift], 50)
+            solid.curve(load, &axes, [0.5 + shift, 1.5 + shift], &[])
         };
         RegionCurves {
             number: 1,

@@ -4,7 +4,7 @@ use sinew_draw::short;
 use sinew_fem::homogeneous::{Curve, Load};
 
 use super::curves::RegionCurves;
-use super::measured::Measured;
+use super::measured::{Measured, Misfit};
 
 /// A region's law in lines: its moduli at rest, what the curves are of, where they are stable, and how far measured
 /// points are from them.
@@ -23,7 +23,12 @@ pub(super) fn moduli(region: &RegionCurves) -> String {
     let kappa = lambda + 2.0 / 3.0 * mu;
     let e = 9.0 * kappa * mu / (3.0 * kappa + mu);
     let nu = lambda / (2.0 * (lambda + mu));
-    let [e, nu, mu, kappa] = [e, nu, mu, kappa].map(short);
+    let nu = match short(nu).as_str() {
+        // Which nobody may state.
+        "0.5" => format!("0.5 - {}", short(mu / (2.0 * (lambda + mu)))),
+        other => other.to_owned(),
+    };
+    let [e, mu, kappa] = [e, mu, kappa].map(short);
     let without = if region.has_fibres {
         ", without fibres"
     } else {
@@ -53,6 +58,15 @@ pub(super) fn stability(curve: &Curve) -> String {
     parts.join("; ")
 }
 
+/// A misfit as a share of the largest stress measured; nothing where that is 0.
+fn of_largest(misfit: &Misfit) -> String {
+    if misfit.largest == 0.0 {
+        return String::new();
+    }
+    let share = short(100.0 * misfit.root_mean_square / misfit.largest);
+    format!(", {share} % of the largest stress measured")
+}
+
 /// The distance of measured points from the curves of their loads.
 pub(super) fn misfits(region: &RegionCurves, measured: Option<&Measured>) -> Vec<String> {
     let Some(measured) = measured else {
@@ -63,10 +77,10 @@ pub(super) fn misfits(region: &RegionCurves, measured: Option<&Measured>) -> Vec
         let mut line = match misfit.points {
             0 => format!("measured, {load}: no points on the curve"),
             points => format!(
-                "measured, {load}: {points} {}, root mean square difference {} Pa, {} % of the largest stress measured",
+                "measured, {load}: {points} {}, root mean square difference {} Pa{}",
                 if points == 1 { "point" } else { "points" },
                 short(misfit.root_mean_square),
-                short(100.0 * misfit.root_mean_square / misfit.largest)
+                of_largest(&misfit)
             ),
         };
         if misfit.beyond > 0 {

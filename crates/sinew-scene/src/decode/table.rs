@@ -195,6 +195,10 @@ impl<'a> Table<'a> {
             Some(value) if matches!(value.get_ref(), DeValue::Array(_)) => {
                 self.items(key.name, value, key.values.table)
             }
+            Some(value) if !matches!(value.get_ref(), DeValue::Table(_)) => {
+                let expected = "a table, or a list of tables".into();
+                Err(self.misfit(key.name, value, expected, Misfit::Type))
+            }
             _ => Ok(self
                 .table_of(key.name, key.values.table)?
                 .into_iter()

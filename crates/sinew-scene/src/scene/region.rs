@@ -326,10 +326,9 @@ fn parameters(
         // Those that all models share are checked when the body is built, where the data of a mesh are known.
         Err(ParameterError::Value {
             quantity, expected, ..
-        }) if !law
-            .parameters()
-            .iter()
-            .any(|own| own.name == quantity && model::is_shared(own)) =>
+        }) if !law.parameters().iter().any(|own| {
+            own.name == quantity && model::is_shared(own) && quantity != POISSONS_RATIO.name
+        }) =>
         {
             Err(table.value_misfit(quantity, expected))
         }

@@ -31,6 +31,35 @@ pub trait WithReal<T: Real> {
 
     /// Does the work, as [`WithNumber::run`] does.
     fn run<N: Number<Real = T>>(self) -> Self::Output;
+
+    /// Does the work with instructions of AVX2. A method, since the compiler's threads share a crate by the modules of its types:
+    /// as a function all loops would be one's.
+    ///
+    /// # Safety
+    /// The instructions are available.
+    #[cfg(target_arch = "x86_64")]
+    #[doc(hidden)]
+    #[target_feature(enable = "avx2,fma")]
+    unsafe fn run_on_avx2<N: Number<Real = T>>(self) -> Self::Output
+    where
+        Self: Sized,
+    {
+        self.run::<N>()
+    }
+
+    /// [`Self::run_on_avx2`] with those of AVX-512.
+    ///
+    /// # Safety
+    /// The instructions are available.
+    #[cfg(target_arch = "x86_64")]
+    #[doc(hidden)]
+    #[target_feature(enable = "avx2,fma,avx512f,avx512dq,avx512vl")]
+    unsafe fn run_on_avx512<N: Number<Real = T>>(self) -> Self::Output
+    where
+        Self: Sized,
+    {
+        self.run::<N>()
+    }
 }
 
 /// Numbers that there are vectors of.
@@ -50,12 +79,12 @@ macro_rules! vectors {
                     #[cfg(target_arch = "x86_64")]
                     // SAFETY: the instructions are available.
                     InstructionSet::Avx2 if set.is_available() => unsafe {
-                        reals_on_avx2::<Self, Vector<Self, Avx2<_>>, W>(work)
+                        work.run_on_avx2::<Vector<Self, Avx2<_>>>()
                     },
                     #[cfg(target_arch = "x86_64")]
                     // SAFETY: the instructions are available.
                     InstructionSet::Avx512 if set.is_available() => unsafe {
-                        reals_on_avx512::<Self, Vector<Self, Avx512<_>>, W>(work)
+                        work.run_on_avx512::<Vector<Self, Avx512<_>>>()
                     },
                     _ => work.run::<Self>(),
                 }
@@ -112,22 +141,6 @@ unsafe fn on_avx2<N: Number, W: WithNumber>(work: W) -> W::Output {
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,fma,avx512f,avx512dq,avx512vl")]
 unsafe fn on_avx512<N: Number, W: WithNumber>(work: W) -> W::Output {
-    work.run::<N>()
-}
-
-/// # Safety
-/// The instructions are available.
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2,fma")]
-unsafe fn reals_on_avx2<T: Real, N: Number<Real = T>, W: WithReal<T>>(work: W) -> W::Output {
-    work.run::<N>()
-}
-
-/// # Safety
-/// The instructions are available.
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2,fma,avx512f,avx512dq,avx512vl")]
-unsafe fn reals_on_avx512<T: Real, N: Number<Real = T>, W: WithReal<T>>(work: W) -> W::Output {
     work.run::<N>()
 }
 
@@ -279,7 +292,8 @@ impl<T: Real, V: Lanes<T>> Number for Vector<T, V> {
     #[inline(always)]
     fn parts(self) -> [Self; 2] {
         // SAFETY: see `Vector`.
-        unsafe { self.0.parts() }.map(Self::new)
+        let [mantissa, exponent] = unsafe { self.0.parts() };
+        [Self::new(mantissa), Self::new(exponent)]
     }
 
     #[inline(always)]

@@ -243,8 +243,10 @@ pub(crate) enum Failure {
     #[error(transparent)]
     Measured(#[from] MeasuredError),
     /// An axis of another number of components.
-    #[error("--along: expected three numbers such as 0,0,1, found {found}")]
-    Along {
+    #[error("{option}: expected three numbers such as 0,0,1, found {found}")]
+    Axis {
+        /// The option.
+        option: &'static str,
         /// Their number.
         found: usize,
     },
@@ -389,7 +391,7 @@ impl Failure {
             | Self::Replay { .. }
             | Self::LawCurves(_)
             | Self::Measured(_)
-            | Self::Along { .. }
+            | Self::Axis { .. }
             | Self::Stretch { .. }
             | Self::SharedOutput { .. } => REFUSED,
             Self::Output(error) | Self::Record(RecordRunError::Output(error))

@@ -34,6 +34,16 @@ pub(crate) struct Arguments {
         allow_hyphen_values = true
     )]
     along: Option<Vec<f64>>,
+    /// The second axis of sheets and shears, as far as it is at right angles to the first [default: the mesh's axis after
+    /// the one that the first is nearest to, or the material's second one where data of the mesh give its axes]
+    #[arg(
+        long,
+        value_name = "X,Y,Z",
+        num_args = 1,
+        value_delimiter = ',',
+        allow_hyphen_values = true
+    )]
+    across: Option<Vec<f64>>,
     /// Measured points to show beside the curves: a CSV file with the columns load (uniaxial, equibiaxial, planar or
     /// simple-shear), stretch_or_shear (1 and 0 at rest) and stress_Pa (nominal)
     #[arg(long, value_name = "FILE")]
@@ -65,17 +75,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         }
         None => None,
     };
-    let along = match arguments.along.as_deref() {
-        None => None,
-        Some(&[x, y, z]) => Some([x, y, z]),
-        Some(other) => {
-            let found = other.len();
-            return Err(Failure::Along { found });
-        }
-    };
     let asked = AskedCurves {
         region: arguments.region.clone(),
-        along,
+        along: axis("--along", arguments.along.as_deref())?,
+        across: axis("--across", arguments.across.as_deref())?,
         stretch: match arguments.stretch.as_deref() {
             Some(&[from, to]) if from < to => Some([from, to]),
             Some(found) => {
@@ -109,6 +112,18 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         voice.say(&line)?;
     }
     Ok(())
+}
+
+/// The axis that an option gives.
+fn axis(option: &'static str, given: Option<&[f64]>) -> Result<Option<[f64; 3]>, Failure> {
+    match given {
+        None => Ok(None),
+        Some(&[x, y, z]) => Ok(Some([x, y, z])),
+        Some(other) => Err(Failure::Axis {
+            option,
+            found: other.len(),
+        }),
+    }
 }
 
 /// True for a path that names a table and no folder.

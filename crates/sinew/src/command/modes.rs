@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use comfy_table::CellAlignment;
 use sinew_record::{NaturalMode, check_modes_folder, natural_modes, write_modes};
 use sinew_scene::output::say;
+use sinew_scene::{Simulation, Subject};
 
 use super::Failure;
 use super::ruled;
@@ -44,6 +45,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
             "of small motions about rest: loads and deformation change the frequencies of this body",
         )?;
     }
+    if has_fibres(&simulation) {
+        say("without the fibres, which are idle at rest: pulled ones raise the frequencies")?;
+    }
     if let Some(path) = &arguments.out {
         write_modes(path, &simulation, &modes)?;
         say(&format!(
@@ -52,6 +56,16 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         ))?;
     }
     Ok(())
+}
+
+fn has_fibres(simulation: &Simulation) -> bool {
+    match simulation.scene().subject() {
+        Subject::Body(body) => {
+            let mut regions = body.problem.regions.iter();
+            regions.any(|region| !region.tissue.fibres.is_empty())
+        }
+        Subject::Oscillator(_) => false,
+    }
 }
 
 fn table(modes: &[NaturalMode]) -> String {

@@ -1,7 +1,8 @@
 //! Stresses of one point in closed form, and curves of rubber that were measured.
 
+use sinew_fem::hyperelastic::fibres::{Fibres, Stiffening};
 use sinew_fem::hyperelastic::{Hyperelastic, Parameters, Tensor};
-use sinew_fem::{Element, Law};
+use sinew_fem::{Element, FibreFamily, Law};
 
 use crate::common::{at, body, build, on_cells, uneven_cube};
 use sinew_core::{ElasticLaw, System};
@@ -578,5 +579,47 @@ fn a_body_beyond_the_limit_of_its_law_is_refused_by_the_reason_of_the_law() {
                 .unwrap_err();
             assert!(refused.to_string().contains(reason), "{element}: {refused}");
         }
+    }
+}
+
+/// An exponential of fibres ends by its own reason, before its squares are beyond all numbers.
+#[test]
+fn fibres_that_are_stretched_beyond_all_numbers_are_refused() {
+    let mesh = uneven_cube();
+    let kind = Stiffening::Exponential {
+        k1: 1.0,
+        k2: 500.0,
+        dispersion: 0.0,
+    };
+    let fibres = Fibres::new(kind).unwrap();
+    for fibres in [fibres, fibres.split()] {
+        let mut problem = body(Law::hyperelastic(
+            "neo-hookean",
+            Parameters::new(3000.0, 0.45),
+        ));
+        problem.regions[0].tissue.fibres = vec![FibreFamily::new(fibres, [0.0, 0.0, 1.0])];
+        let model = build(&mesh, &problem);
+        let pulled = |by: f64| {
+            on_cells(&model, |node| {
+                let [x, y, z] = mesh.points[node];
+                let across = (1.0 + by).powf(-0.5) - 1.0;
+                [across * x, across * y, by * z]
+            })
+        };
+        let rest = vec![0.0; model.dofs()];
+        let mut force = rest.clone();
+        // X is .56 and .61, and ends at the root of 175/500.
+        model
+            .elastic_force(&at(&pulled(0.25), &rest), &mut force)
+            .unwrap();
+        let squared: f64 = force.iter().map(|force| force * force).sum();
+        assert!(squared.is_finite());
+        let refused = model
+            .elastic_force(&at(&pulled(0.27), &rest), &mut force)
+            .unwrap_err();
+        assert!(
+            refused.to_string().contains("its fibres are stretched"),
+            "{refused}"
+        );
     }
 }

@@ -21,7 +21,7 @@ pub enum NewtonError {
         /// Residual over the size of the forces.
         residual: f64,
         /// Reason.
-        reason: &'static str,
+        reason: String,
     },
     /// Not even the projected tangent has an inverse.
     #[error("the projected tangent could not be factorised: {0}")]

@@ -134,8 +134,10 @@ pub(super) struct Newton {
     pub(super) point: Point,
     /// The next trial.
     pub(super) trial: Point,
-    /// The last refusal of the present iteration.
-    refusal: Option<EvaluationError>,
+    /// The last refusal, and the iterations before it.
+    refusal: Option<(u64, EvaluationError)>,
+    /// Iterations taken.
+    iterations: u64,
     singular: Option<FactorError>,
     unsymmetric: Unsymmetric,
 }
@@ -180,6 +182,7 @@ impl Newton {
             point: Point::new(dofs),
             trial: Point::new(dofs),
             refusal: None,
+            iterations: 0,
             singular: None,
             unsymmetric,
         })
@@ -210,33 +213,38 @@ impl Newton {
         equations: &mut impl Equations,
         work: &mut StepReport,
     ) -> Result<(), NewtonError> {
-        let mut iterations = 0;
-        (self.refusal, self.singular) = (None, None);
+        (self.refusal, self.singular, self.iterations) = (None, None, 0);
         loop {
             let residual = self.residual(equations);
             if residual <= self.settings.tolerance {
                 return Ok(());
             }
+            let iterations = self.iterations;
             let failure = |reason| NewtonError::Unbalanced {
                 iterations,
                 residual,
                 reason,
             };
             if iterations >= u64::from(self.settings.most_iterations) {
+                let taken = "the most iterations allowed were taken";
                 return Err(match self.refusal.take() {
-                    Some(refusal) => NewtonError::Refused(refusal),
-                    None => failure("the most iterations allowed were taken"),
+                    Some((at, refusal)) if at + 1 >= iterations => NewtonError::Refused(refusal),
+                    Some((_, refusal)) => {
+                        failure(format!("{taken}, and one of them led where {refusal}"))
+                    }
+                    None => failure(taken.to_owned()),
                 });
             }
             work.newton_iterations += 1;
             match self.iterate(equations, work) {
-                Iterated::Moved => iterations += 1,
+                Iterated::Moved => self.iterations += 1,
                 Iterated::AtRounding => return Ok(()),
                 Iterated::Stuck => {
-                    return Err(match (self.refusal.take(), self.singular.take()) {
-                        (Some(refusal), _) => NewtonError::Refused(refusal),
+                    let refusal = self.refusal.take().filter(|(at, _)| *at == iterations);
+                    return Err(match (refusal, self.singular.take()) {
+                        (Some((_, refusal)), _) => NewtonError::Refused(refusal),
                         (None, Some(error)) => NewtonError::Singular(error),
-                        (None, None) => failure("no step along the tangent leads down"),
+                        (None, None) => failure("no step along the tangent leads down".to_owned()),
                     });
                 }
             }
@@ -254,7 +262,7 @@ impl Newton {
     }
 
     fn iterate(&mut self, equations: &mut impl Equations, work: &mut StepReport) -> Iterated {
-        (self.refusal, self.singular) = (None, None);
+        self.singular = None;
         for (kind, halvings) in [
             (TangentKind::Exact, HALVINGS_OF_EXACT),
             (TangentKind::Frozen, MOST_HALVINGS),
@@ -285,7 +293,7 @@ impl Newton {
         work: &mut StepReport,
     ) -> Option<f64> {
         if let Err(refusal) = equations.tangent(&self.point.x, kind, &mut self.tangent) {
-            self.refusal = Some(refusal);
+            self.refusal = Some((self.iterations, refusal));
             return None;
         }
         work.sweeps += 1 + 2 * equations.viscous_sweeps();
@@ -331,7 +339,7 @@ impl Newton {
             self.trial.x.copy_from_slice(&self.point.x);
             add_scaled(share, &self.direction, &mut self.trial.x);
             match equations.evaluate(&mut self.trial, work) {
-                Err(refusal) => self.refusal = Some(refusal),
+                Err(refusal) => self.refusal = Some((self.iterations, refusal)),
                 Ok(()) if self.trial.is_finite() => {
                     let (rise, size) = change(&self.point, &self.trial, &self.direction, share);
                     let left = dot(&self.trial.residual, &self.direction);

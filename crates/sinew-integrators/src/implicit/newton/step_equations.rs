@@ -445,7 +445,7 @@ impl NewtonSteps {
                 state,
                 work.newton_iterations - before,
                 f64::INFINITY,
-                "not even the projected tangent is positive definite",
+                "not even the projected tangent is positive definite".to_owned(),
             ),
         })?;
         acceleration.copy_from_slice(&self.newton.point.x);
@@ -460,7 +460,7 @@ impl NewtonSteps {
         state: &State,
         iterations: u64,
         residual: f64,
-        reason: &'static str,
+        reason: String,
     ) -> StepError {
         StepError::NotConverged {
             integrator: self.integrator,

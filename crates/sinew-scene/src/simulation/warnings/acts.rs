@@ -124,7 +124,7 @@ impl Simulation {
             == Some(true);
         match is_stable {
             true => "; the step is stable about rest, so that the loads and motions, or what the body became under them, ask for more than the method bears: \
-                     smaller loads, a shorter step, or an implicit method that divides its steps (dt = \"auto\")"
+                     smaller loads, a shorter step or an implicit method"
                 .to_owned(),
             false => "; `sinew plan` names the stable step".to_owned(),
         }

@@ -50,7 +50,7 @@ pub(super) fn locking(body: &Body) -> Vec<Warning> {
             let (on, mend) = match split {
                 Some(Split::Kuhn) => (" on a \"kuhn\" grid", ", the grid split = \"mirrored\""),
                 Some(Split::Mirrored) => (" on a \"mirrored\" grid", ""),
-                None => (", by how the mesh is cut,", ""),
+                None => (" by how the mesh is cut,", ""),
             };
             let mut what = format!(
                 "[[region]] {} has poissons_ratio = {ratio}: near 0.5 plain tetrahedra are stiffer than their material; at {} a beam \

@@ -148,6 +148,57 @@ fn a_table_has_its_picture_beside_it_and_spares_what_is_not_its_own() {
     assert_eq!(names(path), written);
 }
 
+/// A tetrahedron with a direction by data under each name.
+fn tetrahedron(data: &[(&str, [f64; 3])]) -> String {
+    let mut mesh = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n4\n1 0 0 0\n2 0.1 0 0\n3 0 0.1 0\n4 0 0 0.1\n$EndNodes\n\
+                    $Elements\n1\n1 4 2 1 1 1 2 3 4\n$EndElements\n"
+        .to_owned();
+    for (name, [x, y, z]) in data {
+        mesh.push_str(&format!(
+            "$ElementData\n1\n\"{name}\"\n1\n0\n3\n0\n3\n1\n1 {x} {y} {z}\n$EndElementData\n"
+        ));
+    }
+    mesh
+}
+
+/// The curves of a material whose axes are data of its mesh are those along its axes, however these lie in the mesh.
+#[test]
+fn axes_by_data_are_those_of_the_pull() {
+    let folder = folder();
+    let path = folder.path();
+    let scene = "[mesh]\nfile = \"a.msh\"\n[[region]]\ndensity = 1000.0\nmodel = \"fung\"\nc = 1000.0\n\
+                 b = [3.0, 2.0, 1.5, 0.2, 0.1, 0.1, 1.5, 1.0, 1.2]\nbulk_modulus = 1e5\n\
+                 axes = [{ data = \"first\" }, { data = \"second\" }]\n\
+                 [run]\nduration = 1.0\nintegrator = \"newmark\"\ndt = 0.01\n";
+    fs::write(path.join("a.toml"), scene).unwrap();
+    let stresses = |first: [f64; 3], second: [f64; 3]| {
+        let mesh = tetrahedron(&[("first", first), ("second", second)]);
+        fs::write(path.join("a.msh"), mesh).unwrap();
+        let said = law(path, &["--out", "c.csv", "--force"]);
+        assert_eq!(said.code, Some(0), "{}", said.err);
+        let table = fs::read_to_string(path.join("c.csv")).unwrap();
+        ["uniaxial", "equibiaxial", "planar"].map(|load| last(&table, "1", load).1)
+    };
+    let straight = stresses([1.0, 0.0, 0.0], [0.0, 1.0, 0.0]);
+    for (first, second) in [
+        ([1.0, 0.0, 0.0], [0.0, 0.0, -1.0]),
+        ([0.0, 1.0, 0.0], [1.0, 0.0, 0.0]),
+        ([1.0, 2.0, 2.0], [2.0, 1.0, -2.0]),
+    ] {
+        for (found, expected) in stresses(first, second).into_iter().zip(straight) {
+            assert!((found / expected - 1.0).abs() < 1e-9, "{found} {expected}");
+        }
+    }
+    // Across is another of its axes than the second.
+    let said = law(path, &["--along", "1,0,0", "--across", "0,0,1"]);
+    assert!(
+        said.out
+            .contains("the second axis of sheets and shears is [0, 0, 1]"),
+        "{}",
+        said.out
+    );
+}
+
 #[test]
 fn measured_points_are_compared_with_the_curve() {
     let folder = folder();
@@ -211,7 +262,18 @@ fn what_cannot_be_shown_is_refused_in_one_line_and_leaves_nothing() {
             "a.toml: no region is `liver`; there are 1 (`tissue`), 2 (`other`)",
         ),
         (&["a.toml", "--region", "3"], "a.toml: no region is `3`"),
-        (&["a.toml", "--along", "0,0,0"], "along: expected an axis"),
+        (
+            &["a.toml", "--along", "0,0,0"],
+            "the axes of the pull: expected an axis",
+        ),
+        (
+            &["a.toml", "--across", "-2,0,0"],
+            "the axes of the pull: expected a second axis [x, y, z] that is not along the first",
+        ),
+        (
+            &["a.toml", "--across", "1"],
+            "--across: expected three numbers",
+        ),
         (
             &["a.toml", "--along", "0,1"],
             "--along: expected three numbers",

@@ -5,6 +5,8 @@ mod converge;
 #[cfg(feature = "implicit")]
 mod factor_memory;
 mod law;
+#[cfg(feature = "implicit")]
+mod limits;
 #[cfg(all(unix, feature = "live"))]
 mod live;
 mod mesh;
