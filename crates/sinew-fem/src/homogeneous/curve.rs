@@ -58,8 +58,10 @@ const STEP: f64 = 0.005;
 const HALVINGS: u32 = 12;
 /// Halvings by which the limit of stability is found.
 const BISECTIONS: usize = 40;
-/// Golden sections by which a dip of the stiffness between states is followed.
-const SECTIONS: usize = 30;
+/// Golden sections by which a dip of the stiffness between states, or the top of the stress, is found.
+const SECTIONS: usize = 40;
+/// The golden section, the root of `x^2 + x = 1`.
+const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
 impl Solid {
     /// The curve of a load between two amounts. States are found one after the other, from rest on, at steps that do not
@@ -122,6 +124,7 @@ struct Found {
 impl Loaded<'_> {
     fn branch(&self, amounts: &[f64]) -> Branch {
         let mut states: Vec<LoadState> = Vec::with_capacity(amounts.len());
+        let mut strains = Vec::with_capacity(amounts.len());
         let mut end = End::default();
         let mut last = self.found(self.load.rest(), self.at_rest());
         let mut before: Option<Found> = None;
@@ -150,6 +153,7 @@ impl Loaded<'_> {
             }
             state.is_stable = end.limit.is_none();
             states.push(state);
+            strains.push(next.free.clone());
             before = Some(here);
             last = Some(next);
         }
@@ -161,7 +165,7 @@ impl Loaded<'_> {
                 state.is_stable = is_within;
             }
         }
-        end.falls_from = falls_from(&states);
+        end.falls_from = self.falls_from(&states, &strains);
         Branch { states, end }
     }
 
@@ -180,10 +184,9 @@ impl Loaded<'_> {
             return None;
         }
         let at = |amount: f64| self.found(amount, self.solve(amount, &b.free)?);
-        let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
         let (mut low, mut high) = (a.amount, c.amount);
         for _ in 0..SECTIONS {
-            let way = golden * (high - low);
+            let way = GOLDEN * (high - low);
             let (left, right) = (at(high - way)?, at(low + way)?);
             let unstable = [&left, &right].into_iter().find(|found| found.least <= 0.0);
             if let Some(found) = unstable {
@@ -264,30 +267,37 @@ impl Loaded<'_> {
 /// A fall of the stress over its size that is no rounding.
 const FALL: f64 = 1e-9;
 
-/// The amount beyond which the size of the nominal stress falls for the first time: the vertex of a parabola through
-/// three states.
-fn falls_from(states: &[LoadState]) -> Option<f64> {
-    let falls = |pair: &[LoadState]| {
-        let way = pair[1].amount - pair[0].amount;
-        let fall = (pair[0].nominal - pair[1].nominal) * way.signum();
-        fall > FALL * pair[0].nominal.abs()
-    };
-    let first = states.windows(2).position(falls)?;
-    let Some([a, b, c]) = first
-        .checked_sub(1)
-        .and_then(|from| states.get(from..from + 3))
-    else {
-        return Some(states[first].amount);
-    };
-    let (before, after) = (b.amount - a.amount, c.amount - b.amount);
-    let [rise, fall] = [
-        (b.nominal - a.nominal) / before,
-        (c.nominal - b.nominal) / after,
-    ];
-    // The slope is that of each stretch at its middle.
-    let share = rise / (rise - fall);
-    let middle = a.amount + 0.5 * before;
-    Some(middle + share * 0.5 * (before + after))
+impl Loaded<'_> {
+    /// The amount beyond which the size of the nominal stress falls for the first time.
+    fn falls_from(&self, states: &[LoadState], strains: &[DVector<f64>]) -> Option<f64> {
+        let falls = |pair: &[LoadState]| {
+            let way = pair[1].amount - pair[0].amount;
+            let fall = (pair[0].nominal - pair[1].nominal) * way.signum();
+            fall > FALL * pair[0].nominal.abs()
+        };
+        let first = states.windows(2).position(falls)?;
+        let (mut low, mut high) = match first.checked_sub(1) {
+            Some(before) => (states[before].amount, states[first + 1].amount),
+            None => (self.load.rest(), states[first + 1].amount),
+        };
+        let way = (high - low).signum();
+        let pull = |amount: f64| {
+            let free = self.solve(amount, &strains[first])?;
+            Some(way * self.state(amount, &free)?.nominal)
+        };
+        for _ in 0..SECTIONS {
+            let part = GOLDEN * (high - low);
+            let (left, right) = (high - part, low + part);
+            let (Some(at_left), Some(at_right)) = (pull(left), pull(right)) else {
+                return Some(states[first].amount);
+            };
+            match at_left > at_right {
+                true => high = right,
+                false => low = left,
+            }
+        }
+        Some(0.5 * (low + high))
+    }
 }
 
 impl Curve {

@@ -192,16 +192,20 @@ impl Fibres {
         self.split
     }
 
-    /// True if the energy is of a size to compute with in all lanes: an exponential grows beyond all numbers.
+    /// A number that is not below 0 where the energy is of a size to compute with: an exponential grows beyond all numbers.
+    #[inline(always)]
+    pub(crate) fn margin<N: Number>(&self, at: &FibrePoint<N>) -> N {
+        let most = N::of(largest_lawful_exponent::<N>());
+        match self.stiffening {
+            Stiffening::Quadratic { .. } => most,
+            Stiffening::Exponential { k2, .. } => most - N::of(k2) * at.stretch * at.stretch,
+        }
+    }
+
+    /// True if no lane is beyond the limit.
     #[inline(always)]
     pub(crate) fn is_within_limit<N: Number>(&self, at: &FibrePoint<N>) -> bool {
-        match self.stiffening {
-            Stiffening::Quadratic { .. } => true,
-            Stiffening::Exponential { k2, .. } => {
-                let exponent = N::of(k2) * at.stretch * at.stretch;
-                N::all_le(exponent, N::of(largest_lawful_exponent::<N>()))
-            }
-        }
+        N::all_le(N::of(0.0), self.margin(at))
     }
 
     /// The energy density (J/m^3).
@@ -303,12 +307,6 @@ impl Fibres {
 }
 
 impl<N: Number> FibrePoint<N> {
-    /// X, and 0 in compression.
-    #[inline(always)]
-    pub(crate) fn stretch(&self) -> N {
-        self.stretch
-    }
-
     /// The same with the stiffness and the viscosity of fibres in tension where they are idle: no state near this one is stiffer by much.
     #[must_use]
     pub(crate) fn as_if_pulled(self) -> Self {

@@ -147,7 +147,7 @@ impl HyperelasticLaw for Fung {
         let least = moduli.into_iter().fold(f64::INFINITY, f64::min);
         let largest = moduli.into_iter().fold(0.0, f64::max);
         if least <= 1e-12 * largest {
-            let expected = "nine numbers whose form Q is above 0 for every strain that keeps the volume: enlarge b11, \
+            let expected = "a form above 0 for every strain that keeps the volume: enlarge b11, \
                             b22, b33, or the g that is not above 0";
             return Err(B.refused(least / half, expected));
         }

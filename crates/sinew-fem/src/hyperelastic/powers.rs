@@ -8,11 +8,12 @@ fn largest_exponent<N: Number>() -> f64 {
     if is_double::<N>() { 700.0 } else { 86.0 }
 }
 
-/// The largest exponent of laws that grow exponentially: a quarter of [`largest_exponent`], so that squares of their
-/// stresses and tangents are numbers too.
+/// The largest exponent of laws that grow exponentially: with it squares of stresses and tangents are numbers too, in
+/// single precision, which has forces alone, these themselves.
 #[inline(always)]
 pub(super) fn largest_lawful_exponent<N: Number>() -> f64 {
-    0.25 * largest_exponent::<N>()
+    let share = if is_double::<N>() { 0.25 } else { 0.5 };
+    share * largest_exponent::<N>()
 }
 
 #[inline(always)]

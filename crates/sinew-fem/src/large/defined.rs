@@ -65,9 +65,7 @@ pub(super) fn require_limit_of_fibres<N: Number>(
     if fibres.is_within_limit(at) {
         return Ok(());
     }
-    let stretches = lanes(at.stretch());
-    let by_length = |a: &usize, b: &usize| stretches[*a].total_cmp(&stretches[*b]);
-    let lane = (0..N::LANES).max_by(by_length).unwrap_or(0);
+    let lane = first_outside(0.0..=f64::INFINITY, &lanes(fibres.margin(at)));
     Err(limit_of_fibres_reached(tag(lane)))
 }
 

@@ -372,7 +372,7 @@ fn constants_of_yeoh_with_another_law() {
 
 #[test]
 fn a_law_of_large_deformation_that_widens_when_pulled() {
-    insta::assert_snapshot!(refused_law("neo-hookean", "poissons_ratio = -0.1\n"), @r#"scene.toml:4: [[region]] 1: poissons_ratio = -0.1: expected a number above -1 and below 0.5, from 0 on for laws of large deformation"#);
+    insta::assert_snapshot!(refused_law("neo-hookean", "poissons_ratio = -0.1\n"), @r#"scene.toml:8: [[region]] 1: poissons_ratio = -0.1: expected a number above -1 and below 0.5, from 0 on for laws of large deformation"#);
 }
 
 /// A stiffness beyond what numbers hold limits the step, if in no number.
