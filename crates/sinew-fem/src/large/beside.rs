@@ -55,16 +55,18 @@ impl<T: Vectors> WithReal<T> for StressBeside<'_, T> {
             };
             let deformation = Deformation::of(gradient);
             let (mut stress, mut density) = (Tensor::zero(), N::of(0.0));
+            let mut margin = N::of(f64::from(f32::MAX));
             let families = &self.region.fibres;
             require_fibres(families, &deformation, |lane| rest.tag(first + lane))?;
             for (RegionFibres { fibres, .. }, directions) in families.iter().zip(self.directions) {
                 let at = fibres.at(&deformation, directions.of::<N>(first));
-                require_limit_of_fibres(fibres, &at, |lane| rest.tag(first + lane))?;
+                margin = margin.min(fibres.margin(&at));
                 stress = stress.plus(factor, fibres.stress(&at));
                 if self.with_energy {
                     density = factor.mul_add(fibres.energy(&at), density);
                 }
             }
+            require_limit_of_fibres(margin, |lane| rest.tag(first + lane))?;
             require_memory(self.relaxing, &deformation, |lane| rest.tag(first + lane))?;
             if let Some(carried) = self.relaxing.carried::<N>(Points::Tets, first) {
                 stress = stress + first_piola(&deformation, carried);

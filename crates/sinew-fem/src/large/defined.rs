@@ -12,7 +12,6 @@ use super::error::{
 use super::fibres::RegionFibres;
 use super::kept::lanes;
 use super::memory::Relaxing;
-use crate::hyperelastic::fibres::{FibrePoint, Fibres};
 use crate::hyperelastic::{Deformation, LawAt, SMALLEST_MARGIN, SMALLEST_VOLUME_RATIO};
 
 /// Refuses tetrahedra or means side by side for which a law is not defined, or which are not finite; `tag` names that of a lane.
@@ -55,17 +54,16 @@ pub(super) fn require_fibres<N: Number>(
     Err(fibres_refused(tag(lane), ratios[lane]))
 }
 
-/// Refuses tetrahedra side by side in which fibres are stretched beyond their limit.
+/// Refuses tetrahedra side by side of which fibres are beyond their limit, by the least margin of all families.
 #[inline(always)]
 pub(super) fn require_limit_of_fibres<N: Number>(
-    fibres: &Fibres,
-    at: &FibrePoint<N>,
+    margin: N,
     tag: impl Fn(usize) -> u64,
 ) -> Result<(), EvaluationError> {
-    if fibres.is_within_limit(at) {
+    if N::all_le(N::of(0.0), margin) {
         return Ok(());
     }
-    let lane = first_outside(0.0..=f64::INFINITY, &lanes(fibres.margin(at)));
+    let lane = first_outside(0.0..=f64::INFINITY, &lanes(margin));
     Err(limit_of_fibres_reached(tag(lane)))
 }
 

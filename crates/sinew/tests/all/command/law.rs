@@ -46,9 +46,9 @@ fn curves_are_told_in_words() {
         said.out,
         "region 1, `tissue`: stvk, E = 2000 Pa, nu = 0 at small strain\n  \
          at rest: E = 2000 Pa, nu = 0, mu = 1000 Pa, kappa = 666.7 Pa\n  \
-         uniaxial: stable from 0.7071 to 1.5; not stable below 0.7071; the nominal stress falls below 0.5773\n  \
-         equibiaxial: stable from 0.7071 to 1.5; not stable below 0.7071; the nominal stress falls below 0.5773\n  \
-         planar: stable from 0.7071 to 1.5; not stable below 0.7071; the nominal stress falls below 0.5773\n  \
+         uniaxial: stable from 0.7071 to 1.5; not stable below 0.7071; the nominal stress falls below 0.5774\n  \
+         equibiaxial: stable from 0.7071 to 1.5; not stable below 0.7071; the nominal stress falls below 0.5774\n  \
+         planar: stable from 0.7071 to 1.5; not stable below 0.7071; the nominal stress falls below 0.5774\n  \
          simple shear: stable from -0.5 to 0.5; the whole curve\n"
     );
     let said = law(folder.path(), &["--region", "2", "--along", "0,0,2"]);
