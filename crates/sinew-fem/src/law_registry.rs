@@ -24,7 +24,7 @@ use crate::hyperelastic::stvk::Stvk;
 use crate::hyperelastic::tensor::Tensor;
 use crate::hyperelastic::veronda_westmann::VerondaWestmann;
 use crate::hyperelastic::yeoh::Yeoh;
-use crate::large::{Compiled, Own};
+use crate::large::{Asked, Compiled, Own};
 
 /// A law by its values, whose type is not known: loops are compiled for it nevertheless, and chosen once for a region.
 #[derive(Clone, Debug)]
@@ -348,7 +348,7 @@ impl Hyperelastic {
     /// True if it is defined at a gradient of the displacement.
     #[must_use]
     pub fn is_defined_at(&self, h: Tensor<f64>) -> bool {
-        self.0.at(h, false, |at| at.admits())
+        self.asked().at(h, false, |at| at.admits())
     }
 
     /// True if its isochoric part can relax alone.
@@ -378,13 +378,13 @@ impl Hyperelastic {
     /// Energy density (J/m^3) of a tetrahedron without averages, by the gradient of the displacement.
     #[must_use]
     pub fn energy(&self, h: Tensor<f64>) -> f64 {
-        self.0.at(h, f64::NAN, |at| at.whole_energy())
+        self.asked().at(h, f64::NAN, |at| at.whole_energy())
     }
 
     /// First Piola-Kirchhoff stress (Pa) of a tetrahedron without averages, by the gradient of the displacement.
     #[must_use]
     pub fn stress(&self, h: Tensor<f64>) -> Tensor<f64> {
-        self.0.at(h, Tensor::zero(), |at| {
+        self.asked().at(h, Tensor::zero(), |at| {
             at.stress()
                 .plus(at.own_bulk().stress, at.dilation_gradient())
         })
@@ -393,7 +393,7 @@ impl Hyperelastic {
     /// Change of [`Self::stress`] by a change of F.
     #[must_use]
     pub fn tangent(&self, h: Tensor<f64>, change: Tensor<f64>) -> Tensor<f64> {
-        self.0.at(h, Tensor::zero(), |at| {
+        self.asked().at(h, Tensor::zero(), |at| {
             at.tangent_with(at.own_bulk(), change)
         })
     }
@@ -402,7 +402,7 @@ impl Hyperelastic {
     /// ([`HyperelasticLaw::node_block`]).
     #[must_use]
     pub fn node_block(&self, h: Tensor<f64>, gradient: [f64; 3]) -> Tensor<f64> {
-        self.0.at(h, Tensor::zero(), |at| {
+        self.asked().at(h, Tensor::zero(), |at| {
             at.node_block(at.own_bulk(), gradient)
         })
     }
@@ -411,6 +411,10 @@ impl Hyperelastic {
     #[must_use]
     pub fn samples(&self) -> Vec<[Tensor<f64>; 2]> {
         self.0.samples()
+    }
+
+    fn asked(&self) -> &dyn Asked {
+        &*self.0
     }
 
     /// Its loops.

@@ -3,21 +3,20 @@
 use std::fmt::Debug;
 use std::sync::Arc;
 
-use sinew_core::{Deformed, EvaluationError, TangentKind};
+use sinew_core::{Deformed, EvaluationError};
 use sinew_sparse::simd::Vectors;
 
-use super::axes::Place;
-use super::evaluator::{Last, Untyped};
+use super::evaluator::{Asked, Last, Untyped};
 use super::force::Forces;
 use super::node_blocks::{self, Blocks};
 use super::product::{self, Products};
 use super::wanted::{OnLaw, Wanted};
 use crate::hyperelastic::{
-    Boxed, HyperelasticLaw, LawAt, NodeBlock, PointLaw, Tensor, sample_deformations,
+    Boxed, HyperelasticLaw, NodeBlock, PointLaw, Tensor, sample_deformations,
 };
 
 /// A law without its type: each method is one call for a region, with loops inside that are compiled for the type.
-pub(crate) trait Compiled: Debug + Send + Sync {
+pub(crate) trait Compiled: Asked + Debug + Send + Sync {
     /// Name in scenes and messages.
     fn id(&self) -> &'static str;
 
@@ -36,9 +35,6 @@ pub(crate) trait Compiled: Debug + Send + Sync {
     /// The tangent that own blocks of nodes belong to.
     fn node_block_kind(&self) -> NodeBlock;
 
-    /// Calls `work` with the law, or with its viscosity, behind a pointer.
-    fn evaluated(&self, wanted: Wanted, work: &mut dyn FnMut(&mut (dyn Untyped + '_)));
-
     /// Gradients of displacements, each with a change, where the law is defined.
     fn samples(&self) -> Vec<[Tensor<f64>; 2]>;
 
@@ -52,33 +48,6 @@ pub(crate) trait Compiled: Debug + Send + Sync {
 
     #[cfg(test)]
     fn check_conformance(&self);
-}
-
-impl dyn Compiled + '_ {
-    /// The result of work with the law, or with its viscosity: one call for a region, with loops inside that are compiled
-    /// once for all laws.
-    pub(crate) fn with<R>(
-        &self,
-        wanted: Wanted,
-        without: R,
-        mut work: impl FnMut(&mut (dyn Untyped + '_)) -> R,
-    ) -> R {
-        let mut result = without;
-        self.evaluated(wanted, &mut |law| result = work(law));
-        result
-    }
-
-    /// The result of work with the law at a gradient of the displacement, in the axes of coordinates.
-    pub(crate) fn at<R>(
-        &self,
-        h: Tensor<f64>,
-        without: R,
-        mut work: impl FnMut(&dyn LawAt<f64>) -> R,
-    ) -> R {
-        self.with(Wanted::Kind(TangentKind::Exact), without, |law| {
-            work(law.at_point(h, None, Place::Means))
-        })
-    }
 }
 
 /// Work with a law behind a pointer.
@@ -124,6 +93,12 @@ impl WithType for Arc<dyn PointLaw> {
     }
 }
 
+impl<T: WithType> Asked for T {
+    fn asked(&self, wanted: Wanted, work: &mut dyn FnMut(&mut (dyn Untyped + '_))) {
+        wanted.on(self.law(), Work(work));
+    }
+}
+
 impl<T: WithType> Compiled for T {
     fn id(&self) -> &'static str {
         self.law().id()
@@ -153,10 +128,6 @@ impl<T: WithType> Compiled for T {
         <T::Law<'_> as HyperelasticLaw>::NODE_BLOCK
     }
 
-    fn evaluated(&self, wanted: Wanted, work: &mut dyn FnMut(&mut (dyn Untyped + '_))) {
-        wanted.on(self.law(), Work(work));
-    }
-
     fn samples(&self) -> Vec<[Tensor<f64>; 2]> {
         sample_deformations(self.law()).collect()
     }
@@ -170,17 +141,22 @@ impl<T: WithType> Compiled for T {
     }
 
     fn products(&self, products: &mut Products<'_>) -> Result<(), EvaluationError> {
+        if products.take_numbers(self) {
+            return products.with_numbers(self);
+        }
         let untyped = self;
-        products
-            .wanted
-            .on(self.law(), product::OfLaw { products, untyped })
+        let wanted = products.wanted;
+        wanted.on(self.law(), product::OfLaw { products, untyped })
     }
 
     fn blocks(&self, blocks: &mut Blocks<'_>) -> Result<(), EvaluationError> {
-        let untyped = self;
-        blocks
-            .wanted
-            .on(self.law(), node_blocks::OfLaw { blocks, untyped })
+        if blocks.take_numbers() {
+            blocks.with_numbers(self)?;
+        } else {
+            let (wanted, blocks, untyped) = (blocks.wanted, &mut *blocks, self);
+            wanted.on(self.law(), node_blocks::OfLaw { blocks, untyped })?;
+        }
+        blocks.of_means(self)
     }
 
     #[cfg(test)]

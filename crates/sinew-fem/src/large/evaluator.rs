@@ -4,7 +4,10 @@ use std::ops::Deref;
 
 use sinew_sparse::simd::Number;
 
+use sinew_core::TangentKind;
+
 use super::axes::{Place, RegionAxes, at_place};
+use super::wanted::Wanted;
 use crate::hyperelastic::{HyperelasticLaw, LawAt, OwnAt, Tensor};
 
 /// A law that is asked at one deformation after the other.
@@ -123,5 +126,38 @@ impl Evaluator<f64> for dyn Untyped + '_ {
         place: Place,
     ) -> &(dyn LawAt<f64> + '_) {
         self.at_point(h, axes, place)
+    }
+}
+
+/// A law that loops ask behind a pointer.
+pub(crate) trait Asked {
+    /// Calls `work` with the law, or with its viscosity.
+    fn asked(&self, wanted: Wanted, work: &mut dyn FnMut(&mut (dyn Untyped + '_)));
+}
+
+impl dyn Asked + '_ {
+    /// The result of work with the law, or with its viscosity: one call for a region, with loops inside that are compiled
+    /// once for all laws.
+    pub(crate) fn with<R>(
+        &self,
+        wanted: Wanted,
+        without: R,
+        mut work: impl FnMut(&mut (dyn Untyped + '_)) -> R,
+    ) -> R {
+        let mut result = without;
+        self.asked(wanted, &mut |law| result = work(law));
+        result
+    }
+
+    /// The result of work with the law at a gradient of the displacement, in the axes of coordinates.
+    pub(crate) fn at<R>(
+        &self,
+        h: Tensor<f64>,
+        without: R,
+        mut work: impl FnMut(&dyn LawAt<f64>) -> R,
+    ) -> R {
+        self.with(Wanted::Kind(TangentKind::Exact), without, |law| {
+            work(law.at_point(h, None, Place::Means))
+        })
     }
 }

@@ -4,8 +4,7 @@ use sinew_core::{AssemblyError, BlockMatrix, ElementStiffness, EvaluationError};
 
 use super::axes::Place;
 use super::beside::TangentBeside;
-use super::compiled::Compiled;
-use super::evaluator::Untyped;
+use super::evaluator::{Asked, Untyped};
 use super::means::{at_edges, means, require, take_dilation};
 use super::memory::Relaxing;
 use super::product::{EdgeTangent, OwnTangent, left_of_smoothed, left_of_tets};
@@ -43,7 +42,7 @@ pub(crate) struct Sum<'o> {
 
 impl Tangents<'_, '_> {
     /// Adds it.
-    pub(super) fn run(&mut self, law: &dyn Compiled) -> Result<(), EvaluationError> {
+    pub(super) fn run(&mut self, law: &dyn Asked) -> Result<(), EvaluationError> {
         law.with(self.wanted, Ok(()), |law| self.add(law))
     }
 

@@ -30,6 +30,7 @@ mod wanted;
 mod when;
 
 pub(crate) use compiled::{Compiled, Own, Precision};
+pub(crate) use evaluator::Asked;
 pub(crate) use memory::Past;
 pub(crate) use region::{HyperelasticRegion, RegionLaw};
 pub(crate) use scratch::{Scratch, fill};
@@ -223,7 +224,7 @@ impl LargeDeformation {
                 wanted,
                 set: self.set,
             };
-            products.run(law)?;
+            law.products(&mut products)?;
         }
         self.all
             .gather
@@ -276,7 +277,7 @@ impl LargeDeformation {
                 set: self.set,
                 add: &mut add,
             };
-            blocks.run(law)
+            law.blocks(&mut blocks)
         })
     }
 

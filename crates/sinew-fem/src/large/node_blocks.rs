@@ -6,8 +6,7 @@ use sinew_sparse::simd::{InstructionSet, Number, Vectors, WithReal};
 use super::axes::Place;
 use super::beside::{block_beside, carried_block};
 use super::chunks::LANES;
-use super::compiled::Compiled;
-use super::evaluator::{Evaluator, Typed, Untyped};
+use super::evaluator::{Asked, Evaluator, Typed, Untyped};
 use super::kept::{load, store};
 use super::means::{at_edges, means, require, take_dilation};
 use super::memory::{Points, Relaxing};
@@ -29,22 +28,22 @@ pub(crate) struct Blocks<'a> {
 }
 
 impl Blocks<'_> {
-    /// Computes them with vectors, unless the stress beside the law's contributes.
-    pub(super) fn run(&mut self, law: &dyn Compiled) -> Result<(), EvaluationError> {
-        if self.wanted.has_beside(self.region) {
-            self.with_numbers(law)?;
-        } else {
-            law.blocks(self)?;
-        }
-        if self.region.is_smoothed() {
-            law.with(self.wanted, Ok(()), |law| self.at_edges_and_patches(law))?;
-        }
-        Ok(())
+    /// True if plain numbers compute them: vectors do not take the stress beside the law's.
+    pub(super) fn take_numbers(&self) -> bool {
+        self.wanted.has_beside(self.region)
     }
 
     /// Computes those of tetrahedra with plain numbers.
-    fn with_numbers(&mut self, law: &dyn Compiled) -> Result<(), EvaluationError> {
+    pub(super) fn with_numbers(&mut self, law: &dyn Asked) -> Result<(), EvaluationError> {
         law.with(self.wanted, Ok(()), |law| self.tets::<true, f64, _>(law))
+    }
+
+    /// Computes those of means, where they are taken.
+    pub(super) fn of_means(&mut self, law: &dyn Asked) -> Result<(), EvaluationError> {
+        if !self.region.is_smoothed() {
+            return Ok(());
+        }
+        law.with(self.wanted, Ok(()), |law| self.at_edges_and_patches(law))
     }
 
     /// Computes those of tetrahedra. `ALL` is true if the stress beside the law's may contribute, which is compiled for
@@ -145,7 +144,7 @@ impl Blocks<'_> {
 /// [`Blocks`] with the type of the law.
 pub(super) struct OfLaw<'b, 'a> {
     pub(super) blocks: &'b mut Blocks<'a>,
-    pub(super) untyped: &'b dyn Compiled,
+    pub(super) untyped: &'b dyn Asked,
 }
 
 impl OnLaw for OfLaw<'_, '_> {

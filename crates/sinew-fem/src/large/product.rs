@@ -6,8 +6,7 @@ use sinew_sparse::simd::{InstructionSet, Number, Vectors, WithReal};
 use super::axes::Place;
 use super::beside::TangentBeside;
 use super::chunks::LANES;
-use super::compiled::Compiled;
-use super::evaluator::{Evaluator, Typed};
+use super::evaluator::{Asked, Evaluator, Typed};
 use super::kept::{load, store};
 use super::means::{add, at_edges, mean_at_edges, means, require};
 use super::memory::{Points, Relaxing};
@@ -26,24 +25,15 @@ pub(crate) struct Products<'a> {
 }
 
 impl Products<'_> {
-    /// Computes it with vectors, unless projections or the stress beside the law's contribute.
-    pub(super) fn run(&mut self, law: &dyn Compiled) -> Result<(), EvaluationError> {
+    /// True if plain numbers compute it: vectors take neither projections nor the stress beside the law's.
+    pub(super) fn take_numbers(&self, law: &dyn Asked) -> bool {
         let kind = self.wanted.kind();
-        let is_projected = || {
-            law.with(self.wanted, true, |law| {
-                projects(law.at_point(Tensor::zero(), None, Place::Means), kind)
-            })
-        };
-        let is_exact = kind == TangentKind::Exact;
-        if self.wanted.has_beside(self.region) || !is_exact && is_projected() {
-            self.with_numbers(law)
-        } else {
-            law.products(self)
-        }
+        self.wanted.has_beside(self.region)
+            || kind != TangentKind::Exact && law.at(Tensor::zero(), true, |at| projects(at, kind))
     }
 
     /// Computes it with plain numbers.
-    fn with_numbers(&mut self, law: &dyn Compiled) -> Result<(), EvaluationError> {
+    pub(super) fn with_numbers(&mut self, law: &dyn Asked) -> Result<(), EvaluationError> {
         law.with(self.wanted, Ok(()), |law| self.tets::<true, f64, _>(law))
     }
 
@@ -144,7 +134,7 @@ impl Products<'_> {
 /// [`Products`] with the type of the law.
 pub(super) struct OfLaw<'p, 'a> {
     pub(super) products: &'p mut Products<'a>,
-    pub(super) untyped: &'p dyn Compiled,
+    pub(super) untyped: &'p dyn Asked,
 }
 
 impl OnLaw for OfLaw<'_, '_> {

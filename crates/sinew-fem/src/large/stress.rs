@@ -3,8 +3,7 @@
 use sinew_core::TangentKind;
 
 use super::axes::Place;
-use super::compiled::Compiled;
-use super::evaluator::Untyped;
+use super::evaluator::{Asked, Untyped};
 use super::memory::{Points, Relaxing};
 use super::product::{left_of_smoothed, left_of_tets};
 use super::region::HyperelasticRegion;
@@ -23,7 +22,7 @@ pub(crate) struct Cauchy<'a> {
 
 impl Cauchy<'_> {
     /// Computes it for the law of the region.
-    pub(super) fn run(&self, law: &dyn Compiled) -> [f64; 6] {
+    pub(super) fn run(&self, law: &dyn Asked) -> [f64; 6] {
         law.with(Wanted::Kind(TangentKind::Exact), [f64::NAN; 6], |law| {
             self.of(law)
         })
