@@ -115,20 +115,15 @@ pub fn curves_of_laws(
         .into_iter()
         .map(|(index, region)| {
             let by_data = region.tissue.takes_data();
-            let along = match (asked.along, by_data) {
-                (Some(along), _) => along,
-                (None, true) => between_directions(&at_place[index]),
-                (None, false) => [1.0, 0.0, 0.0],
-            };
             let stated = &at_place[index];
-            let of_material = match (&stated.tissue.axes, by_data && asked.along.is_none()) {
-                (Some([_, Direction::Everywhere(second)]), true) => Some(*second),
-                _ => None,
+            let (along, second) = match (asked.along, by_data) {
+                (Some(along), _) => (along, None),
+                (None, true) => directions(stated),
+                (None, false) => ([1.0, 0.0, 0.0], None),
             };
-            let axes = match (asked.across, of_material) {
-                (Some(across), _) => Axes::spanned(along, across),
-                (None, Some(second)) => Axes::spanned(along, second),
-                (None, None) => Axes::along(along),
+            let axes = match asked.across.or(second) {
+                Some(second) => Axes::spanned(along, second),
+                None => Axes::along(along),
             }?;
             let (region, notes) = at_a_point((region, stated), moduli[index], &axes);
             let solid = scene.solid(index, &region)?;
@@ -207,9 +202,9 @@ fn at_a_point(
     (region, notes)
 }
 
-/// The direction between families of fibres, each taken in the sense that is nearest to the first; or the first axis of the
+/// The direction between families of fibres, each taken in the sense that is nearest to the first; or both axes of the
 /// material.
-fn between_directions(region: &Region) -> [f64; 3] {
+fn directions(region: &Region) -> ([f64; 3], Option<[f64; 3]>) {
     let families = region.tissue.fibres.iter().map(|family| &family.direction);
     let mut sum = [0.0; 3];
     for direction in families {
@@ -220,9 +215,11 @@ fn between_directions(region: &Region) -> [f64; 3] {
         }
     }
     match (&region.tissue.axes, sum == [0.0; 3]) {
-        (Some([Direction::Everywhere(first), _]), true) => *first,
-        (_, true) => [1.0, 0.0, 0.0],
-        (_, false) => sum,
+        (Some([Direction::Everywhere(first), Direction::Everywhere(second)]), true) => {
+            (*first, Some(*second))
+        }
+        (_, true) => ([1.0, 0.0, 0.0], None),
+        (_, false) => (sum, None),
     }
 }
 
