@@ -323,13 +323,10 @@ fn parameters(
         }
     }
     match law.make(&parameters) {
-        // Those that all models share are checked when the body is built, where the data of a mesh are known.
+        // Young's modulus is checked when the body is built, where the data of a mesh are known.
         Err(ParameterError::Value {
             quantity, expected, ..
-        }) if !law.parameters().iter().any(|own| {
-            own.name == quantity && model::is_shared(own) && quantity != POISSONS_RATIO.name
-        }) =>
-        {
+        }) if quantity != LawParameter::YOUNGS_MODULUS.name => {
             Err(table.value_misfit(quantity, expected))
         }
         _ => Ok(parameters),
