@@ -54,6 +54,8 @@ pub struct End {
 
 /// Way from one state to the next: of the logarithm of a stretch, and nearly that of a shear.
 const STEP: f64 = 0.005;
+/// The most steps to one side, at which a stretch is 5e-5 or 2e4: no step of a logarithm leads to a stretch of 0 or less.
+const STEPS: usize = 2000;
 /// Halvings of the way to the next state before the curve ends.
 const HALVINGS: u32 = 12;
 /// Halvings by which the limit of stability is found.
@@ -97,7 +99,7 @@ fn amounts(load: Load, to: f64, at: &[f64]) -> Vec<f64> {
         false => (side * STEP * number as f64).exp(),
     };
     let is_within = |amount: &f64| (amount - rest) * side > 0.0 && (to - amount) * side > 0.0;
-    let mut amounts: Vec<f64> = (1..).map(step).take_while(is_within).collect();
+    let mut amounts: Vec<f64> = (1..=STEPS).map(step).take_while(is_within).collect();
     amounts.extend(at.iter().copied().filter(is_within));
     if to != rest {
         amounts.push(to);
