@@ -9,7 +9,7 @@ use crate::input::Inputs;
 use crate::ramp::{Ramp, RampError};
 
 const KIND: Kind = Kind {
-    name: b"sinew input v2\r\n",
+    name: b"sinew input v3\r\n",
     words: "record of inputs",
 };
 
@@ -35,8 +35,9 @@ pub enum InputBytesError {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct SavedInputs {
     channels: Vec<Ramp>,
-    /// Sets of forces (N) on degrees of freedom, with the time (s) from which and until which they act.
-    forces: Vec<(f64, f64, Entries)>,
+    /// Sets of forces (N) on degrees of freedom, with the time (s) from which and until which they act; `None` for the
+    /// last set, which acts on.
+    forces: Vec<(f64, Option<f64>, Entries)>,
 }
 
 /// Degrees of freedom with a force (N) on each.
@@ -48,8 +49,8 @@ impl SavedInputs {
     pub fn of(inputs: &Inputs) -> Self {
         let forces = inputs.forces().map(|load| {
             let (from, to) = match load.ramp {
-                Ramp::Pulse { from, to } => (from, to),
-                _ => (0.0, f64::INFINITY),
+                Ramp::Pulse { from, to } => (from, Some(to).filter(|to| to.is_finite())),
+                _ => (0.0, None),
             };
             (from, to, load.entries.clone())
         });
@@ -92,15 +93,16 @@ impl SavedInputs {
         let mut ended = f64::NEG_INFINITY;
         for (from, to, entries) in &self.forces {
             // Else one set would replace another.
-            let follows = *from >= ended && to > from && !entries.is_empty();
+            let end = to.unwrap_or(f64::INFINITY);
+            let follows = *from >= ended && end > *from && !entries.is_empty();
             if !follows {
                 return Err(KIND.impossible("forces").into());
             }
             inputs.set_forces(*from, entries)?;
-            if *to != f64::INFINITY {
+            if let Some(to) = to {
                 inputs.set_forces(*to, &[])?;
             }
-            ended = *to;
+            ended = end;
         }
         Ok(inputs)
     }
@@ -227,7 +229,8 @@ mod tests {
     #[test]
     fn what_could_not_be_given_is_not_read() {
         let read = |sets: &[[f64; 2]], force| {
-            let forces = sets.iter().map(|[from, to]| (*from, *to, vec![(0, force)]));
+            let end = |to: f64| Some(to).filter(|to| *to != f64::INFINITY);
+            let forces = sets.iter().map(|[from, to]| (*from, end(*to), vec![(0, force)]));
             let saved = SavedInputs {
                 channels: Vec::new(),
                 forces: forces.collect(),

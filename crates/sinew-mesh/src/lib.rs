@@ -66,7 +66,7 @@ pub use cell_type::CellType;
 pub use check::{CheckLimits, EdgeLengths, Extreme, Finding, MeshCheck, Part, SharedFace};
 pub use file::{
     MeshFileError, MeshFormat, NotAMesh, converted_extensions, read_mesh, read_mesh_file,
-    read_msh_file,
+    read_mesh_of, read_msh_file,
 };
 pub use joints::{JointFinding, Joints, Places};
 pub use label_groups::{LabelError, LabelGroup};

@@ -92,3 +92,4 @@ pub use request::Request;
 pub use run_end::{Ended, RunEnd};
 pub use run_folder::{MOST_NUMBERS, RunFolder};
 pub use stepping::Stepping;
+pub use tables::column_name;

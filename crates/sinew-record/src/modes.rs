@@ -3,12 +3,9 @@
 mod lobpcg;
 
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 use sinew_core::vectors::norm;
-use sinew_core::{
-    BlockMatrix, Damping, LinearOperators, LinearSystem, LoadTime, TangentKind, Trial,
-};
+use sinew_core::LinearOperators;
 use sinew_fem::Model;
 use sinew_mesh::vtu::{Array, Grid, VtuEncoding};
 use sinew_scene::Simulation;
@@ -60,14 +57,7 @@ pub fn natural_modes(
     simulation: &Simulation,
     count: usize,
 ) -> Result<Vec<NaturalMode>, ModesError> {
-    let at_rest;
-    let operators = match simulation.system().as_linear() {
-        Some(linear) => linear.operators(),
-        None => {
-            at_rest = operators_at_rest(simulation)?;
-            &at_rest
-        }
-    };
+    let operators = &simulation.operators_at_rest()?;
     let force = full_load(operators);
     let mut modes = Vec::new();
     for (eigenvalue, shape) in lowest(operators, count)? {
@@ -93,32 +83,6 @@ pub fn natural_modes(
         mode.of_loads /= whole;
     }
     Ok(modes)
-}
-
-/// The tangent at rest as the matrices of a linear body, with the loads on the body at rest.
-fn operators_at_rest(simulation: &Simulation) -> Result<LinearOperators, ModesError> {
-    let system = simulation.system();
-    let (Some(body), Some(elastic)) = (simulation.model().body(), system.as_elastic()) else {
-        return Err(ModesError::NoMatrices);
-    };
-    let zeros = vec![0.0; system.dofs()];
-    let trial = Trial {
-        load: LoadTime::at(0.0),
-        dt: 0.0,
-        u: &zeros,
-        v: &zeros,
-        internal: &vec![0.0; system.internal_variables()],
-    };
-    let mut stiffness = BlockMatrix::zeros(Arc::clone(elastic.pattern()), system.layers());
-    elastic.tangent(&trial, TangentKind::Exact, &mut stiffness)?;
-    let loads = LinearSystem::operators(&body.model).loads().to_vec();
-    let mass = system.mass().to_vec();
-    Ok(LinearOperators::new(
-        mass,
-        stiffness,
-        Damping::default(),
-        loads,
-    )?)
 }
 
 /// All loads (N) at their full value.

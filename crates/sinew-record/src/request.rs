@@ -59,7 +59,13 @@ impl Record {
         let scene_path = absolute(scene.source().path());
         // The scene itself is kept as a text.
         let others = scene.input_files().into_iter().skip(1);
-        let inputs = others.map(|path| Ok(InputFile::of(absolute(&path))?));
+        let inputs = others.map(|path| {
+            let file = InputFile::of(scene.source(), path)?;
+            Ok(InputFile {
+                path: absolute(&file.path),
+                ..file
+            })
+        });
         Ok(Self {
             version: VERSION,
             sinew: env!("CARGO_PKG_VERSION").to_owned(),
@@ -93,16 +99,16 @@ impl Record {
             let folder = folder.path().to_owned();
             return Err(RecordRunError::Replay { folder });
         }
+        let text = folder.read(SCENE)?.ok_or_else(|| missing(SCENE))?;
+        let text = String::from_utf8(text).map_err(|error| unusable(folder, SCENE, &error))?;
+        let source = SceneSource::new(&record.scene, text);
         for input in &record.inputs {
-            if InputFile::of(input.path.clone())? != *input {
+            if InputFile::of(&source, input.path.clone())? != *input {
                 let path = input.path.clone();
                 return Err(RecordRunError::OtherInput { path });
             }
         }
-        let text = folder.read(SCENE)?.ok_or_else(|| missing(SCENE))?;
-        let text = String::from_utf8(text).map_err(|error| unusable(folder, SCENE, &error))?;
-        let scene = Scene::parse(SceneSource::new(&record.scene, text))?;
-        Ok((record, scene))
+        Ok((record, Scene::parse(source)?))
     }
 }
 

@@ -114,7 +114,7 @@ pub(crate) fn table_of(part: &HeldPlace) -> String {
 }
 
 /// The beginning of the names of a part's columns, such as `fixed_1_bottom`: a name without commas and quotes.
-pub(crate) fn column_name(part: &HeldPlace) -> String {
+pub fn column_name(part: &HeldPlace) -> String {
     let (table, index) = match part.by {
         ReactionOf::Fixed(index) => ("fixed", index),
         ReactionOf::Move(index) => ("move", index),

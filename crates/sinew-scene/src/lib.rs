@@ -72,7 +72,7 @@ pub use scene::{
 };
 pub use schedule::Schedule;
 pub use simulation::{
-    BodyModel, CutFrom, CutTotals, Cutter, CuttingError, DrivenLoadError, Footprint, HeldParts,
+    AtRestError, BodyModel, CutFrom, CutTotals, Cutter, CuttingError, DrivenLoadError, Footprint, HeldParts,
     HeldPlace, LoadRemedy, MeshedScene, NearestNode, Probe, ProbeNode, Reaction, ReactionError,
     ReactionOf, RefinementError, RefusedLoad, RoughStrokes, SavedCuts, SceneBody, SceneModel,
     SelectedPart, Simulation, UnresolvedLoad, Warning, WarningKind,

@@ -55,7 +55,7 @@ impl SceneSource {
             let within = Some(&DOCUMENT);
             set((document.as_table_mut(), within), path, &parts, value)?;
         }
-        Ok(Self::new(self.path(), document.to_string()))
+        Ok(self.with_text(document.to_string()))
     }
 }
 

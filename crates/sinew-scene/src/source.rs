@@ -1,17 +1,49 @@
 //! The text of a scene and where it came from.
 
-use std::fs::File;
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+use std::fs::{self, File};
 use std::io::{self, ErrorKind, Read};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
-/// The text of a scene file, kept so that messages can point at a line of it.
+use serde::Serialize;
+use serde_json::Value;
+use sinew_mesh::TetMesh;
+
+use crate::error::{Fault, SceneError};
+
+/// Name of the text that is made of values, in the folder of its paths.
+const NAME: &str = "scene";
+
+/// The text of a scene file, kept so that messages can point at a line of it, and the files beside it that a program
+/// holds in memory.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct SceneSource {
     path: PathBuf,
     text: String,
     /// True if the text was made of values that a program gave: nobody has seen its lines.
     is_of_values: bool,
+    /// Files by their resolved paths.
+    given: BTreeMap<PathBuf, Given>,
 }
+
+/// A file that a program holds in memory.
+#[derive(Debug, Clone)]
+struct Given {
+    content: Arc<[u8]>,
+    /// The mesh, if it is not read from the content.
+    mesh: Option<Arc<TetMesh>>,
+}
+
+/// Files are compared by their content.
+impl PartialEq for Given {
+    fn eq(&self, other: &Self) -> bool {
+        self.content == other.content && self.mesh.is_some() == other.mesh.is_some()
+    }
+}
+
+impl Eq for Given {}
 
 impl SceneSource {
     /// A text and the path that messages show. Paths in the text are relative to the folder of this
@@ -22,19 +54,100 @@ impl SceneSource {
             path: path.into(),
             text: text.into(),
             is_of_values: false,
+            given: BTreeMap::new(),
         }
     }
 
     /// A text that was made of values of a program, of which messages name keys in the place of lines.
-    pub(crate) fn of_values(path: impl Into<PathBuf>, text: impl Into<String>) -> Self {
+    #[must_use]
+    pub fn of_values(path: impl Into<PathBuf>, text: impl Into<String>) -> Self {
         Self {
             is_of_values: true,
             ..Self::new(path, text)
         }
     }
 
+    /// The same scene with another text.
+    pub(crate) fn with_text(&self, text: String) -> Self {
+        Self {
+            text,
+            ..self.clone()
+        }
+    }
+
+    /// Gives a file that the scene reads: its content counts, whatever is at that path. The path is a resolved one.
+    ///
+    /// ```
+    /// use sinew_mesh::structured::{Split, cube};
+    /// use sinew_mesh::write_msh41_ascii;
+    /// use sinew_scene::{Scene, SceneSource};
+    ///
+    /// let mut mesh = Vec::new();
+    /// write_msh41_ascii(&cube(2, 0.1, Split::Mirrored)?.to_mesh(), &mut mesh)?;
+    /// let text = "[mesh]\nfile = \"mine.msh\"\n\
+    ///     [[region]]\ndensity = 1000.0\nmodel = \"linear\"\nyoungs_modulus = 3000.0\npoissons_ratio = 0.4\n\
+    ///     [run]\nduration = 0.1\nintegrator = \"central-difference\"\ndt = \"auto\"\n";
+    /// let source = SceneSource::new("scene.toml", text).with_file("mine.msh", mesh);
+    /// assert_eq!(Scene::parse(source)?.build()?.system().dofs(), 81);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn with_file(mut self, path: impl Into<PathBuf>, content: impl Into<Arc<[u8]>>) -> Self {
+        let path = path.into();
+        let content = content.into();
+        let mesh = None;
+        self.given.insert(path, Given { content, mesh });
+        self
+    }
+
+    /// Gives the mesh of a scene, with the order of its nodes and tetrahedra, in the place of the file at a resolved path. By
+    /// the content, bytes of the caller's own, the mesh is known again.
+    #[must_use]
+    pub fn with_mesh(
+        mut self,
+        path: impl Into<PathBuf>,
+        mesh: Arc<TetMesh>,
+        content: impl Into<Arc<[u8]>>,
+    ) -> Self {
+        let path = path.into();
+        let content = content.into();
+        let mesh = Some(mesh);
+        self.given.insert(path, Given { content, mesh });
+        self
+    }
+
+    /// The files that were given, by their resolved paths.
+    pub fn given(&self) -> impl ExactSizeIterator<Item = (&Path, &Arc<[u8]>)> {
+        let given = self.given.iter();
+        given.map(|(path, given)| (path.as_path(), &given.content))
+    }
+
+    /// The content of a file that was given; `None` for one that is read from the disk. The path is a resolved one.
+    #[must_use]
+    pub fn given_file(&self, path: &Path) -> Option<&[u8]> {
+        self.given.get(path).map(|given| &*given.content)
+    }
+
+    /// The mesh that was given for a resolved path.
+    #[must_use]
+    pub fn given_mesh(&self, path: &Path) -> Option<&Arc<TetMesh>> {
+        self.given.get(path)?.mesh.as_ref()
+    }
+
+    /// The content of a file that the scene reads, by its resolved path.
+    ///
+    /// # Errors
+    /// Those of the file system, for a file that was not given.
+    pub fn read(&self, path: &Path) -> io::Result<Cow<'_, [u8]>> {
+        match self.given_file(path) {
+            Some(content) => Ok(content.into()),
+            None => fs::read(path).map(Cow::Owned),
+        }
+    }
+
     /// True if messages name keys in the place of lines.
-    pub(crate) fn is_of_values(&self) -> bool {
+    #[must_use]
+    pub fn is_of_values(&self) -> bool {
         self.is_of_values
     }
 
@@ -48,6 +161,30 @@ impl SceneSource {
     #[must_use]
     pub fn text(&self) -> &str {
         &self.text
+    }
+
+    /// A tree of values of a program as the text of a scene, of which messages name keys in the place of lines.
+    /// [`crate::Scene::from_value`] reads one at once.
+    ///
+    /// # Errors
+    /// [`SceneError`] for values that TOML does not have.
+    pub fn from_value(
+        value: &impl Serialize,
+        folder: impl AsRef<Path>,
+    ) -> Result<Self, SceneError> {
+        let path = folder.as_ref().join(NAME);
+        let error = match toml::to_string(value) {
+            Ok(text) => return Ok(Self::of_values(path, text)),
+            Err(error) => error,
+        };
+        let reason = match null_in(value) {
+            Some(path) => {
+                format!("`{path}` is null: expected a value; leave the key out if there is none")
+            }
+            None => error.to_string(),
+        };
+        let nothing = Arc::new(Self::of_values(path, ""));
+        Err(SceneError::new(&nothing, Fault::Values { reason }))
     }
 
     /// A path written in the scene, made relative to the same folder as the scene's own path.
@@ -79,6 +216,26 @@ impl SceneSource {
     }
 }
 
+/// The keys to the first value that is none, such as `region[1].density`.
+fn null_in(value: &impl Serialize) -> Option<String> {
+    let tree = serde_json::to_value(value).ok()?;
+    null_below(&tree, String::new())
+}
+
+fn null_below(value: &Value, path: String) -> Option<String> {
+    match value {
+        Value::Null => Some(path).filter(|path| !path.is_empty()),
+        Value::Array(items) => (1..)
+            .zip(items)
+            .find_map(|(number, item)| null_below(item, format!("{path}[{number}]"))),
+        Value::Object(entries) => entries.iter().find_map(|(key, value)| {
+            let dot = if path.is_empty() { "" } else { "." };
+            null_below(value, format!("{path}{dot}{key}"))
+        }),
+        _ => None,
+    }
+}
+
 /// Size of a file beyond which it is no scene that someone wrote (bytes).
 const LARGEST: u64 = 16 << 20;
 
@@ -86,7 +243,7 @@ const LARGEST: u64 = 16 << 20;
 pub(crate) fn text_of(path: &Path) -> io::Result<String> {
     let refused = |reason: String| io::Error::new(ErrorKind::InvalidInput, reason);
     // Checked before it is opened, which would wait for the writer of a pipe.
-    if !std::fs::metadata(path)?.is_file() {
+    if !fs::metadata(path)?.is_file() {
         return Err(refused("it is no file; expected a file of TOML".to_owned()));
     }
     let mut text = String::new();

@@ -1,11 +1,11 @@
 //! Poses that are given from outside while a simulation runs.
 
-use sinew_core::{Channel, Clock, InputError, Inputs};
+use sinew_core::{Between, Channel, Clock, InputError, Inputs};
 
 use crate::pose::Pose;
 use crate::vector::{scaled, sub};
 
-/// The channels of [`Inputs`] by which a tool is steered: its position (m) and rotation vector (rad).
+/// The channels of [`Inputs`] by which a tool is steered: its position (m) and rotation vector (rad), and whether it holds what it touches.
 ///
 /// Between two instants at which it is given a pose a tool goes straight, turning by the shortest way; after the last it stays where it is.
 ///
@@ -25,12 +25,18 @@ use crate::vector::{scaled, sub};
 /// # Ok::<(), sinew_core::InputError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Steering([Channel; 6]);
+pub struct Steering {
+    pose: [Channel; 6],
+    jaws: Channel,
+}
 
 impl Steering {
     /// Channels of their own among inputs, without a pose so far.
     pub fn new(inputs: &mut Inputs) -> Self {
-        Self([(); 6].map(|()| inputs.add_open_line()))
+        Self {
+            pose: [(); 6].map(|()| inputs.add_open_line()),
+            jaws: inputs.add_channel(Between::Hold),
+        }
     }
 
     /// Gives the pose at `t` (s): before the step that ends then is taken.
@@ -49,13 +55,28 @@ impl Steering {
         let values = [x, y, z, rx, ry, rz];
         inputs.set_all(
             t,
-            &std::array::from_fn::<_, 6, _>(|k| (self.0[k], values[k])),
+            &std::array::from_fn::<_, 6, _>(|k| (self.pose[k], values[k])),
         )
     }
 
     /// Forgets poses before the one that holds, or the way that is passed, at `t` (s).
     pub fn forget_before(&self, inputs: &mut Inputs, t: f64) {
-        inputs.forget_channels_before(&self.0, t);
+        inputs.forget_channels_before(&self.pose, t);
+    }
+
+    /// Closes the jaws from `t` (s) on, by which the tool holds what it touches, or opens them.
+    ///
+    /// # Errors
+    /// [`InputError`] for a time that is not finite or does not rise, and inputs without the channel.
+    pub fn set_jaws(&self, inputs: &mut Inputs, t: f64, closed: bool) -> Result<(), InputError> {
+        inputs.set(self.jaws, t, f64::from(u8::from(closed)))
+    }
+
+    /// True if the jaws are closed at `t` (s); `None` before they are closed or opened for the first time.
+    pub(crate) fn holds(&self, t: f64, inputs: &Inputs) -> Option<bool> {
+        let (times, values) = inputs.course(self.jaws);
+        let last = times.partition_point(|time| *time <= t).checked_sub(1)?;
+        Some(*values.get(last)? > 0.0)
     }
 
     /// The pose at `t` (s); `None` before the first that is given.
@@ -63,7 +84,7 @@ impl Steering {
     /// The end of a step is computed in two ways that differ by rounding; both are the instant for which a pose was given.
     pub(crate) fn at(&self, t: f64, inputs: &Inputs) -> Option<Pose> {
         let slack = Clock::ROUNDING * t.abs();
-        let (times, _) = inputs.course(self.0[0]);
+        let (times, _) = inputs.course(self.pose[0]);
         let next = times.partition_point(|time| *time < t - slack);
         let given = |place: usize| self.given(place, inputs);
         match times.get(next) {
@@ -82,7 +103,7 @@ impl Steering {
     /// The velocity (m/s) of the origin and the spin (rad/s) right after `t` (s); `None` before the first pose that is given.
     pub(crate) fn velocity(&self, t: f64, inputs: &Inputs) -> Option<[[f64; 3]; 2]> {
         let slack = Clock::ROUNDING * t.abs();
-        let (times, _) = inputs.course(self.0[0]);
+        let (times, _) = inputs.course(self.pose[0]);
         let next = times.partition_point(|time| *time <= t + slack);
         let from = next.checked_sub(1)?;
         let Some(end) = times.get(next) else {
@@ -98,7 +119,7 @@ impl Steering {
     /// The pose at a place of the record.
     fn given(&self, place: usize, inputs: &Inputs) -> Option<Pose> {
         let mut numbers = [0.0; 6];
-        for (number, channel) in numbers.iter_mut().zip(self.0) {
+        for (number, channel) in numbers.iter_mut().zip(self.pose) {
             *number = *inputs.course(channel).1.get(place)?;
         }
         let [x, y, z, rx, ry, rz] = numbers;

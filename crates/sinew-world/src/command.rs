@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 use sinew_core::{OptionError, Options, StepError};
+use sinew_fem::ForceError;
 use sinew_scene::{CuttingError, DrivenLoadError};
 
 use crate::scene_identity::SceneKey;
@@ -60,6 +61,21 @@ pub enum Command {
         /// The factor.
         factor: f64,
     },
+    /// Closes the jaws of a tool: what it pushes in a step then goes with it until they open. Until the first of these
+    /// commands a tool holds at the times that the scene says.
+    Grasp {
+        /// Name of the tool.
+        tool: Arc<str>,
+    },
+    /// Opens the jaws of a tool, which lets go of all that it holds.
+    Release {
+        /// Name of the tool.
+        tool: Arc<str>,
+    },
+    /// Forces (N) on nodes (0-based) of the body as it is now, besides all loads, in the place of those of the last such
+    /// command. They stay with their nodes when the body is cut; what falls on held components goes into the supports
+    /// and is in no reaction.
+    Forces(Vec<(u32, [f64; 3])>),
     /// Another integrator, which continues from the state.
     Integrator {
         /// Its id.
@@ -118,6 +134,12 @@ pub enum CommandError {
         /// The largest size.
         most: f64,
     },
+    /// A force on a node that the body does not have, or one that is not finite.
+    #[error(transparent)]
+    Force(#[from] ForceError),
+    /// Forces on nodes in a scene without a mesh.
+    #[error("an oscillator has no nodes: scale its load instead")]
+    NoNodes,
     /// A factor that is not finite.
     #[error("factor of \"{load}\": {factor}: expected a finite number, at most {most:e} in size")]
     Factor {

@@ -1,13 +1,14 @@
 //! Errors of worlds and their steps.
 
 use sinew_core::{
-    EvaluationError, InputBytesError, InputError, OptionError, RecordError, StateBytesError,
-    StepError,
+    EvaluationError, ForceInputError, InputBytesError, InputError, OptionError, RecordError,
+    StateBytesError, StepError,
 };
 use sinew_fem::FieldError;
 use sinew_scene::{CuttingError, DrivenLoadError, ReactionError, RefusedLoad, SceneError};
 use sinew_tools::ToolsError;
 
+use crate::command::CommandError;
 use crate::input_file::InputFileError;
 
 /// Reasons for which a scene cannot be driven.
@@ -65,6 +66,9 @@ pub enum WorldStepError {
     /// A pose that could not be recorded.
     #[error(transparent)]
     Input(#[from] InputError),
+    /// Forces that could not be recorded.
+    #[error(transparent)]
+    Forces(#[from] ForceInputError),
     /// A failure before the motion was saved and restored, in words.
     #[error("{0}")]
     Earlier(String),
@@ -103,6 +107,9 @@ pub enum AdvanceToError {
     /// A step or a recorder that failed.
     #[error(transparent)]
     Advance(#[from] AdvanceError),
+    /// A step that cannot be shortened.
+    #[error(transparent)]
+    Shorten(#[from] CommandError),
 }
 
 /// Reasons for which a world cannot report a field.

@@ -1,11 +1,11 @@
 //! Files that a scene reads, and the hashes by which they are known again.
 
-use std::fs;
 use std::io;
 use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
+use sinew_scene::SceneSource;
 
 /// A file that a scene reads, with the hash of its content.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -27,12 +27,12 @@ pub struct InputFileError {
 }
 
 impl InputFile {
-    /// Reads a file for its hash.
+    /// Reads a file of a scene, by its resolved path, for its hash.
     ///
     /// # Errors
     /// [`InputFileError`] where it cannot be read.
-    pub fn of(path: PathBuf) -> Result<Self, InputFileError> {
-        match fs::read(&path) {
+    pub fn of(scene: &SceneSource, path: PathBuf) -> Result<Self, InputFileError> {
+        match scene.read(&path) {
             Ok(content) => Ok(Self {
                 path,
                 sha256: sha256(&content),

@@ -253,6 +253,12 @@ impl Replay {
         &self.world
     }
 
+    /// The world at the end of what was repeated, which goes on from there.
+    #[must_use]
+    pub fn into_world(self) -> World {
+        self.world
+    }
+
     /// The log.
     #[must_use]
     pub fn log(&self) -> &Log {

@@ -2,6 +2,7 @@
 
 mod advance;
 mod commands;
+mod forces;
 mod report;
 mod saved;
 
@@ -23,6 +24,7 @@ use crate::log::{Header, Log};
 use crate::recorder::BodyCut;
 use crate::scene_identity::SceneIdentity;
 
+use forces::Forces;
 pub use saved::Saved;
 
 /// A scene in motion: the only thing that takes its steps.
@@ -71,11 +73,14 @@ pub struct World {
     /// Buffer for a field over the degrees of freedom.
     field: Vec<f64>,
     method: Method,
+    /// The method before the last change of the step, which is often changed back.
+    parked: Option<Method>,
     /// Channels without values.
     fresh: Inputs,
     inputs: Inputs,
     tools: Vec<Hand>,
     loads: Vec<Knob>,
+    forces: Forces,
     state: State,
     /// Buffer for a step that is tried, and for the state before a cut.
     trial: State,
@@ -106,6 +111,17 @@ pub enum Ended {
     },
 }
 
+/// Steps of [`World::advance_by`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct Advanced {
+    /// Their end.
+    pub ended: Ended,
+    /// Steps that were taken.
+    pub steps: usize,
+    /// Length (s) of the last step, if it was shorter than the others.
+    pub shortened: Option<f64>,
+}
+
 /// The ends (m) of a blade before and after.
 type Sheet = [[[f64; 3]; 2]; 2];
 
@@ -126,6 +142,8 @@ struct Hand {
     target: Option<([f64; 3], [f64; 3])>,
     /// True if it was given a pose.
     is_steered: bool,
+    /// True to close its jaws with the next step, false to open them.
+    next_jaws: Option<bool>,
 }
 
 /// A load that commands may scale.
@@ -193,6 +211,7 @@ impl World {
             steering,
             target: None,
             is_steered: false,
+            next_jaws: None,
         });
         let channels = simulation.body().add_load_channels(&mut inputs)?;
         let names = simulation.body().load_names().into_iter();
@@ -256,8 +275,10 @@ impl World {
         Ok(Self {
             identity,
             method,
+            parked: None,
             tools: Vec::new(),
             loads: Vec::new(),
+            forces: Forces::default(),
             cutter: simulation.cutter()?,
             sheets: Vec::new(),
             blade: None,

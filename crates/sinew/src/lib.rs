@@ -33,6 +33,11 @@ pub use {
 #[cfg(feature = "haptics")]
 pub use sinew_haptics as haptics;
 
+#[cfg(feature = "cli")]
+pub mod cli;
+#[cfg(feature = "cli")]
+mod command;
+
 /// The items that most programs need.
 pub mod prelude {
     pub use sinew_cnn::{Saturation, Templates};

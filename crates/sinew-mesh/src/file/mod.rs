@@ -47,9 +47,18 @@ pub fn read_mesh(bytes: &[u8], format: MeshFormat) -> Result<Mesh, MeshError> {
 /// with the line if known: `file.msh:57 (byte 2310): ...`.
 pub fn read_mesh_file(path: impl AsRef<Path>) -> Result<Mesh, MeshFileError> {
     let path = path.as_ref();
-    let bytes = bytes_of(path)?;
+    read_mesh_of(path, &bytes_of(path)?)
+}
+
+/// Reads the bytes of a mesh file, as [`read_mesh_file`] does, which is not opened: its path tells the format, and is named in messages.
+///
+/// # Errors
+///
+/// As [`read_mesh_file`], but for those of the file system.
+pub fn read_mesh_of(path: impl AsRef<Path>, bytes: &[u8]) -> Result<Mesh, MeshFileError> {
+    let path = path.as_ref();
     let is_of_gmsh = bytes.trim_ascii_start().starts_with(b"$");
-    let kind = NotAMesh::of(path, &bytes).filter(|_| !is_of_gmsh);
+    let kind = NotAMesh::of(path, bytes).filter(|_| !is_of_gmsh);
     if let Some(kind) = kind {
         return Err(MeshFileError::NotAMesh {
             path: path.to_owned(),
@@ -57,7 +66,7 @@ pub fn read_mesh_file(path: impl AsRef<Path>) -> Result<Mesh, MeshFileError> {
         });
     }
     let format = MeshFormat::of_path(path).filter(|_| !is_of_gmsh);
-    read_as(path, &bytes, format.unwrap_or(MeshFormat::Msh))
+    read_as(path, bytes, format.unwrap_or(MeshFormat::Msh))
 }
 
 /// Reads a .msh file, whatever its name; see [`read_msh`].

@@ -1,22 +1,17 @@
 //! The lowest modes, by locally optimal block preconditioned conjugate gradients (LOBPCG).
 
 use sinew_core::vectors::{add_scaled, dot, noise, norm, scale};
-use sinew_core::{EvaluationError, LinearOperators, OperatorError};
+use sinew_core::LinearOperators;
 use sinew_integrators::{Combination, FactorError, Solver, symmetric_eigen};
+use sinew_scene::AtRestError;
 
 /// A reason for which there are no modes.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ModesError {
-    /// A system that shows no matrices.
-    #[error("natural modes need a system with matrices")]
-    NoMatrices,
-    /// A law that refuses the state at rest.
+    /// A body without matrices at rest.
     #[error("no natural modes about rest: {0}")]
-    Refused(#[from] EvaluationError),
-    /// A tangent at rest that makes no system.
-    #[error("no natural modes about rest: {0}")]
-    Operators(#[from] OperatorError),
+    AtRest(#[from] AtRestError),
     /// A stiffness that has no factor.
     #[error("no natural modes: {0}")]
     Factor(#[from] FactorError),
@@ -63,7 +58,7 @@ pub(super) fn lowest(
     let (root, stiffest) = roots(operators);
     let shifts = [0.0, SHIFT * stiffest];
     let shifts = &shifts[usize::from(moves_as_a_whole(operators, &root, stiffest))..];
-    let mut outcome = Err(ModesError::NoMatrices);
+    let mut outcome = Err(ModesError::AtRest(AtRestError::NoMatrices));
     for shift in shifts {
         outcome = about(operators, count, *shift, (&root, stiffest));
         if outcome.is_ok() {

@@ -1,18 +1,13 @@
 //! Scenes from values without a text, and as values.
 
 use std::path::Path;
-use std::sync::Arc;
 
 use serde::ser::Error as _;
 use serde::{Serialize, Serializer};
-use serde_json::Value;
 
 use super::Scene;
-use crate::error::{Fault, SceneError};
+use crate::error::SceneError;
 use crate::source::SceneSource;
-
-/// Name of the text that is made of the values, in the folder of its paths.
-const NAME: &str = "scene";
 
 impl Scene {
     /// Reads a scene from a tree of values, such as a map of a program, by the same descriptions as from a text: maps are
@@ -43,42 +38,7 @@ impl Scene {
         value: &impl Serialize,
         folder: impl AsRef<Path>,
     ) -> Result<Self, SceneError> {
-        let path = folder.as_ref().join(NAME);
-        match toml::to_string(value) {
-            Ok(text) => Self::parse(SceneSource::of_values(path, text)),
-            Err(error) => {
-                let nothing = Arc::new(SceneSource::of_values(path, ""));
-                let reason = match null_in(value) {
-                    Some(path) => {
-                        format!(
-                            "`{path}` is null: expected a value; leave the key out if there is none"
-                        )
-                    }
-                    None => error.to_string(),
-                };
-                Err(SceneError::new(&nothing, Fault::Values { reason }))
-            }
-        }
-    }
-}
-
-/// The keys to the first value that is none, such as `region[1].density`.
-fn null_in(value: &impl Serialize) -> Option<String> {
-    let tree = serde_json::to_value(value).ok()?;
-    null_below(&tree, String::new())
-}
-
-fn null_below(value: &Value, path: String) -> Option<String> {
-    match value {
-        Value::Null => Some(path).filter(|path| !path.is_empty()),
-        Value::Array(items) => (1..)
-            .zip(items)
-            .find_map(|(number, item)| null_below(item, format!("{path}[{number}]"))),
-        Value::Object(entries) => entries.iter().find_map(|(key, value)| {
-            let dot = if path.is_empty() { "" } else { "." };
-            null_below(value, format!("{path}{dot}{key}"))
-        }),
-        _ => None,
+        Self::parse(SceneSource::from_value(value, folder)?)
     }
 }
 

@@ -248,7 +248,7 @@ impl Scene {
     /// The scene with the factors of loads and motions that are in files, each read by `read`.
     pub(crate) fn with_factors(
         mut self,
-        read: impl Fn(&Path) -> Result<Ramp, Fault>,
+        read: impl Fn(&SceneSource, &Path) -> Result<Ramp, Fault>,
     ) -> Result<Self, SceneError> {
         let Self {
             subject, places, ..
@@ -257,8 +257,7 @@ impl Scene {
             return Ok(self);
         };
         let read_at = |place: &Place, key: &str, written: &Path| {
-            let path = place.scene().resolve(written);
-            read(&path).map_err(|fault| place.value_fault(key, fault))
+            read(place.scene(), written).map_err(|fault| place.value_fault(key, fault))
         };
         let loads = body.problem.loads.iter_mut().zip(&body.load_files);
         for (index, (load, file)) in loads.enumerate() {

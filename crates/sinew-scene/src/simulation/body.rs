@@ -68,7 +68,7 @@ pub(super) fn cut_plan(body: &Body, places: &Places) -> Result<Option<Arc<CutPla
     let strokes = match &cutting.blade {
         Blade::Table(written) => {
             let place = places.cutting.as_ref().unwrap_or(&places.document);
-            let read = read_strokes(&place.scene().resolve(written));
+            let read = read_strokes(place.scene(), written);
             Some(read.map_err(|error| place.value_fault("table", error.into()))?)
         }
         Blade::None | Blade::Tool(_) => None,
@@ -89,8 +89,7 @@ fn moving(motion: &Motion, places: &Places, index: usize) -> Result<Moving, Scen
         Way::Velocity(velocity) => vec![Course::at_velocity(*velocity)],
         Way::Table(written) => {
             let place = places.of(&places.motions, index);
-            let path = place.scene().resolve(written);
-            let table = MotionTable::read(&path, *axes)
+            let table = MotionTable::read(place.scene(), written, *axes)
                 .map_err(|error| place.value_fault("table", error.into()))?;
             Course::along(&table.times, &table.positions)
         }

@@ -497,7 +497,7 @@ struct Before {
 /// The nodes in the body of the cells that tools hold in a state.
 fn held_by_tools(body: &SceneBody, state: &State) -> Vec<u32> {
     let tools = body.model().tools().into_iter();
-    let held = tools.flat_map(|tools| tools.held(&state.contact, state.t()));
+    let held = tools.flat_map(|tools| tools.held(&state.contact));
     let held: Vec<usize> = held.collect();
     if held.is_empty() {
         return Vec::new();

@@ -2,6 +2,7 @@
 
 use sinew_mesh::{Linearised, Mesh, TetMesh, structured};
 
+use crate::decode::Place;
 use crate::error::Fault;
 use crate::error::SceneError;
 use crate::number::{count, short};
@@ -14,7 +15,7 @@ pub(super) type MeshAndWarnings = (TetMesh, Vec<String>);
 pub(super) fn of_body(body: &Body, places: &Places) -> Result<MeshAndWarnings, SceneError> {
     let place = places.mesh.as_ref().unwrap_or(&places.document);
     let changes = &body.mesh_changes;
-    let (mut mesh, warnings) = match &body.mesh {
+    let (mesh, warnings) = match &body.mesh {
         MeshSource::Cube { cells, edge, split } => {
             let cube = structured::cube(*cells, *edge, *split);
             let mesh = cube.map_err(|error| place.value_fault("cube", error.into()))?;
@@ -28,7 +29,14 @@ pub(super) fn of_body(body: &Body, places: &Places) -> Result<MeshAndWarnings, S
         MeshSource::File(written) => {
             let fault = |fault| place.value_fault("file", fault);
             let path = place.scene().resolve(written);
-            let mut mesh = sinew_mesh::read_mesh_file(path).map_err(|error| fault(error.into()))?;
+            if let Some(mesh) = place.scene().given_mesh(&path) {
+                return changed(TetMesh::clone(mesh), Vec::new(), changes, place);
+            }
+            let mesh = match place.scene().given_file(&path) {
+                Some(bytes) => sinew_mesh::read_mesh_of(&path, bytes),
+                None => sinew_mesh::read_mesh_file(path),
+            };
+            let mut mesh = mesh.map_err(|error| fault(error.into()))?;
             let warnings = mesh.warnings.iter().map(ToString::to_string).collect();
             let note = linearised(&mut mesh, changes);
             let mut tets = mesh.to_tet_mesh().map_err(|error| fault(error.into()))?;
@@ -36,6 +44,16 @@ pub(super) fn of_body(body: &Body, places: &Places) -> Result<MeshAndWarnings, S
             (tets, warnings)
         }
     };
+    changed(mesh, warnings, changes, place)
+}
+
+/// The mesh with its size and orientation changed.
+fn changed(
+    mut mesh: TetMesh,
+    warnings: Vec<String>,
+    changes: &MeshChanges,
+    place: &Place,
+) -> Result<MeshAndWarnings, SceneError> {
     if let Some(scale) = changes.scale {
         mesh.scale(scale);
         if !mesh.points.iter().flatten().all(|x| x.is_finite()) {

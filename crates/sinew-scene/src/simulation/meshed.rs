@@ -56,7 +56,7 @@ impl Scene {
         self,
         make: impl FnOnce(&Body, &Places) -> Result<MeshAndWarnings, SceneError>,
     ) -> Result<MeshedScene, SceneError> {
-        let scene = self.with_factors(|path| Ok(read_factor(path)?))?;
+        let scene = self.with_factors(|scene, written| Ok(read_factor(scene, written)?))?;
         let mesh = match scene.subject() {
             Subject::Body(body) => {
                 let (mut mesh, warnings) = make(body, scene.places())?;
@@ -74,6 +74,12 @@ impl Scene {
 }
 
 impl MeshedScene {
+    /// The mesh (m), with the groups that the scene selects; `None` for an oscillator.
+    #[must_use]
+    pub fn mesh(&self) -> Option<&TetMesh> {
+        matches!(self.scene.subject(), Subject::Body(_)).then_some(&self.mesh.mesh)
+    }
+
     /// Counts of the body and the memory that the scene needs; `None` for an oscillator.
     #[must_use]
     pub fn footprint(&self) -> Option<Footprint> {

@@ -1,5 +1,6 @@
 //! A scene as a system that integrators can move.
 
+mod at_rest;
 mod body;
 mod build;
 mod cut_beforehand;
@@ -35,6 +36,7 @@ use std::sync::{Arc, OnceLock};
 use sinew_core::{OptionError, Options, Run, StableStep, State, StepReport, System};
 use sinew_integrators::Stepper;
 
+pub use at_rest::AtRestError;
 pub use cut_from::CutFrom;
 use cut_plan::CutPlan;
 pub use cutter::{CutTotals, Cutter, CuttingError, SavedCuts};

@@ -1,11 +1,13 @@
 //! Tables of positions, poses, strokes and factors in CSV files.
 
+use std::io::{Error, ErrorKind};
 use std::path::Path;
 
 use sinew_core::Ramp;
 use sinew_cutting::{BladePose, Strokes};
 
 use crate::error::{MotionTableError, MotionTableFault};
+use crate::source::SceneSource;
 
 /// The column of times.
 const TIME: &str = "t_s";
@@ -47,8 +49,12 @@ struct Rows {
 
 impl MotionTable {
     /// Reads a table for a motion along `axes`.
-    pub(super) fn read(path: &Path, axes: [bool; 3]) -> Result<Self, MotionTableError> {
-        read(path, |text| Self::parse(text, axes))
+    pub(super) fn read(
+        scene: &SceneSource,
+        written: &Path,
+        axes: [bool; 3],
+    ) -> Result<Self, MotionTableError> {
+        read(scene, written, |text| Self::parse(text, axes))
     }
 
     /// The table of a text, or the line that is at fault.
@@ -74,8 +80,8 @@ impl MotionTable {
 
 impl PoseTable {
     /// Reads a table; without columns of rotations nothing is turned.
-    pub(super) fn read(path: &Path) -> Result<Self, MotionTableError> {
-        read(path, Self::parse)
+    pub(super) fn read(scene: &SceneSource, written: &Path) -> Result<Self, MotionTableError> {
+        read(scene, written, Self::parse)
     }
 
     /// The table of a text, or the line that is at fault.
@@ -93,8 +99,11 @@ impl PoseTable {
 }
 
 /// Reads a table of the strokes of a blade.
-pub(super) fn read_strokes(path: &Path) -> Result<Strokes, MotionTableError> {
-    read(path, strokes)
+pub(super) fn read_strokes(
+    scene: &SceneSource,
+    written: &Path,
+) -> Result<Strokes, MotionTableError> {
+    read(scene, written, strokes)
 }
 
 /// The strokes of a text, or the line that is at fault.
@@ -111,8 +120,8 @@ fn strokes(text: &str) -> Result<Strokes, (usize, MotionTableFault)> {
 }
 
 /// Reads a table of factors, in which two rows at one time are a jump.
-pub(super) fn read_factor(path: &Path) -> Result<Ramp, MotionTableError> {
-    read(path, factor)
+pub(super) fn read_factor(scene: &SceneSource, written: &Path) -> Result<Ramp, MotionTableError> {
+    read(scene, written, factor)
 }
 
 /// The factor of a text, or the line that is at fault.
@@ -126,16 +135,23 @@ fn factor(text: &str) -> Result<Ramp, (usize, MotionTableFault)> {
 
 /// Reads a file and makes a table of its text.
 fn read<T>(
-    path: &Path,
+    scene: &SceneSource,
+    written: &Path,
     parse: impl FnOnce(&str) -> Result<T, (usize, MotionTableFault)>,
 ) -> Result<T, MotionTableError> {
+    let path = scene.resolve(written);
     let error = |line, fault| MotionTableError {
-        path: path.to_owned(),
+        path: path.clone(),
         line,
         fault,
     };
-    let text = std::fs::read_to_string(path).map_err(|source| error(None, source.into()))?;
-    parse(&text).map_err(|(line, fault)| error(Some(line), fault))
+    let content = scene
+        .read(&path)
+        .map_err(|source| error(None, source.into()))?;
+    let no_text = |_| Error::new(ErrorKind::InvalidData, "stream did not contain valid UTF-8");
+    let text =
+        std::str::from_utf8(&content).map_err(|invalid| error(None, no_text(invalid).into()))?;
+    parse(text).map_err(|(line, fault)| error(Some(line), fault))
 }
 
 impl Rows {

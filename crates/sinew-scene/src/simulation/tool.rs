@@ -277,8 +277,8 @@ fn motion(tool: &Tool, place: &Place) -> Result<Motion, SceneError> {
         },
         ToolPath::Table(written) => {
             let fault = |fault| place.value_fault("table", fault);
-            let path = place.scene().resolve(written);
-            let poses = PoseTable::read(&path).map_err(|error| fault(error.into()))?;
+            let poses =
+                PoseTable::read(place.scene(), written).map_err(|error| fault(error.into()))?;
             let rows = poses.times.iter().zip(poses.positions).zip(poses.rotations);
             let rows = rows.map(|((t, position), rotation_vector)| Row {
                 t: *t,

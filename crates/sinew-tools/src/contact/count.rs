@@ -6,7 +6,7 @@ use super::record::{
     ANGULAR_IMPULSE, CONTACTS, DEPTH, FORCE, IMPULSE, LARGEST_LIP_RESIDUAL, LARGEST_RESIDUAL,
     LIP_CONTACTS, LIP_RESIDUAL, OF_HELD, OF_TOOL, RESIDUAL, RIVAL, Record, SEIZED, TORQUE, WORK,
 };
-use super::tool_step::{ToolStep, Way};
+use super::tool_step::{ToolStep, Way, holder};
 use super::tools::{MOST_TOOLS, Tools};
 use crate::vector::{Vector, add, cross, dot, scaled, sub};
 
@@ -23,8 +23,6 @@ pub(super) struct Count<'a> {
     pub(super) steps: &'a [ToolStep],
     /// Its length (s).
     pub(super) dt: f64,
-    /// Its end (s).
-    pub(super) end: f64,
 }
 
 impl Count<'_> {
@@ -38,10 +36,7 @@ impl Count<'_> {
         let at = |place: u32| way(place).1;
         for place in &links.places {
             let place = *place as usize;
-            if self
-                .tools
-                .holder(record.held.get(place), self.end)
-                .is_none()
+            if holder(self.steps, record.held.get(place)).is_none()
                 && let Some(held) = record.held.get_mut(place)
             {
                 *held = [0.0; OF_HELD];
@@ -96,7 +91,7 @@ impl Count<'_> {
 
     /// Lets a tool take hold of a cell at a place (m), if it holds what it pushes and no tool has hold of that.
     pub(super) fn seize(&self, tool: usize, place: usize, at: Vector, record: &mut Record<'_>) {
-        if !self.tools.holds(tool, self.end) {
+        if !self.steps[tool].holds {
             return;
         }
         let Some(held) = record.held.get_mut(place) else {
@@ -116,7 +111,7 @@ impl Count<'_> {
     pub(super) fn rivals(&self, holder: usize, place: usize, way: Way, record: &mut Record<'_>) {
         for (other, step) in self.steps.iter().enumerate() {
             let may_meet = other != holder && self.tools.tools_at[place] >> other & 1 == 1;
-            if may_meet && self.tools.holds(other, self.end) && step.touches(way).next().is_some() {
+            if may_meet && step.holds && step.touches(way).next().is_some() {
                 record.tools[other][RIVAL] = (holder + 1) as f64;
             }
         }

@@ -9,7 +9,7 @@ use super::node::Compliance;
 use super::record::{OF_HELD, OF_PAIR, OF_VELOCITY, Record, swing};
 use super::room::Room;
 use super::tool::{Corner, Tool};
-use super::tool_step::{ToolStep, Way, is_near};
+use super::tool_step::{ToolStep, Way, holder, is_near};
 use super::tools::Tools;
 use crate::shape::TriangleTouch;
 use crate::vector::{Vector, add, between, scaled, sub};
@@ -65,7 +65,6 @@ impl Tools {
                 tools: self,
                 steps: &room.steps,
                 dt: meeting.dt,
-                end: ways.end(),
             };
             let way = |place: u32| ways.pass(place as usize, &room.links);
             count.of_links(&room.links, way, record);
@@ -86,7 +85,7 @@ impl Tools {
         let ways = search.ways;
         let Ways { meeting, state, .. } = ways;
         for round in 0..MOST_ROUNDS {
-            room.look(&self.cells, state, meeting, self.counts.holds);
+            room.look(&self.cells, state, meeting);
             let is_new = search.all(room, round == 0);
             if !is_new && (room.links.is_empty() || round >= least) {
                 break;
@@ -139,11 +138,6 @@ impl Ways<'_> {
         let touched = &self.tools.cells[place];
         let inverse = self.meeting.inverse_block(touched.cell as usize);
         Compliance::new(inverse, touched.free, self.meeting.dt)
-    }
-
-    /// The end (s) of the step.
-    fn end(&self) -> f64 {
-        self.state.t() + self.meeting.dt
     }
 }
 
@@ -227,7 +221,7 @@ impl Search<'_> {
     fn at_node(&self, room: &mut Room, place: usize, tools: u64) {
         let (from, end) = self.ways.pass(place, &room.links);
         let held = self.held.get(place);
-        if let (Some(tool), Some([_, x, y, z])) = (self.tools.holder(held, self.ways.end()), held) {
+        if let (Some(tool), Some([_, x, y, z])) = (holder(&room.steps, held), held) {
             if tools >> tool & 1 == 1 && !room.links.knows(place, (tool, 0)) {
                 let link = Link::of_node(
                     (place as u32, self.ways.compliance(place)),

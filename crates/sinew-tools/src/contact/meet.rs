@@ -10,7 +10,7 @@ use super::node::Compliance;
 use super::record::{DEPTH, OF_HELD, PASSES, Record, swing};
 use super::room::Room;
 use super::tool::along_axes;
-use super::tool_step::{ToolStep, is_near};
+use super::tool_step::{ToolStep, holder, is_near};
 use super::tools::Tools;
 use crate::vector::{Vector, add, sub};
 
@@ -42,13 +42,13 @@ impl Contact for Tools {
         let mut kept = std::mem::take(&mut state.contact);
         let mut record = Record::of(&mut kept, &self.counts);
         record.forget_last_step();
-        room.take(&self.tools, state, meeting, record.bodies);
+        room.take(&self.tools, state, meeting, &record);
         let has_links = self.linking != 0 || self.counts.pairs > 0;
-        room.show(cells, state, meeting, has_links || self.counts.holds);
+        room.show(cells, state, meeting, has_links);
         if has_links {
             self.link(&mut room, meeting, state, &mut record);
         }
-        room.look(&self.cells, state, meeting, self.counts.holds);
+        room.look(&self.cells, state, meeting);
         let Room {
             steps,
             near,
@@ -60,7 +60,6 @@ impl Contact for Tools {
             tools: self,
             steps,
             meeting,
-            end: state.t() + meeting.dt,
         };
         for (numbers, step) in record.tools.iter_mut().zip(&*steps) {
             numbers[PASSES] = step.pieces().max(numbers[PASSES]);
@@ -145,8 +144,6 @@ struct Step<'a> {
     tools: &'a Tools,
     steps: &'a [ToolStep],
     meeting: &'a Meeting<'a>,
-    /// Its end (s).
-    end: f64,
 }
 
 impl Step<'_> {
@@ -164,7 +161,7 @@ impl Step<'_> {
             }
             [0.0; 3]
         };
-        let holder = self.tools.holder(record.held.get(place), self.end);
+        let holder = holder(self.steps, record.held.get(place));
         // Those whose contacts act on each other do not meet it.
         let tools = self.tools.tools_at[place] & !self.tools.linking;
         if holder.is_none() && !is_near(self.steps, tools, (from, to)) {
@@ -211,7 +208,6 @@ impl Step<'_> {
             tools: self.tools,
             steps: self.steps,
             dt: self.meeting.dt,
-            end: self.end,
         };
         for (tool, force) in met.pushing() {
             count.of_node((tool, force), place, end, record);

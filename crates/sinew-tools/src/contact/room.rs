@@ -5,7 +5,7 @@ use sinew_core::{Meeting, ShowCells, Shown, State};
 use super::links::Links;
 use super::lips::Lips;
 use super::met::Met;
-use super::record::{NEEDED_PASSES, OF_BODY, OF_TOOL, PASSES};
+use super::record::{NEEDED_PASSES, OF_HELD, OF_TOOL, PASSES, Record};
 use super::tool::{Tool, TouchedCell};
 use super::tool_step::ToolStep;
 use crate::swept_box::around;
@@ -28,6 +28,8 @@ pub(super) struct Room {
     /// Places of the cells that are shown, where these are not all.
     shown: Vec<u32>,
     are_all_shown: bool,
+    /// True if cells far from all tools count, as tools hold some or let go of them.
+    holds: bool,
     /// Contacts of a single node.
     pub(super) met: Met,
     /// Contacts that act on each other.
@@ -53,26 +55,27 @@ impl Room {
             near: Vec::with_capacity(cells),
             shown: Vec::with_capacity(cells),
             are_all_shown: true,
+            holds: false,
             met: Met::none(),
             links: Links::of(linked, lips),
             share: 1.0,
         }
     }
 
-    /// Takes a step from a state on, with what bodies keep, without contact.
+    /// Takes a step from a state on, with what bodies and cells keep, without contact.
     pub(super) fn take(
         &mut self,
         tools: &[Tool],
         state: &State,
         meeting: &Meeting<'_>,
-        bodies: &[[f64; OF_BODY]],
+        kept: &Record<'_>,
     ) {
         let Meeting { inputs, dt, .. } = *meeting;
         let t = state.t();
         let last = state.clock.last_step();
         let is_first = last.is_none();
         let last = last.filter(|_| meeting.is_staggered);
-        let mut bodies = bodies.iter();
+        let mut bodies = kept.bodies.iter();
         for (tool, step) in tools.iter().zip(&mut self.steps) {
             let at = |t: f64| tool.motion.at(t, inputs);
             let earlier = last.map(|last| (at(t - last), last));
@@ -84,7 +87,12 @@ impl Room {
                 (kept, dt, meeting.is_staggered),
                 is_first,
             );
+            step.holds = tool.holds(t + dt, inputs);
         }
+        let is_held = |held: &[f64; OF_HELD]| held[0] != 0.0;
+        self.holds = tools.iter().any(|tool| tool.grasp.is_some())
+            || self.steps.iter().any(|step| step.holds)
+            || kept.held.iter().any(is_held);
         self.bound();
     }
 
@@ -137,7 +145,7 @@ impl Room {
         self.bounds = around(self.steps.iter().flat_map(ToolStep::bounds));
     }
 
-    /// Has the cells shown that may meet a tool in the step, or `all`.
+    /// Has the cells shown that may meet a tool in the step or are held, or `all`.
     pub(super) fn show(
         &mut self,
         cells: &mut dyn ShowCells,
@@ -146,24 +154,18 @@ impl Room {
         all: bool,
     ) {
         self.shown.clear();
-        let within = self.bounds.filter(|_| !all);
+        let within = self.bounds.filter(|_| !all && !self.holds);
         self.are_all_shown = cells.show(within, meeting, state, &mut self.shown) == Shown::All;
     }
 
-    /// Lists the cells that may meet a tool, all where that is not known of a tool or `all` are asked for: this is done for each cell that is shown in each step, and little
-    /// else is.
-    pub(super) fn look(
-        &mut self,
-        cells: &[TouchedCell],
-        state: &State,
-        meeting: &Meeting<'_>,
-        all: bool,
-    ) {
+    /// Lists the cells that may meet a tool, all where that is not known of a tool or tools hold some: this is done for
+    /// each cell that is shown in each step, and little else is.
+    pub(super) fn look(&mut self, cells: &[TouchedCell], state: &State, meeting: &Meeting<'_>) {
         self.near.clear();
         if self.steps.is_empty() {
             return;
         }
-        let Some(bounds) = self.bounds.filter(|_| !all) else {
+        let Some(bounds) = self.bounds.filter(|_| !self.holds) else {
             self.near.extend(0..cells.len() as u32);
             return;
         };

@@ -1,5 +1,7 @@
 //! Tools and the cells that they may touch.
 
+use sinew_core::Inputs;
+
 use super::tool_body::{ToolBody, ToolBodyError};
 use crate::motion::Motion;
 use crate::shape::Shape;
@@ -24,6 +26,24 @@ pub struct Tool {
     pub triangles: Vec<u32>,
     /// Time during which it holds what it touches; `None` if it never does.
     pub grasp: Option<Grasp>,
+}
+
+impl Tool {
+    /// True if it holds what it touches in a step that ends at `t` (s), under inputs from outside.
+    pub(super) fn holds(&self, t: f64, inputs: &Inputs) -> bool {
+        let own = self
+            .grasp
+            .is_some_and(|grasp| (grasp.from..=grasp.to).contains(&t));
+        match &self.motion {
+            Motion::Steered(_, steering) => steering.holds(t, inputs).unwrap_or(own),
+            _ => own,
+        }
+    }
+
+    /// True if it ever holds what it touches, or may be told to.
+    pub(super) fn may_hold(&self) -> bool {
+        self.grasp.is_some() || matches!(self.motion, Motion::Steered(..))
+    }
 }
 
 /// A time during which a tool holds what it touches: a cell that it pushes then goes with it until the end.

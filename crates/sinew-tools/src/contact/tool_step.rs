@@ -1,7 +1,7 @@
 //! The step of a tool: where it is, and what it meets.
 
 use super::body_step::BodyStep;
-use super::record::OF_BODY;
+use super::record::{OF_BODY, OF_HELD};
 use super::tool::Tool;
 use crate::pose::Pose;
 use crate::shape::{Touch, Triangle, TriangleTouch};
@@ -41,6 +41,8 @@ pub(super) struct ToolStep {
     /// The step of a tool that is a body of its own.
     pub(super) body: Option<BodyStep>,
     pub(super) friction: f64,
+    /// True if the tool holds what it touches.
+    pub(super) holds: bool,
     /// True if the motion begins with this step.
     is_first: bool,
     /// The size (m) of the tissue that it may touch, at rest.
@@ -48,6 +50,12 @@ pub(super) struct ToolStep {
     /// Residual of the iteration for contacts that act on each other.
     pub(super) residual: f64,
     strokes: Vec<(Stroke, Near)>,
+}
+
+/// The tool that keeps hold in a step of a cell of which this says who had it before.
+pub(super) fn holder(steps: &[ToolStep], held: Option<&[f64; OF_HELD]>) -> Option<usize> {
+    let tool = (held?[0] as usize).checked_sub(1)?;
+    steps.get(tool)?.holds.then_some(tool)
 }
 
 /// Region in which nodes can meet a part.
@@ -109,6 +117,7 @@ impl ToolStep {
             steps_at_work: 1.0,
             body: None,
             friction: tool.friction,
+            holds: false,
             is_first: true,
             tissue,
             residual: 0.0,

@@ -156,7 +156,7 @@ impl Tools {
                 bodies: tools.iter().filter(|tool| is_body(tool)).count(),
                 cells: cells.len(),
                 rubs: tools.iter().any(|tool| tool.friction > 0.0),
-                holds: tools.iter().any(|tool| tool.grasp.is_some()),
+                holds: tools.iter().any(Tool::may_hold),
                 pairs: lips.pairs.len(),
             },
             linking,
@@ -225,24 +225,12 @@ impl Tools {
         self.linking >> tool & 1 == 1
     }
 
-    /// True if a tool holds what it touches in a step that ends at `end` (s).
-    pub(super) fn holds(&self, tool: usize, end: f64) -> bool {
-        let grasp = self.tools[tool].grasp;
-        grasp.is_some_and(|grasp| (grasp.from..=grasp.to).contains(&end))
-    }
-
-    /// The tool that has hold of a cell in a step that ends at `end` (s).
-    pub(super) fn holder(&self, held: Option<&[f64; OF_HELD]>, end: f64) -> Option<usize> {
-        let tool = (held?[0] as usize).checked_sub(1)?;
-        self.holds(tool, end).then_some(tool)
-    }
-
-    /// Places of the touched cells that tools have hold of at a time (s), by what they keep ([`sinew_core::State::contact`]).
-    pub fn held<'s>(&'s self, contact: &'s [f64], t: f64) -> impl Iterator<Item = usize> + 's {
+    /// Places of the touched cells that tools have hold of after a step, by what they keep ([`sinew_core::State::contact`]).
+    pub fn held<'s>(&'s self, contact: &'s [f64]) -> impl Iterator<Item = usize> + 's {
         let numbers = contact.get(self.counts.of_held());
         let rows = numbers.unwrap_or_default().as_chunks::<OF_HELD>().0;
         let rows = rows.iter().enumerate();
-        rows.filter_map(move |(place, held)| self.holder(Some(held), t).map(|_| place))
+        rows.filter_map(|(place, held)| (held[0] != 0.0).then_some(place))
     }
 
     /// Place of a tool among those that are bodies of their own.

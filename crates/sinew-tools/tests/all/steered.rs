@@ -87,9 +87,16 @@ fn a_tool_follows_its_own_path_with_the_same_bits_until_it_is_steered() {
     let mut inputs = Inputs::new();
     let steering = Steering::new(&mut inputs);
     let steered = cube(Motion::Steered(Box::new(by_table()), steering));
-    assert!(driven(&steered, &mut inputs, |_, _, _| {}) == expected);
+    let is_expected = |found: State| {
+        (found.u, found.v, found.a) == (expected.u.clone(), expected.v.clone(), expected.a.clone())
+    };
+    assert!(is_expected(driven(&steered, &mut inputs, |_, _, _| {})));
     // Also without its channels.
-    assert!(driven(&steered, &mut Inputs::new(), |_, _, _| {}) == expected);
+    assert!(is_expected(driven(
+        &steered,
+        &mut Inputs::new(),
+        |_, _, _| {}
+    )));
     // One that is steered from the middle on is where it was before.
     let half = driven(&steered, &mut inputs, |step, state, inputs| {
         if step == 40 {

@@ -49,7 +49,9 @@ impl Header {
         Ok(Self {
             program: env!("CARGO_PKG_VERSION").to_owned(),
             scene: sha256(scene.source().text().as_bytes()),
-            inputs: others.map(InputFile::of).collect::<Result<_, _>>()?,
+            inputs: others
+                .map(|path| InputFile::of(scene.source(), path))
+                .collect::<Result<_, _>>()?,
             values: Vec::new(),
         })
     }
@@ -104,7 +106,7 @@ impl Log {
         }
     }
 
-    /// Adds a command. Of several poses of a tool before a step the last holds.
+    /// Adds a command. Of several poses of a tool, or forces on nodes, before a step the last hold.
     pub(crate) fn add(&mut self, step: usize, t: f64, command: Command) {
         self.steps = step;
         if let Command::Pose { tool, .. } = &command {
@@ -120,6 +122,13 @@ impl Log {
                 entry.command = command;
                 return;
             }
+        }
+        if let (Command::Forces(_), Some(last)) = (&command, self.entries.last_mut())
+            && last.step == step
+            && matches!(last.command, Command::Forces(_))
+        {
+            last.command = command;
+            return;
         }
         self.entries.push(Entry { step, t, command });
     }

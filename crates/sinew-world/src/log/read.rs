@@ -13,7 +13,7 @@ use crate::command::Command;
 use crate::input_file::InputFile;
 
 /// Names of the commands.
-const COMMANDS: &str = "pose, factor, integrator, dt, reset, cut or end";
+const COMMANDS: &str = "pose, grasp, release, factor, forces, integrator, dt, reset, cut or end";
 
 impl Log {
     /// Reads a file that [`Log::to_text`] gave.
@@ -136,6 +136,21 @@ impl Reading {
                 load: words.quoted("the name of a load in quotes")?.into(),
                 factor: words.number("a finite factor")?,
             },
+            "grasp" => Command::Grasp {
+                tool: words.quoted("the name of a tool in quotes")?.into(),
+            },
+            "release" => Command::Release {
+                tool: words.quoted("the name of a tool in quotes")?.into(),
+            },
+            "forces" => {
+                let mut forces = Vec::new();
+                while !words.is_empty() {
+                    let node = words.count("the number of a node")?;
+                    let force = words.vector("three finite numbers, the force (N) on a node")?;
+                    forces.push((node, force));
+                }
+                Command::Forces(forces)
+            }
             "integrator" => Command::Integrator {
                 id: words.quoted("the name of an integrator in quotes")?,
                 options: words.options()?,

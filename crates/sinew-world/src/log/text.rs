@@ -54,6 +54,22 @@ pub(super) fn push_entry(out: &mut String, entry: &Entry) {
             push_quoted(out, load);
             push_numbers(out, [factor]);
         }
+        Command::Grasp { tool } => {
+            out.push_str(" grasp ");
+            push_quoted(out, tool);
+        }
+        Command::Release { tool } => {
+            out.push_str(" release ");
+            push_quoted(out, tool);
+        }
+        Command::Forces(forces) => {
+            out.push_str(" forces");
+            for (node, force) in forces {
+                // Writing to a string does not fail.
+                let _ = write!(out, " {node}");
+                push_numbers(out, force);
+            }
+        }
         Command::Integrator { id, options } => {
             out.push_str(" integrator ");
             push_quoted(out, id);

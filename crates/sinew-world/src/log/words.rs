@@ -1,6 +1,7 @@
 //! Lines of a log as words: plain ones, numbers, quoted texts and options.
 
 use std::fmt::Write;
+use std::str::FromStr;
 
 use sinew_core::{OptionValue, Options};
 
@@ -91,7 +92,7 @@ impl<'a> Words<'a> {
     }
 
     /// The next whole number.
-    pub(super) fn count(&mut self, what: &'static str) -> Result<usize, LogFault> {
+    pub(super) fn count<T: FromStr>(&mut self, what: &'static str) -> Result<T, LogFault> {
         let word = self.word();
         word.parse().map_err(|_| self.fault(what, word))
     }
@@ -161,6 +162,11 @@ impl<'a> Words<'a> {
         }
     }
 
+    /// True at the end of the line.
+    pub(super) fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
     /// Refuses what is left of the line.
     pub(super) fn end(&self) -> Result<(), LogFault> {
         if self.0.is_empty() {
@@ -190,7 +196,7 @@ mod tests {
             line.push_str(" 7");
             let mut words = Words::of(&line);
             assert_eq!(words.quoted("a name").unwrap(), name);
-            assert_eq!(words.count("a count").unwrap(), 7);
+            assert_eq!(words.count::<usize>("a count").unwrap(), 7);
             words.end().unwrap();
         }
         let inner = [("x y".to_owned(), OptionValue::Number(-0.0))];

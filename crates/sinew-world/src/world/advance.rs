@@ -7,7 +7,8 @@ use sinew_core::{Batch, Clock, Outcome, RecordedSteps, Run, SimulateError, StepR
 use sinew_scene::SceneBody;
 use sinew_tools::Pose;
 
-use super::{Ended, World};
+use super::{Advanced, Ended, World};
+use crate::command::Command;
 use crate::error::{AdvanceError, AdvanceToError, WorldStepError};
 use crate::recorder::{BodyCut, Recorder, Shown};
 
@@ -65,6 +66,39 @@ impl World {
         }
         let steps = Run::covering(t - now, self.dt()).steps;
         Ok(self.advance(steps, recorder)?)
+    }
+
+    /// Takes the whole steps of [`World::dt`] that fit into a time (s) from now on, and a shorter one for what is left of
+    /// it, so that the last step ends with it.
+    ///
+    /// # Errors
+    /// [`AdvanceToError`], also for a time that is negative or not finite.
+    pub fn advance_by<R: Recorder + ?Sized>(
+        &mut self,
+        by: f64,
+        recorder: &mut R,
+    ) -> Result<Advanced, AdvanceToError> {
+        let (now, dt, before) = (self.t(), self.dt(), self.steps);
+        if !(by >= 0.0 && by.is_finite()) {
+            return Err(AdvanceToError::Time { t: now + by, now });
+        }
+        let whole = (by / dt * (1.0 + Clock::ROUNDING)).floor();
+        let left = by - whole * dt;
+        let mut ended = self.advance(whole as usize, recorder)?;
+        let mut shortened = None;
+        if ended == Ended::Finished && left > Clock::ROUNDING * by.max(dt) {
+            self.command(Command::Dt(left))?;
+            shortened = Some(left);
+            ended = self.advance(1, recorder)?;
+            if self.failure.is_none() {
+                self.command(Command::Dt(dt))?;
+            }
+        }
+        Ok(Advanced {
+            ended,
+            steps: self.steps - before,
+            shortened,
+        })
     }
 
     /// A recorder that has not seen the present state.
@@ -200,6 +234,12 @@ impl World {
                 self.inputs.set(load.channel, t, factor)?;
             }
         }
+        for hand in &mut self.tools {
+            if let Some(closed) = hand.next_jaws.take() {
+                hand.steering.set_jaws(&mut self.inputs, t, closed)?;
+            }
+        }
+        self.give_forces(t)?;
         self.cut_before(end)?;
         if self.tools.iter().any(|hand| hand.target.is_some()) {
             return Ok(1);
@@ -252,6 +292,7 @@ impl World {
             after: self.state.clone(),
             energy: cutter.totals().energy() - energy,
         });
+        super::forces::carry(&mut self.inputs, &self.undriven, &changed)?;
         self.undriven = Arc::new(changed);
         self.topology_epoch += 1;
         self.body = Arc::clone(&self.undriven);
@@ -260,6 +301,7 @@ impl World {
             self.body = driven.map_err(|error| WorldStepError::Driven(error.to_string()))?;
         }
         self.method.stable_step = OnceCell::new();
+        self.parked = None;
         Ok(())
     }
 

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use sinew_scene::SceneBody;
 
-use super::{Method, World, try_step};
+use super::{Knob, Method, World, try_step};
 use crate::command::{Command, CommandError, LoadId, ToolId};
 use crate::log::Entry;
 
@@ -34,15 +34,31 @@ impl World {
                 let tool = self.tool(tool)?.place;
                 self.tools[tool].target = Some((*position, *rotation_vector));
             }
+            Command::Grasp { tool } | Command::Release { tool } => {
+                let tool = self.tool(tool)?.place;
+                let closes = matches!(command, Command::Grasp { .. });
+                self.tools[tool].next_jaws = Some(closes);
+            }
+            Command::Forces(forces) => self.take_forces(forces)?,
             Command::LoadFactor { load, factor } => self.turn(load, *factor)?,
             Command::Integrator { id, options } => {
                 let method = Method::new(&self.scene, id, options, self.method.dt)?;
                 self.switch(method)?;
             }
             Command::Dt(dt) => {
-                let (id, options) = &self.method.asked;
-                let method = Method::new(&self.scene, id, options, *dt)?;
-                self.switch(method)?;
+                let is_parked = |parked: &mut Method| {
+                    parked.dt.to_bits() == dt.to_bits() && parked.asked == self.method.asked
+                };
+                match self.parked.take_if(is_parked) {
+                    Some(parked) => {
+                        self.parked = Some(std::mem::replace(&mut self.method, parked));
+                    }
+                    None => {
+                        let (id, options) = &self.method.asked;
+                        let method = Method::new(&self.scene, id, options, *dt)?;
+                        self.parked = Some(self.switch(method)?);
+                    }
+                }
             }
             Command::Reset => {
                 self.cutter = self.scene.cutter()?;
@@ -52,12 +68,14 @@ impl World {
                 self.undriven = Arc::clone(self.scene.body());
                 self.topology_epoch += 1;
                 self.method = Method::of_scene(&self.scene)?;
+                self.parked = None;
                 self.inputs.clone_from(&self.fresh);
+                self.forces.is_new = false;
                 for load in &mut self.loads {
                     load.next = None;
                 }
                 for tool in &mut self.tools {
-                    (tool.target, tool.is_steered) = (None, false);
+                    (tool.target, tool.is_steered, tool.next_jaws) = (None, false, None);
                 }
                 self.state.clone_from(self.scene.initial_state());
                 self.reached = self.state.t();
@@ -126,6 +144,7 @@ impl World {
                     }),
                 }
             }
+            Command::Grasp { tool } | Command::Release { tool } => self.tool(tool).map(drop),
             Command::Dt(dt) => {
                 let t = self.t();
                 match dt.is_finite() && *dt > 0.0 && t + dt > t {
@@ -144,7 +163,7 @@ impl World {
                     })
                 })
             }
-            Command::Integrator { .. } | Command::Reset => Ok(()),
+            Command::Forces(_) | Command::Integrator { .. } | Command::Reset => Ok(()),
         }
     }
 
@@ -179,6 +198,16 @@ impl World {
             load: load.ok_or_else(|| self.foreign_id())?,
             factor,
         })
+    }
+
+    /// The factor that multiplies a load with the next step, besides its own course over time; `None` for the id of a
+    /// world of another scene.
+    #[must_use]
+    pub fn load_factor(&self, load: LoadId) -> Option<f64> {
+        let own = (load.scene == self.identity.key).then(|| self.loads.get(load.place));
+        let Knob { channel, next, .. } = own.flatten()?;
+        let given = || self.inputs.course(*channel).1.last().copied();
+        Some(next.or_else(given).unwrap_or(1.0))
     }
 
     fn foreign_id(&self) -> CommandError {
@@ -227,6 +256,7 @@ impl World {
         let place = self.load(name)?.place;
         if !self.drives_loads() {
             (self.body, self.method) = self.driven_method()?;
+            self.parked = None;
             // These loads give the forces that led to the state.
             self.state.loads = None;
         }
@@ -257,8 +287,8 @@ impl World {
         Ok((driven, method))
     }
 
-    /// Goes on with another method, if a step can be taken with it.
-    fn switch(&mut self, mut method: Method) -> Result<(), CommandError> {
+    /// Goes on with another method, if a step can be taken with it; returns the one before.
+    fn switch(&mut self, mut method: Method) -> Result<Method, CommandError> {
         let Self {
             body,
             inputs,
@@ -267,7 +297,6 @@ impl World {
             ..
         } = self;
         try_step(body.system(), inputs, state, trial, &mut method)?;
-        self.method = method;
-        Ok(())
+        Ok(std::mem::replace(&mut self.method, method))
     }
 }

@@ -127,6 +127,20 @@ impl World {
         })
     }
 
+    /// The pose to which a tool goes, or its hand draws it: that of the last command, else that of its own path now. Ids of a
+    /// world of another scene give the identity.
+    #[must_use]
+    pub fn hand_pose(&self, tool: ToolId) -> Pose {
+        let own = || {
+            let tool = self.tools_with(tool)?.tools().get(tool.place)?;
+            Some(tool.motion.at(self.state.t(), &self.inputs))
+        };
+        let hand = self.tools.get(tool.place);
+        let target = hand.filter(|_| tool.scene == self.identity.key).and_then(|hand| hand.target);
+        let target = target.map(|(position, turn)| Pose::new(position, turn));
+        target.or_else(own).unwrap_or(Pose::identity())
+    }
+
     /// Forces, impulses and contacts of a tool after the last step; `None` for an id of a world of another scene.
     #[must_use]
     pub fn tool_report(&self, tool: ToolId) -> Option<ToolReport> {

@@ -13,7 +13,7 @@ use crate::error::{RestoreError, WorldStepError};
 use crate::log::Entry;
 
 const KIND: Kind = Kind {
-    name: b"sinew world v2\r\n",
+    name: b"sinew world v3\r\n",
     words: "saved world",
 };
 
@@ -36,8 +36,10 @@ pub struct Saved {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct Commanded {
     inputs: SavedInputs,
-    /// Target of each tool, and whether it was steered.
-    tools: Vec<(Target, bool)>,
+    /// Target of each tool, whether it was steered, and the jaws that the next step begins with.
+    tools: Vec<(Target, bool, Option<bool>)>,
+    /// Forces (N) on degrees of freedom that the next step begins with.
+    forces: Option<Vec<(u32, f64)>>,
     /// Factor of each load that the next step begins with.
     factors: Vec<Option<f64>>,
     drives_loads: bool,
@@ -104,7 +106,7 @@ impl Commanded {
     fn impossible_part(&self) -> Option<&'static str> {
         let within = |values: &[f64], most: f64| values.iter().all(|value| value.abs() <= most);
         let is_place = |ends: &[[f64; 3]]| within(ends.as_flattened(), FARTHEST);
-        let targets = self.tools.iter().filter_map(|(target, _)| *target);
+        let targets = self.tools.iter().filter_map(|(target, ..)| *target);
         let factors: Vec<f64> = self.factors.iter().copied().flatten().collect();
         let in_order = |pair: &[Entry]| pair[0].step <= pair[1].step;
         let last = self.log.last().map_or(0, |entry| entry.step);
@@ -141,8 +143,9 @@ impl World {
         let commanded = (!self.follows).then(|| Commanded {
             inputs: SavedInputs::of(&self.inputs),
             tools: (self.tools.iter())
-                .map(|hand| (hand.target, hand.is_steered))
+                .map(|hand| (hand.target, hand.is_steered, hand.next_jaws))
                 .collect(),
+            forces: (self.forces.is_new).then(|| self.forces.next.entries.clone()),
             factors: self.loads.iter().map(|load| load.next).collect(),
             drives_loads: self.drives_loads(),
             method: self.method.asked.clone(),
@@ -247,9 +250,11 @@ impl World {
         }
         self.method.dt = commanded.dt;
         self.inputs = inputs;
-        for (hand, (target, is_steered)) in self.tools.iter_mut().zip(&commanded.tools) {
-            (hand.target, hand.is_steered) = (*target, *is_steered);
+        for (hand, kept) in self.tools.iter_mut().zip(&commanded.tools) {
+            (hand.target, hand.is_steered, hand.next_jaws) = *kept;
         }
+        self.forces.is_new = commanded.forces.is_some();
+        self.forces.next.entries = commanded.forces.clone().unwrap_or_default();
         for (load, factor) in self.loads.iter_mut().zip(&commanded.factors) {
             load.next = *factor;
         }

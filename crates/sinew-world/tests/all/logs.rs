@@ -31,6 +31,14 @@ fn log() -> String {
             options: Options::new().with("inner", OptionValue::Table([block].into())),
         },
         Command::Dt(0.001),
+        Command::Grasp {
+            tool: "ball".into(),
+        },
+        Command::Forces(vec![(60, [0.1 + 0.2, -0.0, 1e-300]), (7, [1.0, 0.0, 0.5])]),
+        Command::Release {
+            tool: "ball".into(),
+        },
+        Command::Forces(Vec::new()),
         Command::Reset,
     ] {
         session.step().unwrap();
@@ -45,7 +53,7 @@ fn a_log_comes_back_as_it_was() {
     let text = log();
     let read = parse(&text).unwrap();
     assert_eq!(read.to_text(), text);
-    assert_eq!((read.entries().len(), read.steps()), (5, 6));
+    assert_eq!((read.entries().len(), read.steps()), (9, 10));
     let Command::Pose {
         position,
         rotation_vector,
@@ -122,15 +130,15 @@ fn bad_lines_are_refused_by_file_line_and_what_to_do() {
         ),
         (
             said("factor", "faktor"),
-            "s.log:5: \"faktor\": expected pose, factor, integrator, dt, reset, cut or end",
+            "s.log:5: \"faktor\": expected pose, grasp, release, factor, forces, integrator, dt, reset, cut or end",
         ),
         (
-            said("6 end", "6 end\n7 end"),
-            "s.log:10: a line after the end: expected none after `6 end`",
+            said("10 end", "10 end\n11 end"),
+            "s.log:14: a line after the end: expected none after `10 end`",
         ),
         (
-            said("6 end", "4 end"),
-            "s.log:9: step 4 comes after step 5 of the line above: lines stand in the order of steps",
+            said("10 end", "4 end"),
+            "s.log:13: step 4 comes after step 9 of the line above: lines stand in the order of steps",
         ),
         (
             said("dt 0.001", "dt 1e999"),
@@ -226,14 +234,14 @@ fn a_journal_follows_a_log_that_goes_back() {
 #[test]
 fn a_log_without_an_end_goes_as_far_as_its_last_whole_command() {
     let text = log();
-    let without_end = text.replace("6 end\n", "");
+    let without_end = text.replace("10 end\n", "");
     let whole = parse(&without_end).unwrap();
     assert!(whole.is_cut_off() && !parse(&text).unwrap().is_cut_off());
-    assert_eq!((whole.entries().len(), whole.steps()), (5, 5));
+    assert_eq!((whole.entries().len(), whole.steps()), (9, 9));
     // Of a number of which digits are missing nothing is taken.
     for missing in 1..6 {
         let part = &without_end[..without_end.len() - missing];
-        assert_eq!(parse(part).unwrap().entries().len(), 4, "{part}");
+        assert_eq!(parse(part).unwrap().entries().len(), 8, "{part}");
     }
     assert_eq!(parse(text.trim_end()).unwrap(), parse(&text).unwrap());
 }

@@ -10,6 +10,7 @@
 mod common;
 mod cuts;
 mod driving;
+mod hands;
 mod lips;
 mod logs;
 mod moving_cuts;

@@ -31,7 +31,22 @@ impl Dice {
 
 /// Any command, also such as are refused.
 fn command(dice: &mut Dice) -> Command {
-    match dice.0.next_u32() % 20 {
+    match dice.0.next_u32() % 24 {
+        20 => Command::Grasp {
+            tool: dice.of(&["ball", "plate", "needle"]).into(),
+        },
+        21 => Command::Release {
+            tool: dice.of(&["ball", "plate", "needle"]).into(),
+        },
+        22 | 23 => {
+            let force = |_| {
+                (
+                    dice.0.next_u32() % 66,
+                    [0; 3].map(|_| dice.between(-0.02, 0.02)),
+                )
+            };
+            Command::Forces((0..3).map(force).collect())
+        }
         0..=9 => Command::Pose {
             tool: dice.of(&["ball", "ball", "plate", "needle"]).into(),
             position: [

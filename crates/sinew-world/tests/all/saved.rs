@@ -37,6 +37,13 @@ fn drive(world: &mut World, steps: std::ops::Range<usize>) {
                 to: blade(0.018),
             }),
             30 => Some(Command::Dt(0.001)),
+            8 | 72 => Some(Command::Grasp {
+                tool: "ball".into(),
+            }),
+            16 | 75 => Some(Command::Forces(vec![(50, [0.01, 0.0, 1e-3 * step as f64])])),
+            80 => Some(Command::Release {
+                tool: "ball".into(),
+            }),
             _ => None,
         };
         if let Some(command) = command {
@@ -57,6 +64,9 @@ fn a_driven_and_cut_world_continues_bit_for_bit_here_and_in_another_world() {
             load: "load 2".into(),
             factor: 0.5,
         })
+        .unwrap();
+    world
+        .command(Command::Forces(vec![(51, [0.0, 0.02, 0.0])]))
         .unwrap();
     let saved = world.save();
     drive(&mut world, 60..100);

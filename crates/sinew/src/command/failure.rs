@@ -3,7 +3,6 @@
 use std::env::var_os;
 use std::io::{self, IsTerminal, stderr};
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 use sinew_core::{OptionError, SimulateError};
@@ -446,7 +445,7 @@ impl Failure {
     }
 
     /// Writes the message to standard error and returns the exit code.
-    pub(crate) fn report(&self) -> ExitCode {
+    pub(crate) fn report(&self) -> u8 {
         // Findings were reported as they were found.
         if !matches!(self, Self::Findings) {
             complain(&format!("error: {self}"));
@@ -466,7 +465,7 @@ impl Failure {
         {
             complain(&report);
         }
-        ExitCode::from(self.exit_code())
+        self.exit_code()
     }
 }
 

@@ -24,3 +24,4 @@ mod scene_with;
 mod share_of;
 
 pub(crate) use failure::Failure;
+pub use scene_with::limit_memory;

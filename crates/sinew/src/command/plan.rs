@@ -10,11 +10,12 @@ mod program_json;
 
 use std::path::PathBuf;
 
+use serde_json::Value;
 use sinew_measure::advice::{
-    DEFAULT_PILOT_SECONDS, Question, QuestionError, advise, check_budget, check_pilot_seconds,
+    AdviceError, DEFAULT_PILOT_SECONDS, Question, QuestionError, advise, check_budget, check_pilot_seconds,
     check_tolerance,
 };
-use sinew_scene::PlanSection;
+use sinew_scene::{Plan, PlanSection, Scene, SceneError, Simulation};
 use sinew_scene::output::say;
 
 use super::Failure;
@@ -65,8 +66,46 @@ pub(crate) struct Arguments {
     values: Values,
 }
 
-pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let scene = arguments.values.load(&arguments.scene)?.read_mesh()?;
+/// A scene with its mesh, built, and its plan.
+struct Planned {
+    simulation: Simulation,
+    plan: Plan,
+    cost: Cost,
+}
+
+/// Why there is no plan.
+#[derive(Debug, thiserror::Error)]
+pub enum PlanError {
+    /// A scene that cannot be built.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// A scene that needs more memory than there is.
+    #[error("{0}")]
+    Memory(String),
+    /// A scene for which there is no advice.
+    #[error(transparent)]
+    Advice(#[from] AdviceError),
+}
+
+/// The plan of a scene as one JSON object, or the answer to a question with the plan in it: what `sinew plan --json` prints.
+///
+/// # Errors
+/// [`PlanError`].
+pub fn plan_json(scene: Scene, question: Option<Question>) -> Result<Value, PlanError> {
+    let planned = planned(scene).map_err(|failure| match failure {
+        Failure::Scene(error) => PlanError::Scene(error),
+        other => PlanError::Memory(other.to_string()),
+    })?;
+    let object = planned.as_json();
+    let Some(question) = question else {
+        return Ok(object);
+    };
+    let advice = advise(planned.simulation, question)?;
+    Ok(with_plan(advice_json::as_json(&advice).object, object))
+}
+
+fn planned(scene: Scene) -> Result<Planned, Failure> {
+    let scene = scene.read_mesh()?;
     let footprint = scene.footprint();
     if let Some(footprint) = &footprint {
         cost::check_memory(footprint)?;
@@ -75,18 +114,42 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let cost = Cost::of(&simulation, footprint);
     let mut plan = simulation.plan();
     plan.warnings.extend(cost.warning());
+    Ok(Planned {
+        simulation,
+        plan,
+        cost,
+    })
+}
+
+impl Planned {
+    fn as_json(&self) -> Value {
+        plan_json::as_json(&self.simulation, &self.plan, &self.cost)
+    }
+}
+
+/// An answer with the plan in it.
+fn with_plan(mut answer: Value, plan: Value) -> Value {
+    if let Some(object) = answer.as_object_mut() {
+        object.insert("plan".to_owned(), plan);
+    }
+    answer
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let mut planned = planned(arguments.values.load(&arguments.scene)?)?;
     let advised = arguments.tolerance.is_some() || arguments.budget.is_some();
     if !arguments.json {
-        plan.sections.push(PlanSection::new("cost", cost.lines()));
-        say(plan.to_string().trim_end())?;
+        let section = PlanSection::new("cost", planned.cost.lines());
+        planned.plan.sections.push(section);
+        say(planned.plan.to_string().trim_end())?;
     } else if !advised && !arguments.program {
-        say(&plan_json::as_json(&simulation, &plan, &cost).to_string())?;
+        say(&planned.as_json().to_string())?;
     }
     if arguments.strict {
-        Failure::of_warnings(&plan.warnings)?;
+        Failure::of_warnings(&planned.plan.warnings)?;
     }
     if arguments.program {
-        return program::print(&simulation, arguments.json);
+        return program::print(&planned.simulation, arguments.json);
     }
     if !advised {
         return Ok(());
@@ -97,8 +160,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         pilot_seconds: arguments.pilot_seconds,
         cost: sinew_measure::Cost::CpuTime,
     };
-    let planned = plan_json::as_json(&simulation, &plan, &cost);
-    let advice = advise(simulation, question);
+    let object = planned.as_json();
+    let advice = advise(planned.simulation, question);
     let advice = advice.map_err(|source| Failure::Advice {
         scene: arguments.scene.clone(),
         source,
@@ -107,11 +170,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         say(&format!("\n{}", advice::text(&advice)))?;
         return Ok(());
     }
-    let mut advice = advice_json::as_json(&advice);
-    if let Some(object) = advice.object.as_object_mut() {
-        object.insert("plan".to_owned(), planned);
-    }
-    say(&advice.object.to_string())?;
+    let advice = advice_json::as_json(&advice);
+    say(&with_plan(advice.object, object).to_string())?;
     if advice.gaps.is_empty() {
         return Ok(());
     }

@@ -102,7 +102,7 @@ const SHARE: f64 = 0.9;
 
 /// Lets factors take as much memory as a scene says, or nine tenths of what is left.
 #[cfg(feature = "implicit")]
-pub(super) fn limit_memory(scene: &Scene) {
+pub fn limit_memory(scene: &Scene) {
     use sinew_integrators::Memory;
     let asked = scene.settings().memory.map(|megabytes| 1e6 * megabytes);
     let left = || Some(SHARE * memory_left()? as f64);
@@ -112,7 +112,7 @@ pub(super) fn limit_memory(scene: &Scene) {
 
 /// Without implicit methods there are no factors.
 #[cfg(not(feature = "implicit"))]
-pub(super) fn limit_memory(_: &Scene) {}
+pub fn limit_memory(_: &Scene) {}
 
 /// The key of the scene that an option sets.
 fn key_of(option: &str, value: &str) -> String {

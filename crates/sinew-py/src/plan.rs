@@ -1,0 +1,78 @@
+//! Plans and advice, found in a thread of their own so that Ctrl-C is heard.
+
+use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::thread;
+use std::time::Duration;
+
+use pyo3::exceptions::PyMemoryError;
+use pyo3::prelude::*;
+use serde_json::Value;
+use sinew::cli::{PlanError, plan_json};
+use sinew_measure::advice::{Question, check_budget, check_pilot_seconds, check_tolerance};
+use sinew_scene::Scene;
+
+use crate::errors::{of_scene, scene_error, value_error};
+use crate::guard::guarded;
+
+/// Time between two looks for a signal.
+const LOOK: Duration = Duration::from_millis(50);
+
+/// What is asked of a scene: error, cost and time (s) of pilots.
+pub(crate) fn question(
+    tolerance: Option<f64>,
+    budget: Option<f64>,
+    seconds: f64,
+) -> PyResult<Option<Question>> {
+    let named = |name: &str, error: &dyn std::fmt::Display| value_error(format!("{name}: {error}"));
+    if let Some(tolerance) = tolerance {
+        check_tolerance(tolerance).map_err(|error| named("tolerance", &error))?;
+    }
+    if let Some(budget) = budget {
+        check_budget(budget).map_err(|error| named("budget", &error))?;
+    }
+    check_pilot_seconds(seconds).map_err(|error| named("seconds", &error))?;
+    let is_asked = tolerance.is_some() || budget.is_some();
+    Ok(is_asked.then_some(Question {
+        tolerance,
+        budget,
+        pilot_seconds: seconds,
+        cost: sinew_measure::Cost::CpuTime,
+    }))
+}
+
+/// The plan as one object. A signal leaves the thread to end by itself.
+pub(crate) fn planned(
+    py: Python<'_>,
+    scene: Scene,
+    question: Option<Question>,
+) -> PyResult<Value> {
+    let (to, from) = channel();
+    let work = move || {
+        let planned = guarded(|| plan_json(scene, question).map_err(of_plan));
+        // Nobody listens after a signal.
+        let _ = to.send(planned);
+    };
+    let begun = thread::Builder::new().name("sinew plan".into()).spawn(work);
+    begun.map_err(|error| PyMemoryError::new_err(error.to_string()))?;
+    let waits = from;
+    let waits = std::sync::Mutex::new(waits);
+    loop {
+        let heard = py.detach(|| {
+            let waits = waits.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+            waits.recv_timeout(LOOK)
+        });
+        match heard {
+            Ok(planned) => return planned,
+            Err(RecvTimeoutError::Timeout) => py.check_signals()?,
+            Err(RecvTimeoutError::Disconnected) => return Err(crate::guard::unusable()),
+        }
+    }
+}
+
+fn of_plan(error: PlanError) -> PyErr {
+    match error {
+        PlanError::Scene(error) => of_scene(&error),
+        PlanError::Memory(text) => PyMemoryError::new_err(text),
+        other => scene_error(&other),
+    }
+}

@@ -1,0 +1,116 @@
+//! Whole runs of a scene into a folder.
+
+use std::path::{Path, PathBuf};
+
+use pyo3::prelude::*;
+use sinew_core::OptionValue;
+use sinew_record::{Request, RunFolder};
+use sinew_scene::{Scene, Simulation, WarningKind};
+use sinew_world::World;
+
+use crate::errors::{of_run, of_scene, of_world, scene_error, value_error};
+use crate::watch::Onlooker;
+
+/// Changes to `[output]` for a run of which only tables are wanted.
+const TABLES_ALONE: [&str; 2] = ["output.fields={ frames = 1 }", "output.checkpoint={ every = 1e9 }"];
+
+/// Degrees of freedom from which on rows of energy come with frames, unless a scene says otherwise.
+const LARGE: usize = 30_000;
+
+/// A run that is asked for.
+pub(crate) struct Asked {
+    pub(crate) threads: Option<OptionValue>,
+    pub(crate) again: bool,
+    /// False if the folder is read and thrown away.
+    pub(crate) keeps_fields: bool,
+}
+
+/// A number of threads, or "auto".
+pub(crate) fn threads(value: Option<&Bound<'_, PyAny>>) -> PyResult<Option<OptionValue>> {
+    let Some(value) = value else {
+        return Ok(None);
+    };
+    let wrong = || value_error("threads: expected a whole number from 1 on, \"auto\" or None");
+    if let Ok(text) = value.extract::<String>() {
+        let is_auto = text == "auto";
+        return is_auto.then_some(Some(OptionValue::Text(text))).ok_or_else(wrong);
+    }
+    let count = value.extract::<u32>().map_err(|_| wrong())?;
+    match count {
+        0 => Err(wrong()),
+        count => Ok(Some(OptionValue::Number(f64::from(count)))),
+    }
+}
+
+/// A scene with the integrator of its run, in motion.
+pub(crate) fn following(
+    mut simulation: Simulation,
+    threads: Option<&OptionValue>,
+) -> PyResult<World> {
+    if let Some(refused) = simulation.refused_load() {
+        return Err(scene_error(&refused));
+    }
+    simulation.end_at_duration();
+    let id = &simulation.settings().integrator;
+    let options = sinew_integrators::with_threads(id, &simulation.options(), threads);
+    let integrator = sinew_integrators::build(id, &options).map_err(|error| scene_error(&error))?;
+    let mut world = World::following(simulation, integrator).map_err(of_world)?;
+    world.set_up().map_err(|error| of_scene(&error))?;
+    Ok(world)
+}
+
+/// Runs a scene into a folder.
+pub(crate) fn into_folder(
+    scene: &Scene,
+    folder: &Path,
+    asked: &Asked,
+    onlooker: &mut Onlooker,
+) -> PyResult<()> {
+    let scene = match asked.keeps_fields {
+        true => scene.clone(),
+        false => with_tables_alone(scene)?,
+    };
+    sinew::cli::limit_memory(&scene);
+    let simulation = scene.build().map_err(|error| of_scene(&error))?;
+    let mut warnings = simulation.warnings();
+    warnings.retain(|warning| warning.kind != WarningKind::NoProbe);
+    let request = Request {
+        threads: asked.threads.as_ref().map(|threads| match threads {
+            OptionValue::Number(count) => count.to_string(),
+            _ => "auto".to_owned(),
+        }),
+        warnings: warnings.iter().map(ToString::to_string).collect(),
+        values: Vec::new(),
+        again: asked.again,
+    };
+    let mut world = following(simulation, asked.threads.as_ref())?;
+    let folder = RunFolder::create(folder, world.scene(), &request).map_err(of_run)?;
+    folder.run(&mut world, onlooker).map_err(of_run)?;
+    Ok(())
+}
+
+fn with_tables_alone(scene: &Scene) -> PyResult<Scene> {
+    let mut values: Vec<String> = TABLES_ALONE.map(str::to_owned).to_vec();
+    if scene.output().energy.is_none() {
+        let meshed = scene.clone().read_mesh().map_err(|error| of_scene(&error))?;
+        let nodes = meshed.mesh().map_or(0, |mesh| mesh.points.len());
+        if 3 * nodes > LARGE {
+            let frames = match scene.output().fields {
+                sinew_scene::Instants::Every(every) => format!("{{ every = {every:?} }}"),
+                sinew_scene::Instants::Frames(frames) => format!("{{ frames = {frames} }}"),
+            };
+            values.push(format!("output.energy={frames}"));
+        }
+    }
+    Scene::parse_with(scene.source(), &values).map_err(|error| of_scene(&error))
+}
+
+/// The folder that a caller named.
+pub(crate) fn named(out: Option<&Bound<'_, PyAny>>) -> PyResult<Option<PathBuf>> {
+    let Some(out) = out else {
+        return Ok(None);
+    };
+    let path = out.extract::<PathBuf>();
+    let path = path.map_err(|_| value_error("out: expected the path of a folder, or None"))?;
+    Ok(Some(path))
+}

@@ -1,0 +1,79 @@
+//! The one who watches steps for Python: Ctrl-C ends them in order.
+
+use pyo3::prelude::*;
+use sinew_core::{Moment, RecordError, Verdict};
+use sinew_record::{Companion, Pace};
+use sinew_world::Recorder;
+
+/// Looks several times a second whether a signal came.
+pub(crate) struct Watch {
+    pace: Pace,
+    /// The exception that ended the steps.
+    pub(crate) raised: Option<PyErr>,
+}
+
+impl Watch {
+    pub(crate) fn new() -> Self {
+        Self {
+            pace: Pace::new(0),
+            raised: None,
+        }
+    }
+
+    fn look(&mut self) -> Verdict {
+        match Python::attach(|py| py.check_signals()) {
+            Ok(()) => Verdict::Continue,
+            Err(error) => {
+                self.raised = Some(error);
+                Verdict::Stop
+            }
+        }
+    }
+}
+
+impl sinew_core::Recorder for Watch {
+    fn next(&mut self, step: usize) -> Option<usize> {
+        Some(self.pace.next().max(step))
+    }
+
+    fn record(&mut self, moment: &Moment<'_>) -> Result<Verdict, RecordError> {
+        self.pace.look(moment.step);
+        Ok(self.look())
+    }
+}
+
+impl Recorder for Watch {}
+
+/// Watches a run, and tells a function of Python how far it is.
+pub(crate) struct Onlooker {
+    /// Called with the time (s) of the state and the duration (s); `False` ends the run.
+    pub(crate) progress: Option<Py<PyAny>>,
+    pub(crate) duration: f64,
+    /// The exception that ended the run.
+    pub(crate) raised: Option<PyErr>,
+    pub(crate) is_ended: bool,
+}
+
+impl Companion for Onlooker {
+    fn is_interrupted(&self) -> bool {
+        self.is_ended
+    }
+
+    fn progress(&mut self, _: usize, t: f64) {
+        let told = Python::attach(|py| {
+            py.check_signals()?;
+            let Some(progress) = &self.progress else {
+                return Ok(false);
+            };
+            let said = progress.call1(py, (t, self.duration))?;
+            Ok(said.extract::<bool>(py).is_ok_and(|goes_on| !goes_on))
+        });
+        match told {
+            Ok(ends) => self.is_ended |= ends,
+            Err(error) => {
+                self.is_ended = true;
+                self.raised.get_or_insert(error);
+            }
+        }
+    }
+}
