@@ -230,7 +230,9 @@ mod tests {
     fn what_could_not_be_given_is_not_read() {
         let read = |sets: &[[f64; 2]], force| {
             let end = |to: f64| Some(to).filter(|to| *to != f64::INFINITY);
-            let forces = sets.iter().map(|[from, to]| (*from, end(*to), vec![(0, force)]));
+            let forces = sets
+                .iter()
+                .map(|[from, to]| (*from, end(*to), vec![(0, force)]));
             let saved = SavedInputs {
                 channels: Vec::new(),
                 forces: forces.collect(),

@@ -147,7 +147,9 @@ pub(crate) fn index_rows<const N: usize>(
         ))
     };
     let numpy = value.py().import("numpy")?;
-    let array = numpy.call_method1("asarray", (value,)).map_err(|_| wrong())?;
+    let array = numpy
+        .call_method1("asarray", (value,))
+        .map_err(|_| wrong())?;
     let kind: String = array.getattr("dtype")?.getattr("kind")?.extract()?;
     let is_empty = array.getattr("size")?.extract::<usize>()? == 0;
     if kind != "i" && kind != "u" && !is_empty {
@@ -162,7 +164,9 @@ pub(crate) fn index_rows<const N: usize>(
     }
     let (what, count) = of;
     let index = |value: i64| {
-        let index = u32::try_from(value).ok().filter(|index| (*index as usize) < count);
+        let index = u32::try_from(value)
+            .ok()
+            .filter(|index| (*index as usize) < count);
         index.ok_or_else(|| {
             value_error(format!(
                 "{name}: {value} is no {what}: expected numbers from 0 to {}",
@@ -194,8 +198,12 @@ pub(crate) fn indices(
             described(value)
         ))
     };
-    let array = numpy.call_method1("atleast_1d", (value,)).map_err(|_| wrong())?;
-    let column = array.call_method1("reshape", ((-1, 1),)).map_err(|_| wrong())?;
+    let array = numpy
+        .call_method1("atleast_1d", (value,))
+        .map_err(|_| wrong())?;
+    let column = array
+        .call_method1("reshape", ((-1, 1),))
+        .map_err(|_| wrong())?;
     let rows = index_rows::<1>(&column, name, of)?;
     Ok(rows.into_iter().map(|[index]| index).collect())
 }

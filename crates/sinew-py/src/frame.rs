@@ -22,19 +22,26 @@ pub(crate) fn read_frame(py: Python<'_>, path: PathBuf) -> PyResult<Bound<'_, Py
         frame.set_item(&data.name, shaped)?;
     }
     let cells = mesh.cells.iter();
-    let cells: usize = cells.map(|block| block.connectivity.len() / block.kind.node_count()).sum();
+    let cells: usize = cells
+        .map(|block| block.connectivity.len() / block.kind.node_count())
+        .sum();
     for data in &mesh.cell_data {
         frame.set_item(&data.name, shaped(py, data.blocks.concat(), cells)?)?;
     }
     frame.set_item("tets", rows(py, cells_of::<4>(&mesh, CellType::Tetra))?)?;
-    frame.set_item("triangles", rows(py, cells_of::<3>(&mesh, CellType::Triangle))?)?;
+    frame.set_item(
+        "triangles",
+        rows(py, cells_of::<3>(&mesh, CellType::Triangle))?,
+    )?;
     frame.set_item("points", rows(py, mesh.points)?)?;
     Ok(frame)
 }
 
 fn cells_of<const N: usize>(mesh: &Mesh, kind: CellType) -> Vec<[u32; N]> {
     let blocks = mesh.cells.iter().filter(|block| block.kind == kind);
-    let all: Vec<u32> = blocks.flat_map(|block| block.connectivity.iter().copied()).collect();
+    let all: Vec<u32> = blocks
+        .flat_map(|block| block.connectivity.iter().copied())
+        .collect();
     all.as_chunks().0.to_vec()
 }
 

@@ -21,7 +21,10 @@ impl Load {
     /// Factor of the load from the next step on, beside its own course over time; 1 at the beginning.
     #[getter]
     fn factor(&self, py: Python<'_>) -> PyResult<f64> {
-        let factor = self.session.get().with(py, |world| Ok(world.load_factor(self.id)))?;
+        let factor = self
+            .session
+            .get()
+            .with(py, |world| Ok(world.load_factor(self.id)))?;
         Ok(factor.unwrap_or(1.0))
     }
 
@@ -29,11 +32,17 @@ impl Load {
     fn set_factor(&self, py: Python<'_>, factor: f64) -> PyResult<()> {
         self.session.get().with(py, |world| {
             let t = world.t();
-            world.scale_load(self.id, factor).map_err(|error| of_command(error, t))
+            world
+                .scale_load(self.id, factor)
+                .map_err(|error| of_command(error, t))
         })
     }
 
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
-        Ok(format!("Load(\"{}\", factor={})", self.name, self.factor(py)?))
+        Ok(format!(
+            "Load(\"{}\", factor={})",
+            self.name,
+            self.factor(py)?
+        ))
     }
 }

@@ -75,14 +75,17 @@ impl Blocks {
         let columns = PyArray1::from_vec(py, self.columns);
         let blocks = PyArray1::from_vec(py, self.values).reshape([count, size, size])?;
         let Ok(sparse) = py.import("scipy.sparse") else {
-            return Ok((ends, columns, blocks).into_pyobject(py)?.into_any().unbind());
+            return Ok((ends, columns, blocks)
+                .into_pyobject(py)?
+                .into_any()
+                .unbind());
         };
-        let kwargs = crate::errors::kwargs(
-            py,
-            &[("shape", (rows, rows).into_pyobject(py)?.into_any())],
-        )?;
+        let kwargs =
+            crate::errors::kwargs(py, &[("shape", (rows, rows).into_pyobject(py)?.into_any())])?;
         let parts = ((blocks, columns, ends),);
-        Ok(sparse.call_method("bsr_array", parts, Some(&kwargs))?.unbind())
+        Ok(sparse
+            .call_method("bsr_array", parts, Some(&kwargs))?
+            .unbind())
     }
 }
 

@@ -63,7 +63,10 @@ impl Mesh {
         data: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<Self> {
         let points = rows_of::<3>(points, "points", "m")?;
-        if let Some(node) = points.iter().position(|at| !at.iter().all(|x| x.is_finite())) {
+        if let Some(node) = points
+            .iter()
+            .position(|at| !at.iter().all(|x| x.is_finite()))
+        {
             return Err(value_error(format!(
                 "points: node {node} is at {:?}: expected finite numbers",
                 points[node]
@@ -71,7 +74,8 @@ impl Mesh {
         }
         let tets = index_rows::<4>(tets, "tets", ("node", points.len()))?;
         let tets: Vec<[u32; 4]> = tets.into_iter().map(|tet| upright(&points, tet)).collect();
-        let mut mesh = TetMesh::new(points, tets).map_err(|error| value_error(format!("tets: {error}")))?;
+        let mut mesh =
+            TetMesh::new(points, tets).map_err(|error| value_error(format!("tets: {error}")))?;
         for (name, members) in groups.into_iter().flat_map(|groups| groups.iter()) {
             let name: String = name.extract()?;
             let members = members_of(&mesh, &name, &members)?;
@@ -94,7 +98,8 @@ impl Mesh {
     fn read(_: &Bound<'_, PyType>, py: Python<'_>, path: PathBuf) -> PyResult<Self> {
         let mesh = py.detach(|| {
             guarded(|| {
-                let mesh = sinew_mesh::read_mesh_file(&path).map_err(|error| scene_error(&error))?;
+                let mesh =
+                    sinew_mesh::read_mesh_file(&path).map_err(|error| scene_error(&error))?;
                 let mesh = mesh.to_tet_mesh();
                 mesh.map_err(|error| scene_error(&format!("{}: {error}", path.display())))
             })
@@ -131,9 +136,12 @@ impl Mesh {
                         .map_err(|error| failed(&error))?,
                 }
                 // Whole or not at all.
-                let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+                let folder = path
+                    .parent()
+                    .filter(|folder| !folder.as_os_str().is_empty());
                 let folder = folder.unwrap_or(std::path::Path::new("."));
-                let mut file = tempfile::NamedTempFile::new_in(folder).map_err(|error| failed(&error))?;
+                let mut file =
+                    tempfile::NamedTempFile::new_in(folder).map_err(|error| failed(&error))?;
                 file.write_all(&bytes).map_err(|error| failed(&error))?;
                 file.persist(&path).map_err(|error| failed(&error))?;
                 Ok(())
@@ -209,7 +217,9 @@ impl Mesh {
         )
     }
 
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyType>, Bound<'py, PyAny>)> {
+    fn __reduce__<'py>(
+        slf: &Bound<'py, Self>,
+    ) -> PyResult<(Bound<'py, PyType>, Bound<'py, PyAny>)> {
         let (py, own) = (slf.py(), slf.get());
         let groups = PyDict::new(py);
         for (name, group) in own.groups(py)? {
@@ -254,10 +264,16 @@ fn upright(points: &[[f64; 3]], tet: [u32; 4]) -> [u32; 4] {
 
 fn members_of(mesh: &TetMesh, name: &str, value: &Bound<'_, PyAny>) -> PyResult<GroupMembers> {
     let name = format!("groups[\"{name}\"]");
-    let (nodes, tets) = (("node", mesh.points.len()), ("tetrahedron", mesh.tets.len()));
+    let (nodes, tets) = (
+        ("node", mesh.points.len()),
+        ("tetrahedron", mesh.tets.len()),
+    );
     // A pair of dimension and members, or a Group; else arrays tell by their shape.
     let pair = match value.cast::<Group>() {
-        Ok(group) => Some((group.get().dim, group.get().members.bind(value.py()).clone())),
+        Ok(group) => Some((
+            group.get().dim,
+            group.get().members.bind(value.py()).clone(),
+        )),
         Err(_) => match value.cast::<pyo3::types::PyTuple>() {
             Ok(tuple) if tuple.len() == 2 => tuple.extract::<(u8, Bound<'_, PyAny>)>().ok(),
             _ => None,
@@ -282,7 +298,9 @@ fn members_of(mesh: &TetMesh, name: &str, value: &Bound<'_, PyAny>) -> PyResult<
         (_, Some(width)) => Err(value_error(format!(
             "{name}: expected indices of tetrahedra (k,), nodes of triangles (k, 3) or a Group, got rows of {width}"
         ))),
-        (Some(dim), None) => Err(value_error(format!("{name}: no cells have the dimension {dim}"))),
+        (Some(dim), None) => Err(value_error(format!(
+            "{name}: no cells have the dimension {dim}"
+        ))),
     }
 }
 

@@ -41,11 +41,7 @@ pub(crate) fn question(
 }
 
 /// The plan as one object. A signal leaves the thread to end by itself.
-pub(crate) fn planned(
-    py: Python<'_>,
-    scene: Scene,
-    question: Option<Question>,
-) -> PyResult<Value> {
+pub(crate) fn planned(py: Python<'_>, scene: Scene, question: Option<Question>) -> PyResult<Value> {
     let (to, from) = channel();
     let work = move || {
         let planned = guarded(|| plan_json(scene, question).map_err(of_plan));
@@ -58,7 +54,9 @@ pub(crate) fn planned(
     let waits = std::sync::Mutex::new(waits);
     loop {
         let heard = py.detach(|| {
-            let waits = waits.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+            let waits = waits
+                .lock()
+                .unwrap_or_else(std::sync::PoisonError::into_inner);
             waits.recv_timeout(LOOK)
         });
         match heard {

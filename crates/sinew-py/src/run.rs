@@ -12,7 +12,10 @@ use crate::errors::{of_run, of_scene, of_world, scene_error, value_error};
 use crate::watch::Onlooker;
 
 /// Changes to `[output]` for a run of which only tables are wanted.
-const TABLES_ALONE: [&str; 2] = ["output.fields={ frames = 1 }", "output.checkpoint={ every = 1e9 }"];
+const TABLES_ALONE: [&str; 2] = [
+    "output.fields={ frames = 1 }",
+    "output.checkpoint={ every = 1e9 }",
+];
 
 /// Degrees of freedom from which on rows of energy come with frames, unless a scene says otherwise.
 const LARGE: usize = 30_000;
@@ -33,7 +36,9 @@ pub(crate) fn threads(value: Option<&Bound<'_, PyAny>>) -> PyResult<Option<Optio
     let wrong = || value_error("threads: expected a whole number from 1 on, \"auto\" or None");
     if let Ok(text) = value.extract::<String>() {
         let is_auto = text == "auto";
-        return is_auto.then_some(Some(OptionValue::Text(text))).ok_or_else(wrong);
+        return is_auto
+            .then_some(Some(OptionValue::Text(text)))
+            .ok_or_else(wrong);
     }
     let count = value.extract::<u32>().map_err(|_| wrong())?;
     match count {
@@ -92,7 +97,10 @@ pub(crate) fn into_folder(
 fn with_tables_alone(scene: &Scene) -> PyResult<Scene> {
     let mut values: Vec<String> = TABLES_ALONE.map(str::to_owned).to_vec();
     if scene.output().energy.is_none() {
-        let meshed = scene.clone().read_mesh().map_err(|error| of_scene(&error))?;
+        let meshed = scene
+            .clone()
+            .read_mesh()
+            .map_err(|error| of_scene(&error))?;
         let nodes = meshed.mesh().map_or(0, |mesh| mesh.points.len());
         if 3 * nodes > LARGE {
             let frames = match scene.output().fields {

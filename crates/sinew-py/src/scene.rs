@@ -64,7 +64,10 @@ impl Warning {
     ) -> (Bound<'py, PyType>, (String, String, Py<PyDict>)) {
         let own = slf.get();
         let numbers = own.numbers.clone_ref(slf.py());
-        (slf.get_type(), (own.kind.clone(), own.text.clone(), numbers))
+        (
+            slf.get_type(),
+            (own.kind.clone(), own.text.clone(), numbers),
+        )
     }
 }
 
@@ -245,15 +248,15 @@ impl Scene {
         let question = plan::question(tolerance, budget, seconds)?;
         let object = plan::planned(py, self.scene.clone(), question)?;
         let object = from_json(py, &object)?;
-        py.import("sinew_sim._plan")?.call_method1("Plan", (object,))
+        py.import("sinew_sim._plan")?
+            .call_method1("Plan", (object,))
     }
 
     /// The largest stable step (s) of the scene's integrator; inf where every step is stable or no limit is known.
     fn stable_step(&self, py: Python<'_>) -> PyResult<f64> {
         let built = self.built(py)?;
-        let step = py.detach(|| {
-            guarded(|| built.stable_step().map_err(|error| scene_error(&error)))
-        })?;
+        let step =
+            py.detach(|| guarded(|| built.stable_step().map_err(|error| scene_error(&error))))?;
         Ok(match step {
             StableStep::UpTo(limit) => limit,
             StableStep::Any | StableStep::Unknown => f64::INFINITY,
@@ -296,7 +299,9 @@ impl Scene {
         };
         let scratch = match named {
             Some(_) => None,
-            None => Some(tempfile::tempdir().map_err(|error| PyOSError::new_err(error.to_string()))?),
+            None => {
+                Some(tempfile::tempdir().map_err(|error| PyOSError::new_err(error.to_string()))?)
+            }
         };
         let folder = match (&named, &scratch) {
             (Some(folder), _) => folder.clone(),
@@ -363,9 +368,9 @@ impl Scene {
         let files = PyDict::new(py);
         for path in own.scene.input_files().into_iter().skip(1) {
             if source.given_mesh(&path).is_none() {
-                let content = source.read(&path).map_err(|error| {
-                    PyOSError::new_err(format!("{}: {error}", path.display()))
-                })?;
+                let content = source
+                    .read(&path)
+                    .map_err(|error| PyOSError::new_err(format!("{}: {error}", path.display())))?;
                 files.set_item(&path, PyBytes::new(py, &content))?;
             }
         }
@@ -397,7 +402,11 @@ impl Scene {
             source = source.with_file(path.extract::<PathBuf>()?, content);
         }
         if let Some(mesh) = mesh {
-            let name: PathBuf = files.py().import("sinew_sim._values")?.getattr("MESH_NAME")?.extract()?;
+            let name: PathBuf = files
+                .py()
+                .import("sinew_sim._values")?
+                .getattr("MESH_NAME")?
+                .extract()?;
             let path = source.resolve(&name);
             source = source.with_mesh(path, Arc::clone(&mesh.get().mesh), mesh.get().content());
         }
@@ -411,7 +420,14 @@ impl Scene {
         let source = self.scene.source();
         let paths = self.scene.input_files();
         let mesh = paths.iter().find_map(|path| source.given_mesh(path));
-        let mesh = mesh.map(|mesh| Bound::new(py, Mesh { mesh: Arc::clone(mesh) }));
+        let mesh = mesh.map(|mesh| {
+            Bound::new(
+                py,
+                Mesh {
+                    mesh: Arc::clone(mesh),
+                },
+            )
+        });
         mesh.transpose()
     }
 }

@@ -12,9 +12,7 @@ use sinew_scene::Reaction;
 use sinew_world::{Command, Ended, Saved, World};
 
 use crate::arrays::{filled, filled_flat, indices, read_only, rows, rows_of, vector};
-use crate::errors::{
-    of_advance, of_advance_to, of_command, of_report, of_step, value_error,
-};
+use crate::errors::{of_advance, of_advance_to, of_command, of_report, of_step, value_error};
 use crate::guard::{guarded, guarded_here, unusable};
 use crate::load::Load;
 use crate::mesh::Mesh;
@@ -264,7 +262,9 @@ impl Session {
         self.with(py, |world| {
             let nodes = nodes_of(world);
             if positions.is_some() {
-                filled(py, positions, nodes, |out| world.positions(out).map_err(of_report))?;
+                filled(py, positions, nodes, |out| {
+                    world.positions(out).map_err(of_report)
+                })?;
             }
             if displacement.is_some() {
                 filled(py, displacement, nodes, |out| {
@@ -272,7 +272,9 @@ impl Session {
                 })?;
             }
             if velocity.is_some() {
-                filled(py, velocity, nodes, |out| world.velocities(out).map_err(of_report))?;
+                filled(py, velocity, nodes, |out| {
+                    world.velocities(out).map_err(of_report)
+                })?;
             }
             Ok(())
         })
@@ -286,7 +288,9 @@ impl Session {
         out: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         self.with(py, |world| {
-            filled(py, out, tets_of(world), |out| world.stress(out).map_err(of_report))
+            filled(py, out, tets_of(world), |out| {
+                world.stress(out).map_err(of_report)
+            })
         })
     }
 
@@ -314,7 +318,9 @@ impl Session {
         out: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         self.with(py, |world| {
-            filled(py, out, tets_of(world), |out| world.strain(out).map_err(of_report))
+            filled(py, out, tets_of(world), |out| {
+                world.strain(out).map_err(of_report)
+            })
         })
     }
 
@@ -359,7 +365,10 @@ impl Session {
             let parts = world.body().held_parts();
             let parts = parts.map_err(|error| PyRuntimeError::new_err(error.to_string()))?;
             let names: Vec<String> = parts.iter().map(sinew_record::column_name).collect();
-            Ok(names.into_iter().zip(reactions).collect::<Vec<(String, Reaction)>>())
+            Ok(names
+                .into_iter()
+                .zip(reactions)
+                .collect::<Vec<(String, Reaction)>>())
         })?;
         let entries = PyDict::new(py);
         for (name, Reaction { force, moment, .. }) in all {
@@ -388,7 +397,9 @@ impl Session {
     /// The tool of a name. KeyError lists those that there are.
     fn tool(slf: &Bound<'_, Self>, name: &str) -> PyResult<Tool> {
         let id = slf.get().with(slf.py(), |world| {
-            world.tool(name).map_err(|error| of_command(error, world.t()))
+            world
+                .tool(name)
+                .map_err(|error| of_command(error, world.t()))
         })?;
         Ok(Tool {
             session: slf.clone().unbind(),
@@ -401,7 +412,9 @@ impl Session {
     /// there are.
     fn load(slf: &Bound<'_, Self>, name: &str) -> PyResult<Load> {
         let id = slf.get().with(slf.py(), |world| {
-            world.load(name).map_err(|error| of_command(error, world.t()))
+            world
+                .load(name)
+                .map_err(|error| of_command(error, world.t()))
         })?;
         Ok(Load {
             session: slf.clone().unbind(),
@@ -454,7 +467,8 @@ impl Session {
             };
             let step = dt.map(Command::Dt);
             let switched = world.command(method.clone());
-            let switched = switched.and_then(|()| step.clone().map_or(Ok(()), |step| world.command(step)));
+            let switched =
+                switched.and_then(|()| step.clone().map_or(Ok(()), |step| world.command(step)));
             let Err(error) = switched else {
                 return Ok(());
             };

@@ -4,8 +4,8 @@ mod lobpcg;
 
 use std::path::{Path, PathBuf};
 
-use sinew_core::vectors::norm;
 use sinew_core::LinearOperators;
+use sinew_core::vectors::norm;
 use sinew_fem::Model;
 use sinew_mesh::vtu::{Array, Grid, VtuEncoding};
 use sinew_scene::Simulation;

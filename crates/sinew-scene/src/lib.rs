@@ -72,9 +72,9 @@ pub use scene::{
 };
 pub use schedule::Schedule;
 pub use simulation::{
-    AtRestError, BodyModel, CutFrom, CutTotals, Cutter, CuttingError, DrivenLoadError, Footprint, HeldParts,
-    HeldPlace, LoadRemedy, MeshedScene, NearestNode, Probe, ProbeNode, Reaction, ReactionError,
-    ReactionOf, RefinementError, RefusedLoad, RoughStrokes, SavedCuts, SceneBody, SceneModel,
-    SelectedPart, Simulation, UnresolvedLoad, Warning, WarningKind,
+    AtRestError, BodyModel, CutFrom, CutTotals, Cutter, CuttingError, DrivenLoadError, Footprint,
+    HeldParts, HeldPlace, LoadRemedy, MeshedScene, NearestNode, Probe, ProbeNode, Reaction,
+    ReactionError, ReactionOf, RefinementError, RefusedLoad, RoughStrokes, SavedCuts, SceneBody,
+    SceneModel, SelectedPart, Simulation, UnresolvedLoad, Warning, WarningKind,
 };
 pub use source::SceneSource;

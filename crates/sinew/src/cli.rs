@@ -7,8 +7,8 @@ use clap::{Parser, Subcommand};
 
 use crate::command::{self, Failure};
 
-pub use crate::command::plan::{PlanError, plan_json};
 pub use crate::command::limit_memory;
+pub use crate::command::plan::{PlanError, plan_json};
 
 /// Soft-tissue dynamics: plan and run scenes.
 #[derive(Parser)]

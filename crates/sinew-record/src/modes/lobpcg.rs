@@ -1,7 +1,7 @@
 //! The lowest modes, by locally optimal block preconditioned conjugate gradients (LOBPCG).
 
-use sinew_core::vectors::{add_scaled, dot, noise, norm, scale};
 use sinew_core::LinearOperators;
+use sinew_core::vectors::{add_scaled, dot, noise, norm, scale};
 use sinew_integrators::{Combination, FactorError, Solver, symmetric_eigen};
 use sinew_scene::AtRestError;
 

@@ -136,7 +136,9 @@ impl World {
             Some(tool.motion.at(self.state.t(), &self.inputs))
         };
         let hand = self.tools.get(tool.place);
-        let target = hand.filter(|_| tool.scene == self.identity.key).and_then(|hand| hand.target);
+        let target = hand
+            .filter(|_| tool.scene == self.identity.key)
+            .and_then(|hand| hand.target);
         let target = target.map(|(position, turn)| Pose::new(position, turn));
         target.or_else(own).unwrap_or(Pose::identity())
     }

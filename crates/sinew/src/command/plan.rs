@@ -12,11 +12,11 @@ use std::path::PathBuf;
 
 use serde_json::Value;
 use sinew_measure::advice::{
-    AdviceError, DEFAULT_PILOT_SECONDS, Question, QuestionError, advise, check_budget, check_pilot_seconds,
-    check_tolerance,
+    AdviceError, DEFAULT_PILOT_SECONDS, Question, QuestionError, advise, check_budget,
+    check_pilot_seconds, check_tolerance,
 };
-use sinew_scene::{Plan, PlanSection, Scene, SceneError, Simulation};
 use sinew_scene::output::say;
+use sinew_scene::{Plan, PlanSection, Scene, SceneError, Simulation};
 
 use super::Failure;
 use super::scene_with::Values;
