@@ -10,7 +10,7 @@ use sinew_scene::output::say;
 use self::cost::{Cost, Stopwatch};
 use crate::failure::Failure;
 use crate::repository::root;
-use crate::{compare, memory, rules, to_a_scene};
+use crate::{compare, memory, python_test, rules, to_a_scene};
 
 /// Seed of the random cases of properties: a change fails for what it did, and not for new luck. `cargo test` alone
 /// draws new cases each time.
@@ -84,6 +84,7 @@ const STEPS: &[Step] = &[
         "install --path crates/sinew --root target/ci-install --locked --force --no-track --quiet",
     ),
     cargo("archive, tried elsewhere", "xtask dist"),
+    own("Python package", python_test_if_possible),
     own("comparison with meshio and pyvista", compare_if_possible),
     own("files of others become scenes", to_a_scene_if_possible),
 ];
@@ -197,6 +198,14 @@ fn watch_memory_if_possible() -> Result<(), Failure> {
 fn compare_if_possible() -> Result<(), Failure> {
     match unless_missing(compare::python())? {
         Ok(python) => compare::run_with(&python),
+        Err(reason) => Ok(say(&format!("== SKIPPED: {reason}"))?),
+    }
+}
+
+/// Tries the Python package, where there are Python and pip.
+fn python_test_if_possible() -> Result<(), Failure> {
+    match unless_missing(python_test::environment())? {
+        Ok(environment) => python_test::run_with(&environment),
         Err(reason) => Ok(say(&format!("== SKIPPED: {reason}"))?),
     }
 }

@@ -1,5 +1,5 @@
 //! Repository chores:
-//! `cargo xtask bench | verify | native | memory | reproduce | meshes | compare | laws | live-test | docs | reference | readme | to-a-scene | dist | rules | ci`.
+//! `cargo xtask bench | verify | native | memory | reproduce | meshes | compare | laws | wheel | python-test | live-test | docs | reference | readme | to-a-scene | dist | rules | ci`.
 
 mod bench;
 mod beside;
@@ -7,6 +7,7 @@ mod ci;
 mod compare;
 mod dist;
 mod docs;
+mod environment;
 mod failure;
 mod generated;
 mod laws;
@@ -18,6 +19,7 @@ mod power_loss;
 mod program;
 mod progress;
 mod python;
+mod python_test;
 mod readme;
 mod reference;
 mod repository;
@@ -25,6 +27,7 @@ mod reproduce;
 mod rules;
 mod to_a_scene;
 mod verify;
+mod wheel;
 
 use std::process::ExitCode;
 
@@ -61,6 +64,11 @@ enum Chore {
     Compare,
     /// Compare stresses and tangents of all laws with energies in 50 digits; pip installs mpmath into target/.
     Laws,
+    /// Build the Python package sinew-sim as a wheel; pip installs maturin into target/.
+    Wheel(wheel::Arguments),
+    /// Try the Python package in environments of its own: tests, examples, notebook, types, and without Rust; pip installs what they
+    /// need into target/. Part of `ci`.
+    PythonTest,
     /// Try the live page in Chromium without a window: a hand, fingers, a blade, strangers, speed; skipped where there is no Chromium.
     LiveTest(live_test::Arguments),
     /// Lose the power under runs on a disk of their own and go on with them; skipped where none can be mounted. Needs root, ext4 and perl.
@@ -92,6 +100,8 @@ fn main() -> ExitCode {
         Chore::Meshes => meshes::run(),
         Chore::Compare => compare::run(),
         Chore::Laws => laws::run(),
+        Chore::Wheel(arguments) => wheel::run(&arguments),
+        Chore::PythonTest => python_test::run(),
         Chore::LiveTest(arguments) => live_test::run(&arguments),
         Chore::PowerLoss(arguments) => power_loss::run(&arguments),
         Chore::Docs => docs::run(),

@@ -79,7 +79,7 @@ impl Python {
 }
 
 /// The first Python 3 on the PATH, with its version as in `3.11`.
-fn find() -> Option<(&'static str, String)> {
+pub(crate) fn find() -> Option<(&'static str, String)> {
     let print = "import sys; print('%d.%d' % sys.version_info[:2])";
     NAMES.into_iter().find_map(|name| {
         let output = Command::new(name).args(["-c", print]).output().ok()?;

@@ -83,6 +83,21 @@ pub(super) const ROOMS: &[(&str, &[&str])] = &[
         ],
     ),
     (
+        "sinew-py",
+        &[
+            "sinew",
+            "sinew-core",
+            "sinew-fem",
+            "sinew-integrators",
+            "sinew-measure",
+            "sinew-mesh",
+            "sinew-record",
+            "sinew-scene",
+            "sinew-tools",
+            "sinew-world",
+        ],
+    ),
+    (
         "sinew-verify",
         &[
             "sinew-core",

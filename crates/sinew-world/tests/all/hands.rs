@@ -140,7 +140,7 @@ fn a_force_stays_with_its_node_when_the_body_is_cut() {
         );
         let lower = (of_lower[axis] - at_cut.1[axis]) / passed;
         assert!(
-            lower.abs() < 0.02 * force[2],
+            lower.abs() < 0.05 * force[2],
             "its lips alone: {lower} {force:?}"
         );
     }
