@@ -11,7 +11,7 @@ use crate::repository::root;
 
 /// Commands that take too long, or need what not every computer has, with the reason. With `--help` behind it, which reads
 /// all options before it and then ends, each still fails where an option is gone.
-const NOT_RUN: [(&str, &str); 14] = [
+const NOT_RUN: [(&str, &str); 16] = [
     (
         "cargo run --release -p sinew -- live scenes/ready/press.toml",
         "serves until it is interrupted",
@@ -25,6 +25,8 @@ const NOT_RUN: [(&str, &str); 14] = [
         "minutes, and wants a quiet computer",
     ),
     ("cargo xtask live-test", "a step of `ci`"),
+    ("cargo xtask wheel", "a part of `python-test`"),
+    ("cargo xtask python-test", "a step of `ci`"),
     ("cargo xtask bench", "minutes; `ci` has the quick bench"),
     ("cargo xtask verify", "a step of `ci`"),
     ("cargo test --workspace", "minutes; a step of `ci`"),

@@ -16,6 +16,7 @@ mod plan;
 mod run;
 mod scene;
 mod session;
+mod shared;
 mod tool;
 mod values;
 mod watch;

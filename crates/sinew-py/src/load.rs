@@ -1,15 +1,17 @@
 //! Loads of a session.
 
+use std::sync::Arc;
+
 use pyo3::prelude::*;
 use sinew_world::LoadId;
 
 use crate::errors::of_command;
-use crate::session::Session;
+use crate::shared::Shared;
 
 /// A load of a session: session.load(name).
 #[pyclass(frozen, module = "sinew_sim")]
 pub(crate) struct Load {
-    pub(crate) session: Py<Session>,
+    pub(crate) world: Arc<Shared>,
     pub(crate) id: LoadId,
     /// Its name in the scene.
     #[pyo3(get)]
@@ -22,15 +24,14 @@ impl Load {
     #[getter]
     fn factor(&self, py: Python<'_>) -> PyResult<f64> {
         let factor = self
-            .session
-            .get()
+            .world
             .with(py, |world| Ok(world.load_factor(self.id)))?;
         Ok(factor.unwrap_or(1.0))
     }
 
     #[setter]
     fn set_factor(&self, py: Python<'_>, factor: f64) -> PyResult<()> {
-        self.session.get().with(py, |world| {
+        self.world.with(py, |world| {
             let t = world.t();
             world
                 .scale_load(self.id, factor)

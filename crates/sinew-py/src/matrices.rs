@@ -40,7 +40,7 @@ pub(crate) struct Numbers {
     held: Vec<bool>,
 }
 
-/// Blocks of a matrix, row by row.
+/// Block sparse rows in the types of scipy.
 struct Blocks {
     ends: Vec<i64>,
     columns: Vec<i64>,
@@ -50,22 +50,17 @@ struct Blocks {
 
 impl Blocks {
     fn of(matrix: &BlockMatrix) -> Self {
-        let (cells, layers) = (matrix.pattern().cells(), matrix.layers().count());
-        let blocks = matrix.pattern().blocks();
-        let mut all = Self {
-            ends: vec![0],
-            columns: Vec::with_capacity(blocks),
-            values: Vec::with_capacity(blocks * layers * layers),
-            layers,
-        };
-        for cell in 0..cells {
-            for (column, block) in matrix.row_blocks(cell) {
-                all.columns.push(column as i64);
-                all.values.extend_from_slice(block);
-            }
-            all.ends.push(all.columns.len() as i64);
+        let rows = matrix.to_bsr();
+        Self {
+            ends: rows.indptr.iter().map(|end| *end as i64).collect(),
+            columns: rows
+                .indices
+                .iter()
+                .map(|column| i64::from(*column))
+                .collect(),
+            layers: rows.layers.count(),
+            values: rows.blocks.into_owned(),
         }
-        all
     }
 
     fn to_python(self, py: Python<'_>) -> PyResult<Py<PyAny>> {

@@ -323,7 +323,7 @@ impl Scene {
     /// A session: the scene step by step, with tools, loads, forces and cuts by command.
     fn session(slf: &Bound<'_, Self>) -> PyResult<Session> {
         let world = slf.get().world(slf.py())?;
-        Ok(Session::new(world, slf.clone().unbind()))
+        Ok(Session::new(world, slf.clone().into_any().unbind()))
     }
 
     /// Repeats the session of a log bit for bit, and returns it at its end.
@@ -355,7 +355,11 @@ impl Scene {
                 }
             })
         })?;
-        Ok(Session::begun_at(world, slf.clone().unbind(), begun))
+        Ok(Session::begun_at(
+            world,
+            slf.clone().into_any().unbind(),
+            begun,
+        ))
     }
 
     fn __repr__(&self) -> String {

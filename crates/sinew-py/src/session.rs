@@ -1,6 +1,6 @@
 //! Sessions: scenes in motion, step by step.
 
-use std::sync::{Mutex, MutexGuard, TryLockError};
+use std::sync::Arc;
 
 use numpy::PyArray1;
 use pyo3::exceptions::PyRuntimeError;
@@ -13,10 +13,9 @@ use sinew_world::{Command, Ended, Saved, World};
 
 use crate::arrays::{filled, filled_flat, indices, read_only, rows, rows_of, vector};
 use crate::errors::{of_advance, of_advance_to, of_command, of_report, of_step, value_error};
-use crate::guard::{guarded, guarded_here, unusable};
 use crate::load::Load;
 use crate::mesh::Mesh;
-use crate::scene::Scene;
+use crate::shared::Shared;
 use crate::tool::Tool;
 use crate::values::options;
 use crate::watch::Watch;
@@ -27,8 +26,8 @@ use crate::watch::Watch;
 /// motion bit for bit. Steps release the GIL: two sessions run side by side in two threads.
 #[pyclass(frozen, module = "sinew_sim")]
 pub(crate) struct Session {
-    world: Mutex<World>,
-    scene: Py<Scene>,
+    world: Arc<Shared>,
+    scene: Py<PyAny>,
     /// The beginning of the motion.
     begun: Saved,
 }
@@ -52,57 +51,19 @@ impl Advanced {
 }
 
 impl Session {
-    pub(crate) fn new(world: World, scene: Py<Scene>) -> Self {
-        Self {
-            begun: world.save(),
-            world: Mutex::new(world),
-            scene,
-        }
+    /// A session at the beginning of its motion.
+    pub(crate) fn new(world: World, scene: Py<PyAny>) -> Self {
+        let begun = world.save();
+        Self::begun_at(world, scene, begun)
     }
 
     /// A session whose motion began earlier.
-    pub(crate) fn begun_at(world: World, scene: Py<Scene>, begun: Saved) -> Self {
+    pub(crate) fn begun_at(world: World, scene: Py<PyAny>, begun: Saved) -> Self {
         Self {
-            world: Mutex::new(world),
+            world: Arc::new(Shared::new(world)),
             scene,
             begun,
         }
-    }
-
-    /// Asks the world, for as long as nobody else does.
-    pub(crate) fn with<T>(
-        &self,
-        py: Python<'_>,
-        ask: impl FnOnce(&mut World) -> PyResult<T>,
-    ) -> PyResult<T> {
-        loop {
-            match self.world.try_lock() {
-                Ok(mut world) => return guarded_here(|| ask(&mut world)),
-                Err(TryLockError::Poisoned(_)) => return Err(unusable()),
-                // Another thread takes steps, and needs the interpreter to look for signals.
-                Err(TryLockError::WouldBlock) => py.detach(|| drop(self.world.lock())),
-            }
-        }
-    }
-
-    /// Lets the world work while other threads of Python run.
-    fn work<T: Send>(
-        &self,
-        py: Python<'_>,
-        act: impl FnOnce(&mut World) -> PyResult<T> + Send,
-    ) -> PyResult<T> {
-        py.detach(|| guarded(|| act(&mut *self.locked()?)))
-    }
-
-    fn locked(&self) -> PyResult<MutexGuard<'_, World>> {
-        self.world.lock().map_err(|_| unusable())
-    }
-
-    fn command(&self, py: Python<'_>, command: Command) -> PyResult<()> {
-        self.work(py, |world| {
-            let t = world.t();
-            world.command(command).map_err(|error| of_command(error, t))
-        })
     }
 }
 
@@ -133,7 +94,7 @@ impl Session {
     fn step(&self, py: Python<'_>, n: i64) -> PyResult<()> {
         let steps = usize::try_from(n)
             .map_err(|_| value_error(format!("n: {n}: expected a number of steps, 0 or above")))?;
-        self.work(py, |world| {
+        self.world.work(py, |world| {
             if steps == 1 {
                 let taken = world.step().map(drop);
                 return taken.map_err(|error| of_step(&error, world.t()));
@@ -152,7 +113,7 @@ impl Session {
             let text = format!("by: {by}: expected a finite time (s), 0 or above");
             return Err(value_error(text));
         }
-        self.work(py, |world| {
+        self.world.work(py, |world| {
             let mut watch = Watch::new();
             let advanced = world.advance_by(by, &mut watch);
             let advanced = advanced.map_err(|error| of_advance_to(error, world.t()))?;
@@ -167,49 +128,50 @@ impl Session {
     /// Time (s).
     #[getter]
     fn t(&self, py: Python<'_>) -> PyResult<f64> {
-        self.with(py, |world| Ok(world.t()))
+        self.world.with(py, |world| Ok(world.t()))
     }
 
     /// The step (s).
     #[getter]
     fn dt(&self, py: Python<'_>) -> PyResult<f64> {
-        self.with(py, |world| Ok(world.dt()))
+        self.world.with(py, |world| Ok(world.dt()))
     }
 
     /// Steps taken since the motion began.
     #[getter]
     fn steps(&self, py: Python<'_>) -> PyResult<usize> {
-        self.with(py, |world| Ok(world.steps()))
+        self.world.with(py, |world| Ok(world.steps()))
     }
 
     /// The largest stable step (s) of the method on the body at rest; inf where every step is stable or no limit is known.
     #[getter]
     fn stable_step(&self, py: Python<'_>) -> PyResult<f64> {
-        self.work(py, |world| Ok(world.stable_step().unwrap_or(f64::INFINITY)))
+        self.world
+            .work(py, |world| Ok(world.stable_step().unwrap_or(f64::INFINITY)))
     }
 
     /// Name of the method.
     #[getter]
     fn integrator(&self, py: Python<'_>) -> PyResult<&'static str> {
-        self.with(py, |world| Ok(world.integrator().id()))
+        self.world.with(py, |world| Ok(world.integrator().id()))
     }
 
     /// Number of meshes that the body has had: nodes and tetrahedra are others once it has grown.
     #[getter]
     fn topology_epoch(&self, py: Python<'_>) -> PyResult<u64> {
-        self.with(py, |world| Ok(world.topology_epoch()))
+        self.world.with(py, |world| Ok(world.topology_epoch()))
     }
 
     /// The scene.
     #[getter]
-    fn scene(&self, py: Python<'_>) -> Py<Scene> {
+    fn scene(&self, py: Python<'_>) -> Py<PyAny> {
         self.scene.clone_ref(py)
     }
 
     /// The mesh as it is now, at rest: another one after a cut. None for an oscillator.
     #[getter]
     fn mesh(&self, py: Python<'_>) -> PyResult<Option<Mesh>> {
-        self.with(py, |world| {
+        self.world.with(py, |world| {
             let body = world.body().model().body();
             Ok(body.map(|body| Mesh {
                 mesh: body.mesh.clone(),
@@ -220,7 +182,7 @@ impl Session {
     /// Positions of the nodes (m), (nodes, 3).
     #[getter]
     fn positions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let values = self.with(py, |world| {
+        let values = self.world.with(py, |world| {
             let mut values = vec![[0.0; 3]; nodes_of(world)];
             world.positions(&mut values).map_err(of_report)?;
             Ok(values)
@@ -231,7 +193,7 @@ impl Session {
     /// Displacements of the nodes from rest (m), (nodes, 3).
     #[getter]
     fn displacement<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let values = self.with(py, |world| {
+        let values = self.world.with(py, |world| {
             let mut values = vec![[0.0; 3]; nodes_of(world)];
             world.displacements(&mut values).map_err(of_report)?;
             Ok(values)
@@ -242,7 +204,7 @@ impl Session {
     /// Velocities of the nodes (m/s) at the time t, (nodes, 3).
     #[getter]
     fn velocity<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let values = self.with(py, |world| {
+        let values = self.world.with(py, |world| {
             let mut values = vec![[0.0; 3]; nodes_of(world)];
             world.velocities(&mut values).map_err(of_report)?;
             Ok(values)
@@ -259,7 +221,7 @@ impl Session {
         displacement: Option<&Bound<'_, PyAny>>,
         velocity: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<()> {
-        self.with(py, |world| {
+        self.world.with(py, |world| {
             let nodes = nodes_of(world);
             if positions.is_some() {
                 filled(py, positions, nodes, |out| {
@@ -287,7 +249,7 @@ impl Session {
         py: Python<'py>,
         out: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        self.with(py, |world| {
+        self.world.with(py, |world| {
             filled(py, out, tets_of(world), |out| {
                 world.stress(out).map_err(of_report)
             })
@@ -301,7 +263,7 @@ impl Session {
         py: Python<'py>,
         out: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let values = self.with(py, |world| {
+        let values = self.world.with(py, |world| {
             let mut stress = vec![[0.0; 6]; tets_of(world)];
             world.stress(&mut stress).map_err(of_report)?;
             Ok(stress.iter().map(von_mises).collect())
@@ -317,7 +279,7 @@ impl Session {
         py: Python<'py>,
         out: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        self.with(py, |world| {
+        self.world.with(py, |world| {
             filled(py, out, tets_of(world), |out| {
                 world.strain(out).map_err(of_report)
             })
@@ -331,7 +293,7 @@ impl Session {
         py: Python<'py>,
         out: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        self.with(py, |world| {
+        self.world.with(py, |world| {
             filled(py, out, nodes_of(world), |out| {
                 world.contact_forces(out).map_err(of_report)
             })
@@ -340,7 +302,7 @@ impl Session {
 
     /// Energies (J): kinetic_J, elastic_J, work_of_tools_J since the motion began, and of_cuts_J where the body may be cut.
     fn energy<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let (energy, tools, cuts) = self.with(py, |world| {
+        let (energy, tools, cuts) = self.world.with(py, |world| {
             let energy = world.energy().map_err(of_report)?;
             let cuts = world.cuts().map(sinew_scene::CutTotals::energy);
             Ok((energy, world.work_of_tools(), cuts))
@@ -360,7 +322,7 @@ impl Session {
     /// Forces (N) and moments (N m) of supports and moved parts by name, such as fixed_1_bottom: a pair of arrays (3,) each.
     /// Moments are about the mean of the part's nodes at rest.
     fn reactions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let all = self.with(py, |world| {
+        let all = self.world.with(py, |world| {
             let reactions = world.reactions().map_err(of_report)?;
             let parts = world.body().held_parts();
             let parts = parts.map_err(|error| PyRuntimeError::new_err(error.to_string()))?;
@@ -381,7 +343,7 @@ impl Session {
     /// Names of the tools.
     #[getter]
     fn tools(&self, py: Python<'_>) -> PyResult<Vec<String>> {
-        self.with(py, |world| {
+        self.world.with(py, |world| {
             let tools = world.body().model().tools();
             let tools = tools.iter().flat_map(|tools| tools.tools());
             Ok(tools.map(|tool| tool.name.clone()).collect())
@@ -391,18 +353,19 @@ impl Session {
     /// Names of the loads.
     #[getter]
     fn loads(&self, py: Python<'_>) -> PyResult<Vec<String>> {
-        self.with(py, |world| Ok(world.scene().body().load_names()))
+        self.world
+            .with(py, |world| Ok(world.scene().body().load_names()))
     }
 
     /// The tool of a name. KeyError lists those that there are.
     fn tool(slf: &Bound<'_, Self>, name: &str) -> PyResult<Tool> {
-        let id = slf.get().with(slf.py(), |world| {
+        let id = slf.get().world.with(slf.py(), |world| {
             world
                 .tool(name)
                 .map_err(|error| of_command(error, world.t()))
         })?;
         Ok(Tool {
-            session: slf.clone().unbind(),
+            world: Arc::clone(&slf.get().world),
             id,
             name: name.to_owned(),
         })
@@ -411,13 +374,13 @@ impl Session {
     /// The load of a name: that of the scene, "load 2" for the second if it has none, or "gravity". KeyError lists those that
     /// there are.
     fn load(slf: &Bound<'_, Self>, name: &str) -> PyResult<Load> {
-        let id = slf.get().with(slf.py(), |world| {
+        let id = slf.get().world.with(slf.py(), |world| {
             world
                 .load(name)
                 .map_err(|error| of_command(error, world.t()))
         })?;
         Ok(Load {
-            session: slf.clone().unbind(),
+            world: Arc::clone(&slf.get().world),
             id,
             name: name.to_owned(),
         })
@@ -431,7 +394,7 @@ impl Session {
         nodes: &Bound<'_, PyAny>,
         forces: &Bound<'_, PyAny>,
     ) -> PyResult<()> {
-        let count = self.with(py, |world| Ok(nodes_of(world)))?;
+        let count = self.world.with(py, |world| Ok(nodes_of(world)))?;
         let nodes = indices(nodes, "nodes", ("node", count))?;
         let forces = match vector(forces, "forces", "N") {
             Ok(same) => vec![same; nodes.len()],
@@ -446,7 +409,7 @@ impl Session {
             )));
         }
         let all = nodes.into_iter().zip(forces).collect();
-        self.command(py, Command::Forces(all))
+        self.world.command(py, Command::Forces(all))
     }
 
     /// Goes on with another method, and another step (s) if dt is given. Options are those of the scene reference.
@@ -459,7 +422,7 @@ impl Session {
         options_of_it: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<()> {
         let options: Options = options(options_of_it)?;
-        self.work(py, |world| {
+        self.world.work(py, |world| {
             let (t, saved) = (world.t(), dt.map(|_| world.save()));
             let method = Command::Integrator {
                 id: integrator,
@@ -507,12 +470,12 @@ impl Session {
             })
         };
         let (from, to) = (ends(before, "before")?, ends(after, "after")?);
-        self.command(py, Command::Cut { from, to })
+        self.world.command(py, Command::Cut { from, to })
     }
 
     /// All that the motion continues from, as bytes: the same on every machine.
     fn save<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
-        let bytes = self.work(py, |world| {
+        let bytes = self.world.work(py, |world| {
             let bytes = world.save().to_bytes();
             bytes.map_err(|error| PyRuntimeError::new_err(error.to_string()))
         })?;
@@ -529,7 +492,7 @@ impl Session {
             ))
         })?;
         let bytes = bytes.as_bytes();
-        self.work(py, |world| {
+        self.world.work(py, |world| {
             let saved = Saved::from_bytes(bytes);
             let saved = saved.map_err(|error| value_error(format!("saved: {error}")))?;
             let restored = world.restore(&saved);
@@ -539,7 +502,7 @@ impl Session {
 
     /// Begins again: the motion from here on has the bits of a new session, and log is empty.
     fn reset(&self, py: Python<'_>) -> PyResult<()> {
-        self.work(py, |world| {
+        self.world.work(py, |world| {
             let restored = world.restore(&self.begun);
             restored.map_err(|error| PyRuntimeError::new_err(error.to_string()))
         })
@@ -548,11 +511,11 @@ impl Session {
     /// The log of the session so far, as text: scene.replay(log) repeats it bit for bit.
     #[getter]
     fn log(&self, py: Python<'_>) -> PyResult<String> {
-        self.with(py, |world| Ok(world.log().to_text()))
+        self.world.with(py, |world| Ok(world.log().to_text()))
     }
 
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
-        self.with(py, |world| {
+        self.world.with(py, |world| {
             Ok(format!(
                 "Session(t={} s, {} steps, {} with dt={} s)",
                 world.t(),

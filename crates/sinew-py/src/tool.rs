@@ -1,17 +1,19 @@
 //! Tools of a session.
 
+use std::sync::Arc;
+
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use sinew_world::{Command, ToolId, World};
 
 use crate::arrays::vector;
 use crate::errors::of_command;
-use crate::session::Session;
+use crate::shared::Shared;
 
 /// A tool of a session: session.tool(name). Vectors are arrays (3,) in world axes.
 #[pyclass(frozen, module = "sinew_sim")]
 pub(crate) struct Tool {
-    pub(crate) session: Py<Session>,
+    pub(crate) world: Arc<Shared>,
     pub(crate) id: ToolId,
     /// Its name in the scene.
     #[pyo3(get)]
@@ -20,7 +22,7 @@ pub(crate) struct Tool {
 
 impl Tool {
     fn with<T>(&self, py: Python<'_>, ask: impl FnOnce(&mut World) -> PyResult<T>) -> PyResult<T> {
-        self.session.get().with(py, ask)
+        self.world.with(py, ask)
     }
 
     fn report<'py>(
@@ -31,13 +33,6 @@ impl Tool {
         let report = self.with(py, |world| Ok(world.tool_report(self.id)))?;
         let part = report.map_or([0.0; 3], part);
         Ok(PyArray1::from_slice(py, &part))
-    }
-
-    fn command(&self, py: Python<'_>, command: Command) -> PyResult<()> {
-        self.with(py, |world| {
-            let t = world.t();
-            world.command(command).map_err(|error| of_command(error, t))
-        })
     }
 }
 
@@ -66,13 +61,13 @@ impl Tool {
     /// Closes the jaws: what the tool touches in a step goes with it until release().
     fn grasp(&self, py: Python<'_>) -> PyResult<()> {
         let tool = self.name.as_str().into();
-        self.command(py, Command::Grasp { tool })
+        self.world.command(py, Command::Grasp { tool })
     }
 
     /// Opens the jaws.
     fn release(&self, py: Python<'_>) -> PyResult<()> {
         let tool = self.name.as_str().into();
-        self.command(py, Command::Release { tool })
+        self.world.command(py, Command::Release { tool })
     }
 
     /// Position of its own origin (m).

@@ -7,14 +7,7 @@ use std::io::{self, ErrorKind, Read};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use serde::Serialize;
-use serde_json::Value;
 use sinew_mesh::TetMesh;
-
-use crate::error::{Fault, SceneError};
-
-/// Name of the text that is made of values, in the folder of its paths.
-const NAME: &str = "scene";
 
 /// The text of a scene file, kept so that messages can point at a line of it, and the files beside it that a program
 /// holds in memory.
@@ -163,30 +156,6 @@ impl SceneSource {
         &self.text
     }
 
-    /// A tree of values of a program as the text of a scene, of which messages name keys in the place of lines.
-    /// [`crate::Scene::from_value`] reads one at once.
-    ///
-    /// # Errors
-    /// [`SceneError`] for values that TOML does not have.
-    pub fn from_value(
-        value: &impl Serialize,
-        folder: impl AsRef<Path>,
-    ) -> Result<Self, SceneError> {
-        let path = folder.as_ref().join(NAME);
-        let error = match toml::to_string(value) {
-            Ok(text) => return Ok(Self::of_values(path, text)),
-            Err(error) => error,
-        };
-        let reason = match null_in(value) {
-            Some(path) => {
-                format!("`{path}` is null: expected a value; leave the key out if there is none")
-            }
-            None => error.to_string(),
-        };
-        let nothing = Arc::new(Self::of_values(path, ""));
-        Err(SceneError::new(&nothing, Fault::Values { reason }))
-    }
-
     /// A path written in the scene, made relative to the same folder as the scene's own path.
     #[must_use]
     pub fn resolve(&self, written: &Path) -> PathBuf {
@@ -213,26 +182,6 @@ impl SceneSource {
             .chars()
             .count();
         (line, column)
-    }
-}
-
-/// The keys to the first value that is none, such as `region[1].density`.
-fn null_in(value: &impl Serialize) -> Option<String> {
-    let tree = serde_json::to_value(value).ok()?;
-    null_below(&tree, String::new())
-}
-
-fn null_below(value: &Value, path: String) -> Option<String> {
-    match value {
-        Value::Null => Some(path).filter(|path| !path.is_empty()),
-        Value::Array(items) => (1..)
-            .zip(items)
-            .find_map(|(number, item)| null_below(item, format!("{path}[{number}]"))),
-        Value::Object(entries) => entries.iter().find_map(|(key, value)| {
-            let dot = if path.is_empty() { "" } else { "." };
-            null_below(value, format!("{path}{dot}{key}"))
-        }),
-        _ => None,
     }
 }
 

@@ -13,6 +13,7 @@ use serde::{Deserialize, Serialize};
 use sinew_core::{
     Batch, Channel, Inputs, OptionError, Options, StableStep, State, StepError, StepReport, System,
 };
+use sinew_fem::NodalForces;
 use sinew_integrators::Stepper;
 use sinew_scene::{
     CutTotals, Cutter, CuttingError, DrivenLoadError, Scene, SceneBody, SceneError, Simulation,
@@ -24,7 +25,6 @@ use crate::log::{Header, Log};
 use crate::recorder::BodyCut;
 use crate::scene_identity::SceneIdentity;
 
-use forces::Forces;
 pub use saved::Saved;
 
 /// A scene in motion: the only thing that takes its steps.
@@ -152,6 +152,13 @@ struct Knob {
     channel: Channel,
     /// The factor that applies from the next step on.
     next: Option<f64>,
+}
+
+/// Forces on nodes that the next step begins with.
+#[derive(Debug, Default)]
+struct Forces {
+    next: NodalForces,
+    is_new: bool,
 }
 
 impl Method {

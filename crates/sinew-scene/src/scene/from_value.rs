@@ -1,13 +1,18 @@
 //! Scenes from values without a text, and as values.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use serde::ser::Error as _;
 use serde::{Serialize, Serializer};
+use serde_json::Value;
 
 use super::Scene;
-use crate::error::SceneError;
+use crate::error::{Fault, SceneError};
 use crate::source::SceneSource;
+
+/// Name of the text that is made of values, in the folder of its paths.
+const NAME: &str = "scene";
 
 impl Scene {
     /// Reads a scene from a tree of values, such as a map of a program, by the same descriptions as from a text: maps are
@@ -39,6 +44,52 @@ impl Scene {
         folder: impl AsRef<Path>,
     ) -> Result<Self, SceneError> {
         Self::parse(SceneSource::from_value(value, folder)?)
+    }
+}
+
+impl SceneSource {
+    /// A tree of values of a program as the text of a scene, of which messages name keys in the place of lines.
+    /// [`Scene::from_value`] reads one at once.
+    ///
+    /// # Errors
+    /// [`SceneError`] for values that TOML does not have.
+    pub fn from_value(
+        value: &impl Serialize,
+        folder: impl AsRef<Path>,
+    ) -> Result<Self, SceneError> {
+        let path = folder.as_ref().join(NAME);
+        let error = match toml::to_string(value) {
+            Ok(text) => return Ok(Self::of_values(path, text)),
+            Err(error) => error,
+        };
+        let reason = match null_in(value) {
+            Some(path) => {
+                format!("`{path}` is null: expected a value; leave the key out if there is none")
+            }
+            None => error.to_string(),
+        };
+        let nothing = Arc::new(Self::of_values(path, ""));
+        Err(SceneError::new(&nothing, Fault::Values { reason }))
+    }
+}
+
+/// The keys to the first value that is none, such as `region[1].density`.
+fn null_in(value: &impl Serialize) -> Option<String> {
+    let tree = serde_json::to_value(value).ok()?;
+    null_below(&tree, String::new())
+}
+
+fn null_below(value: &Value, path: String) -> Option<String> {
+    match value {
+        Value::Null => Some(path).filter(|path| !path.is_empty()),
+        Value::Array(items) => (1..)
+            .zip(items)
+            .find_map(|(number, item)| null_below(item, format!("{path}[{number}]"))),
+        Value::Object(entries) => entries.iter().find_map(|(key, value)| {
+            let dot = if path.is_empty() { "" } else { "." };
+            null_below(value, format!("{path}{dot}{key}"))
+        }),
+        _ => None,
     }
 }
 

@@ -3,18 +3,10 @@
 use std::collections::HashMap;
 
 use sinew_core::{ForceInputError, Inputs, Ramp};
-use sinew_fem::NodalForces;
 use sinew_scene::{BodyModel, SceneBody};
 
 use super::World;
 use crate::command::CommandError;
-
-/// Forces that the next step begins with.
-#[derive(Debug, Default)]
-pub(super) struct Forces {
-    pub(super) next: NodalForces,
-    pub(super) is_new: bool,
-}
 
 impl World {
     /// Takes forces (N) on nodes of the present body, which act from the next step on.
