@@ -44,9 +44,12 @@ pub(crate) fn of_scene(error: &sinew_scene::SceneError) -> PyErr {
         let raised = SceneError::new_err(error.to_string());
         let value = raised.value(py);
         let set = || {
-            value.setattr("file", error.path().display().to_string())?;
-            value.setattr("line", error.line())?;
-            value.setattr("column", error.column())?;
+            // A scene of values names the key, and has no file.
+            let has_file = !error.is_of_values();
+            let file = has_file.then(|| error.path().display().to_string());
+            value.setattr("file", file)?;
+            value.setattr("line", error.line().filter(|_| has_file))?;
+            value.setattr("column", error.column().filter(|_| has_file))?;
             value.setattr("hint", error.help())
         };
         set().err().unwrap_or(raised)
@@ -105,18 +108,17 @@ pub(crate) fn of_advance(error: AdvanceError, t: f64) -> PyErr {
 pub(crate) fn of_advance_to(error: AdvanceToError, t: f64) -> PyErr {
     match error {
         AdvanceToError::Advance(error) => of_advance(error, t),
-        AdvanceToError::Shorten(error) => of_command(error, t),
+        AdvanceToError::Shorten(error) => of_command(error),
         error @ AdvanceToError::Time { .. } => PyValueError::new_err(error.to_string()),
     }
 }
 
-/// The exception of a command that is refused at a time (s).
-pub(crate) fn of_command(error: CommandError, t: f64) -> PyErr {
+/// The exception of a command that is refused: the session goes on as before.
+pub(crate) fn of_command(error: CommandError) -> PyErr {
     match error {
         CommandError::NoTool { .. } | CommandError::NoLoad { .. } => {
             PyKeyError::new_err(error.to_string())
         }
-        CommandError::Step(error) => of_step(&WorldStepError::Step(error), t),
         CommandError::Failed => PyRuntimeError::new_err(
             "the last step failed: only `reset` or `restore` goes on from here",
         ),

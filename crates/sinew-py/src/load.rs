@@ -33,9 +33,7 @@ impl Load {
     fn set_factor(&self, py: Python<'_>, factor: f64) -> PyResult<()> {
         self.world.with(py, |world| {
             let t = world.t();
-            world
-                .scale_load(self.id, factor)
-                .map_err(|error| of_command(error, t))
+            world.scale_load(self.id, factor).map_err(of_command)
         })
     }
 

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use pyo3::prelude::*;
 use sinew_core::OptionValue;
 use sinew_record::{Request, RunFolder};
-use sinew_scene::{Scene, Simulation, WarningKind};
+use sinew_scene::{Scene, Simulation, Warning, WarningKind};
 use sinew_world::World;
 
 use crate::errors::{of_run, of_scene, of_world, scene_error, value_error};
@@ -64,13 +64,13 @@ pub(crate) fn following(
     Ok(world)
 }
 
-/// Runs a scene into a folder.
+/// Runs a scene into a folder; returns the warnings about the scene.
 pub(crate) fn into_folder(
     scene: &Scene,
     folder: &Path,
     asked: &Asked,
     onlooker: &mut Onlooker,
-) -> PyResult<()> {
+) -> PyResult<Vec<Warning>> {
     let scene = match asked.keeps_fields {
         true => scene.clone(),
         false => with_tables_alone(scene)?,
@@ -91,7 +91,7 @@ pub(crate) fn into_folder(
     let mut world = following(simulation, asked.threads.as_ref())?;
     let folder = RunFolder::create(folder, world.scene(), &request).map_err(of_run)?;
     folder.run(&mut world, onlooker).map_err(of_run)?;
-    Ok(())
+    Ok(warnings)
 }
 
 fn with_tables_alone(scene: &Scene) -> PyResult<Scene> {

@@ -40,6 +40,20 @@ pub(crate) struct Warning {
     numbers: Py<PyDict>,
 }
 
+impl Warning {
+    fn of(py: Python<'_>, warning: &sinew_scene::Warning) -> PyResult<Self> {
+        let numbers = PyDict::new(py);
+        for (name, value) in &warning.numbers {
+            numbers.set_item(name, value)?;
+        }
+        Ok(Self {
+            kind: warning.kind.id().to_owned(),
+            text: warning.to_string(),
+            numbers: numbers.unbind(),
+        })
+    }
+}
+
 #[pymethods]
 impl Warning {
     #[new]
@@ -200,18 +214,7 @@ impl Scene {
     fn warnings(&self, py: Python<'_>) -> PyResult<Vec<Warning>> {
         let built = self.built(py)?;
         let warnings = py.detach(|| guarded(|| Ok(built.warnings())))?;
-        let warning = |warning: sinew_scene::Warning| {
-            let numbers = PyDict::new(py);
-            for (name, value) in &warning.numbers {
-                numbers.set_item(name, value)?;
-            }
-            Ok(Warning {
-                kind: warning.kind.id().to_owned(),
-                text: warning.to_string(),
-                numbers: numbers.unbind(),
-            })
-        };
-        warnings.into_iter().map(warning).collect()
+        warnings.iter().map(|warning| Warning::of(py, warning)).collect()
     }
 
     /// The mesh of the body at rest, with the groups that the scene selects; None for an oscillator.
@@ -309,8 +312,11 @@ impl Scene {
             (None, None) => PathBuf::new(),
         };
         let scene = &self.scene;
-        py.detach(|| guarded(|| run::into_folder(scene, &folder, &asked, &mut onlooker)))?;
-        let result = results.call_method1("_of_run", (folder, named.is_some()))?;
+        let warnings = py
+            .detach(|| guarded(|| run::into_folder(scene, &folder, &asked, &mut onlooker)))?;
+        let warnings = warnings.iter().map(|warning| Warning::of(py, warning));
+        let warnings: Vec<Warning> = warnings.collect::<PyResult<_>>()?;
+        let result = results.call_method1("_of_run", (folder, named.is_some(), warnings))?;
         match onlooker.raised {
             None => Ok(result),
             Some(raised) => {

@@ -32,8 +32,7 @@ pub(crate) struct Session {
     begun: Saved,
 }
 
-/// Steps that Session.advance took: steps (int), and shortened, the length (s) of the last one if it was shorter than
-/// dt, else None.
+/// Steps that Session.advance took: steps (int), and shortened, their length (s) if it was less than dt, else None.
 #[pyclass(frozen, get_all, module = "sinew_sim")]
 pub(crate) struct Advanced {
     steps: usize,
@@ -106,8 +105,8 @@ impl Session {
         })
     }
 
-    /// Takes the whole steps of dt that fit into a time (s), and a shorter one for what is left of it. Returns an Advanced
-    /// that says so.
+    /// Takes the steps of dt that cover a time (s), and ends with it: where they do not fit, as many shorter ones of one length
+    /// are taken, which the Advanced that is returned says. One short step among long ones would bring energy in.
     fn advance(&self, py: Python<'_>, by: f64) -> PyResult<Advanced> {
         if !(by >= 0.0 && by.is_finite()) {
             let text = format!("by: {by}: expected a finite time (s), 0 or above");
@@ -359,11 +358,10 @@ impl Session {
 
     /// The tool of a name. KeyError lists those that there are.
     fn tool(slf: &Bound<'_, Self>, name: &str) -> PyResult<Tool> {
-        let id = slf.get().world.with(slf.py(), |world| {
-            world
-                .tool(name)
-                .map_err(|error| of_command(error, world.t()))
-        })?;
+        let id = slf
+            .get()
+            .world
+            .with(slf.py(), |world| world.tool(name).map_err(of_command))?;
         Ok(Tool {
             world: Arc::clone(&slf.get().world),
             id,
@@ -374,11 +372,10 @@ impl Session {
     /// The load of a name: that of the scene, "load 2" for the second if it has none, or "gravity". KeyError lists those that
     /// there are.
     fn load(slf: &Bound<'_, Self>, name: &str) -> PyResult<Load> {
-        let id = slf.get().world.with(slf.py(), |world| {
-            world
-                .load(name)
-                .map_err(|error| of_command(error, world.t()))
-        })?;
+        let id = slf
+            .get()
+            .world
+            .with(slf.py(), |world| world.load(name).map_err(of_command))?;
         Ok(Load {
             world: Arc::clone(&slf.get().world),
             id,
@@ -448,7 +445,7 @@ impl Session {
                 }
                 back(world)?;
             }
-            Err(of_command(error, t))
+            Err(of_command(error))
         })
     }
 

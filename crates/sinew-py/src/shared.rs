@@ -69,10 +69,7 @@ impl Shared {
 
     /// Gives the world a command.
     pub(crate) fn command(&self, py: Python<'_>, command: Command) -> PyResult<()> {
-        self.work(py, |world| {
-            let t = world.t();
-            world.command(command).map_err(|error| of_command(error, t))
-        })
+        self.work(py, |world| world.command(command).map_err(of_command))
     }
 
     fn turn<'s>(&'s self, world: MutexGuard<'s, World>) -> Turn<'s> {

@@ -52,9 +52,8 @@ impl Tool {
         let turn = turn.transpose()?;
         self.with(py, |world| {
             let turn = turn.unwrap_or_else(|| world.hand_pose(self.id).rotation_vector());
-            let t = world.t();
             let steered = world.steer(self.id, position, turn);
-            steered.map_err(|error| of_command(error, t))
+            steered.map_err(of_command)
         })
     }
 

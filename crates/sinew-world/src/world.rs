@@ -118,7 +118,7 @@ pub struct Advanced {
     pub ended: Ended,
     /// Steps that were taken.
     pub steps: usize,
-    /// Length (s) of the last step, if it was shorter than the others.
+    /// Their length (s), if it was less than [`World::dt`].
     pub shortened: Option<f64>,
 }
 

@@ -47,14 +47,14 @@ pub enum AdviceError {
     },
     /// The reference is no better than the tolerance.
     #[error(
-        "a tolerance of {tolerance:e} cannot be distinguished from the reference's own error, {reference:.1e}; ask for {least:.0e} or more"
+        "a tolerance of {tolerance:e} cannot be distinguished from the reference's own error, {reference:.1e}; ask for {least:e} or more"
     )]
     BeyondReference {
         /// The tolerance that was asked for.
         tolerance: f64,
         /// The reference's error (fraction).
         reference: f64,
-        /// The smallest tolerance that can be distinguished from it.
+        /// The smallest tolerance of one digit that can be distinguished from it.
         least: f64,
     },
     /// There is no thread to measure on.

@@ -377,7 +377,7 @@ fn check_reference(case: &Case, whole: Span, tolerance: Option<f64>) -> Result<(
         Some(tolerance) if tolerance < least => Err(AdviceError::BeyondReference {
             tolerance,
             reference,
-            least,
+            least: above(least),
         }),
         _ => Ok(()),
     }
@@ -464,5 +464,19 @@ impl Advice {
     #[must_use]
     pub fn run_table(&self, pilot: &Pilot) -> String {
         run_table(self.whole, &pilot.method, pilot.row.dt)
+    }
+}
+
+/// The next number above with one digit.
+fn above(number: f64) -> f64 {
+    let digits = format!("{number:.0e}");
+    let near: f64 = digits.parse().unwrap_or(number);
+    match near < number {
+        false => near,
+        true => {
+            let unit = 10f64.powi(number.log10().floor() as i32);
+            let next = format!("{:.0e}", near + unit);
+            next.parse().unwrap_or(number)
+        }
     }
 }

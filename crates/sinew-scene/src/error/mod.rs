@@ -98,6 +98,12 @@ impl SceneError {
         self.0.span.clone()
     }
 
+    /// True if the scene was made of values of a program: the message names a key, and nobody has seen its lines.
+    #[must_use]
+    pub fn is_of_values(&self) -> bool {
+        self.0.scene.is_of_values()
+    }
+
     /// Line of [`SceneError::span`], counted from 1.
     #[must_use]
     pub fn line(&self) -> Option<usize> {

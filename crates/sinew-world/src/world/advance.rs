@@ -68,8 +68,9 @@ impl World {
         Ok(self.advance(steps, recorder)?)
     }
 
-    /// Takes the whole steps of [`World::dt`] that fit into a time (s) from now on, and a shorter one for what is left of
-    /// it, so that the last step ends with it.
+    /// Takes the steps of [`World::dt`] that cover a time (s) from now on, and ends with it: where they do not fit, as many shorter
+    /// ones of one length. A single short step among long ones would bring energy in where methods are stable in steps of one
+    /// length alone.
     ///
     /// # Errors
     /// [`AdvanceToError`], also for a time that is negative or not finite.
@@ -82,18 +83,17 @@ impl World {
         if !(by >= 0.0 && by.is_finite()) {
             return Err(AdvanceToError::Time { t: now + by, now });
         }
-        let whole = (by / dt * (1.0 + Clock::ROUNDING)).floor();
-        let left = by - whole * dt;
-        let mut ended = self.advance(whole as usize, recorder)?;
-        let mut shortened = None;
-        if ended == Ended::Finished && left > Clock::ROUNDING * by.max(dt) {
-            self.command(Command::Dt(left))?;
-            shortened = Some(left);
-            ended = self.advance(1, recorder)?;
-            if self.failure.is_none() {
-                self.command(Command::Dt(dt))?;
-            }
+        let steps = (by / dt * (1.0 - Clock::ROUNDING)).ceil();
+        let each = by / steps;
+        let shortened = (steps > 0.0 && each < dt * (1.0 - Clock::ROUNDING)).then_some(each);
+        if let Some(each) = shortened {
+            self.command(Command::Dt(each))?;
         }
+        let ended = self.advance(steps as usize, recorder);
+        if shortened.is_some() && self.failure.is_none() {
+            self.command(Command::Dt(dt))?;
+        }
+        let ended = ended?;
         Ok(Advanced {
             ended,
             steps: self.steps - before,

@@ -93,7 +93,22 @@ impl World {
     /// [`ReportError::State`].
     pub fn energy(&mut self) -> Result<Option<Energy>, ReportError> {
         self.take_velocity()?;
-        Ok(self.body.system().energy(&self.state.u, &self.field))
+        let known = self.body.system().energy(&self.state.u, &self.field);
+        let Some(body) = self.body.model().body().filter(|_| known.is_none()) else {
+            return Ok(known);
+        };
+        // Where parts are moved, held and moved nodes have a share.
+        let model = &body.model;
+        let mut nodes = vec![[0.0; 3]; body.mesh.points.len()];
+        model.velocities_at(self.now(), &self.field, &mut nodes)?;
+        let squares = nodes.iter().map(|v| v.iter().map(|v| v * v).sum::<f64>());
+        let kinetic = squares
+            .zip(model.node_masses())
+            .map(|(square, mass)| 0.5 * mass * square)
+            .sum();
+        model.displacements_at(self.now(), &self.state.u, &mut nodes)?;
+        let elastic = model.elastic_energy(&nodes)?;
+        Ok(elastic.is_finite().then_some(Energy { kinetic, elastic }))
     }
 
     /// Work (J) of all tools on the body since the motion began.
