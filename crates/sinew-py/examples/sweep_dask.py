@@ -27,11 +27,11 @@ if __name__ == "__main__":
     })  # fmt: skip
     moduli = [3000.0 + 6000.0 * run / (RUNS - 1) for run in range(RUNS)]
     # On a cluster: Client("tcp://scheduler:8786"), or dask_jobqueue.SLURMCluster in place of LocalCluster.
-    cluster = LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None)  # type: ignore[no-untyped-call, unused-ignore]
+    cluster = LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=":0")  # type: ignore[no-untyped-call, unused-ignore]
     client = Client(cluster)  # type: ignore[no-untyped-call, unused-ignore]
     with cluster, client:
         begun = time.perf_counter()
-        results = sn.sweep(scene, {"region.1.youngs_modulus": moduli}, executor=client.get_executor())
+        results = sn.sweep(scene, {"region.1.youngs_modulus": moduli}, executor=client.get_executor())  # type: ignore[no-untyped-call, unused-ignore]
         took = time.perf_counter() - begun
     for modulus, result in zip(moduli, results):
         if isinstance(result, sn.Lost):

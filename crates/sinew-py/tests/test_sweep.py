@@ -93,7 +93,7 @@ def test_any_executor_runs_a_sweep(scene: sn.Scene, direct: list[sn.Result]) -> 
 def test_dask(scene: sn.Scene, direct: list[sn.Result], tmp_path: pathlib.Path) -> None:
     distributed = pytest.importorskip("dask.distributed")
     cluster = distributed.LocalCluster(
-        n_workers=2, threads_per_worker=1, dashboard_address=None, local_directory=tmp_path
+        n_workers=2, threads_per_worker=1, dashboard_address=":0", local_directory=tmp_path
     )
     with cluster, distributed.Client(cluster) as client:
         check(sn.sweep(scene, {KEY: MODULI}, executor=client.get_executor()), direct)
