@@ -15,7 +15,7 @@ EXAMPLES = Path(__file__).resolve().parents[1] / "examples"
 
 
 def run(folder: Path, *arguments: str, **environment: str) -> str:
-    command = [sys.executable, EXAMPLES / arguments[0], *arguments[1:]]
+    command = [sys.executable, str(EXAMPLES / arguments[0]), *arguments[1:]]
     ended = subprocess.run(command, cwd=folder, env=os.environ | environment, capture_output=True, text=True, timeout=60)
     assert ended.returncode == 0, ended.stderr
     return ended.stdout
@@ -45,7 +45,7 @@ def test_sweep_mpi(tmp_path: Path) -> None:
     # Open MPI refuses more ranks than cores, and the superuser, unless it is told.
     allowed = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
     allowed |= {"PRTE_MCA_rmaps_default_mapping_policy": ":oversubscribe", "OMPI_MCA_rmaps_base_oversubscribe": "1"}
-    command = [mpiexec, "-n", "3", sys.executable, "-m", "mpi4py.futures", EXAMPLES / "sweep_mpi.py", "--quick"]
+    command = [mpiexec, "-n", "3", sys.executable, "-m", "mpi4py.futures", str(EXAMPLES / "sweep_mpi.py"), "--quick"]
     ended = subprocess.run(command, cwd=tmp_path, env=os.environ | allowed, capture_output=True, text=True, timeout=60)
     assert ended.returncode == 0, ended.stderr
     assert ended.stdout.count("the top sinks by") == 4
@@ -54,7 +54,7 @@ def test_sweep_mpi(tmp_path: Path) -> None:
 def test_sweep_slurm(tmp_path: Path) -> None:
     """Two tasks of an array, of which the first comes late, and all of them once more."""
     run(tmp_path, "sweep_slurm.py", "run", "results", "--quick", SLURM_ARRAY_TASK_ID="1", SLURM_ARRAY_TASK_COUNT="2")
-    command = [sys.executable, EXAMPLES / "sweep_slurm.py", "gather", "results", "--quick"]
+    command = [sys.executable, str(EXAMPLES / "sweep_slurm.py"), "gather", "results", "--quick"]
     part = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=60)
     assert part.returncode == 1 and "2 runs are missing" in part.stderr
     assert part.stdout.count(",missing,") == 2 and part.stdout.count(",finished,") == 2

@@ -19,7 +19,7 @@ def test_the_tour_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     import nbformat
 
     monkeypatch.setenv("IPYTHONDIR", str(tmp_path))
-    notebook: Any = nbformat.read(TOUR, as_version=4)
+    notebook: Any = nbformat.read(TOUR, as_version=4)  # type: ignore[no-untyped-call, unused-ignore]
     client = nbclient.NotebookClient(notebook, timeout=120, kernel_name="python3", resources={"metadata": {"path": tmp_path}})
     client.execute()
     outputs = [output for cell in notebook.cells for output in cell.get("outputs", [])]

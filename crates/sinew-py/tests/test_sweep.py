@@ -121,7 +121,7 @@ def test_mpi(scene: sn.Scene, direct: list[sn.Result], tmp_path: pathlib.Path) -
     # Open MPI refuses more ranks than cores, and the superuser, unless it is told.
     allowed = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
     allowed |= {"PRTE_MCA_rmaps_default_mapping_policy": ":oversubscribe", "OMPI_MCA_rmaps_base_oversubscribe": "1"}
-    command = [mpiexec, "-n", "3", sys.executable, "-m", "mpi4py.futures", script, asked, out]
+    command = [mpiexec, "-n", "3", sys.executable, "-m", "mpi4py.futures", *map(str, (script, asked, out))]
     ended = subprocess.run(command, env=os.environ | allowed, capture_output=True, timeout=60)
     assert ended.returncode == 0, ended.stderr.decode()
     check(pickle.loads(out.read_bytes()), direct)
@@ -153,20 +153,29 @@ def test_a_process_that_ends_in_mid_run_costs_its_run_alone(scene: sn.Scene, dir
 def test_a_killed_process_costs_its_run_alone(scene: sn.Scene) -> None:
     values = {"run.duration": [0.1, LONG, 0.1, 0.1]}
     with _sweep._Processes(2) as executor:
-        killer = threading.Timer(2.0, lambda: kill_busiest(executor))
-        killer.start()
+        threading.Thread(target=kill_the_last, args=(executor,)).start()
         results = sn.sweep(scene, values, executor=executor)
     assert [result.outcome for result in results] == ["finished", "lost", "finished", "finished"]
     assert results[1].values == {"run.duration": LONG}
     assert isinstance(results[1], sn.Lost) and "SIGKILL" in results[1].reason
 
 
-def kill_busiest(executor: _sweep._Processes) -> None:
-    def ticks(process: Any) -> int:
-        with open(f"/proc/{process.pid}/stat") as file:
-            return int(file.read().rsplit(")", 1)[1].split()[11])
+def kill_the_last(executor: _sweep._Processes) -> None:
+    """Kills the process that still computes once the other one has been idle for a second."""
 
-    os.kill(max(executor._all, key=ticks).pid, signal.SIGKILL)
+    def ticks(process: Any) -> int:
+        stat = pathlib.Path(f"/proc/{process.pid}/stat").read_text()
+        return int(stat.rsplit(")", 1)[1].split()[11])
+
+    before, since = [0, 0], time.monotonic()
+    while time.monotonic() < since + 1.0:
+        time.sleep(0.1)
+        if len(executor._all) < 2 or executor._idle.qsize() != 1:
+            since = time.monotonic()
+        else:
+            before = before if since < time.monotonic() - 0.5 else [ticks(process) for process in executor._all]
+    grown = [ticks(process) - own for process, own in zip(executor._all, before)]
+    os.kill(executor._all[grown.index(max(grown))].pid, signal.SIGKILL)
 
 
 def test_a_broken_pool_of_the_caller_names_what_it_lost(scene: sn.Scene) -> None:
@@ -197,10 +206,12 @@ def test_ctrl_c_ends_all_processes(scene: sn.Scene, tmp_path: pathlib.Path) -> N
     sweep.stdin.close()
     sweep.stdin = None
     assert sweep.stdout.readline() == b"begun\n"
-    time.sleep(1.5)
     tasks = pathlib.Path(f"/proc/{sweep.pid}/task")
-    children = [child for task in tasks.iterdir() for child in (task / "children").read_text().split()]
-    assert len(children) == 2
+    children: list[str] = []
+    while len(children) < 2:
+        time.sleep(0.1)
+        children = [child for task in tasks.iterdir() for child in (task / "children").read_text().split()]
+    time.sleep(1.0)
     sweep.send_signal(signal.SIGINT)
     started = time.monotonic()
     _, errors = sweep.communicate(timeout=10)
