@@ -28,15 +28,15 @@ def _of_meshio(mesh: Any) -> _core.Mesh:
     other = sorted({kind for kind in kinds if kind not in ("tetra", "triangle", "line", "vertex")})
     if other:
         raise ValueError(f"mesh: cells of the kinds {', '.join(other)}: expected tetrahedra with four nodes (tetra)")
-    tets = [np.asarray(block.data) for block in mesh.cells if block.type == "tetra"]
-    tets = np.concatenate(tets) if tets else np.zeros((0, 4), int)
+    blocks = [np.asarray(block.data) for block in mesh.cells if block.type == "tetra"]
+    tets = np.concatenate(blocks) if blocks else np.zeros((0, 4), int)
     groups: dict[str, Any] = {}
     # Indices of a set count within their block.
     before = np.cumsum([0] + [len(block.data) if block.type == "tetra" else 0 for block in mesh.cells])
-    for name, blocks in mesh.cell_sets.items():
+    for name, sets in mesh.cell_sets.items():
         if name.startswith("gmsh:"):
             continue
-        members = [None if block is None else np.asarray(block, int) for block in blocks]
+        members = [None if own is None else np.asarray(own, int) for own in sets]
         _add(groups, name, mesh, members, before)
     physical = mesh.cell_data.get("gmsh:physical")
     if physical is not None:
