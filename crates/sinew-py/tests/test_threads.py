@@ -1,5 +1,6 @@
 """Threads, processes and Ctrl-C."""
 
+import hashlib
 import multiprocessing
 import os
 import signal
@@ -20,34 +21,47 @@ import sinew_sim as sn
 LONG = soft(8, run={"duration": 1000.0, "integrator": "central-difference", "dt": "auto"})
 
 
-def busy(sim, steps):
-    sim.step(steps)
-    return sim.save()
+def side_by_side(pool, act):
+    """How much faster two threads do something than one, and how many processors they have at that; the best of five."""
+    found = []
+    for _ in range(5):
+        begun = time.perf_counter()
+        act(0), act(1)
+        one = time.perf_counter() - begun
+        begun, cpu = time.perf_counter(), time.process_time()
+        list(pool.map(act, [0, 1]))
+        two, cpu = time.perf_counter() - begun, time.process_time() - cpu
+        found.append((cpu / two, one / two))
+    return max(found)
 
 
-@pytest.mark.skipif((os.cpu_count() or 1) < 2, reason="one processor")
 def test_two_sessions_run_side_by_side():
     values = soft(8, run={"duration": 1.0, "integrator": "central-difference", "dt": 0.001, "threads": 1})
     scene = sn.Scene.from_dict(values)
     sims = [scene.session(), scene.session()]
-    ratios, shares = [], []
+    data = bytes(30_000_000)
     with ThreadPoolExecutor(2) as pool:
-        ends = time.monotonic() + 30
-        while time.monotonic() < ends and (len(shares) < 4 or max(shares) < 1.5):
-            begun = time.perf_counter()
-            for sim in sims:
-                busy(sim, 600)
-            one = time.perf_counter() - begun
-            begun, cpu = time.perf_counter(), time.process_time()
-            list(pool.map(busy, sims, [600, 600]))
-            two, cpu = time.perf_counter() - begun, time.process_time() - cpu
-            ratios.append(one / two)
-            shares.append(cpu / two)
-    words = ", ".join(f"{ratio:.2f}" for ratio in sorted(ratios))
-    print(f"two sessions in two threads beside one after the other: {words}; processors in use: {max(shares):.2f}")
+        # What this computer has left for two threads without locks.
+        free, _ = side_by_side(pool, lambda _: hashlib.sha256(data).digest())
+        busy, ratio = side_by_side(pool, lambda number: sims[number].step(600))
+    print(f"two sessions in two threads: {busy:.2f} processors of {free:.2f} that are free, {ratio:.2f} times one thread")
     assert sims[0].save() == sims[1].save()
-    # Others on this computer disturb wall times; no more than one processor is in use where threads wait for each other.
-    assert max(shares) > 1.5
+    if free < 1.8:
+        pytest.skip(f"other work leaves {free:.2f} processors: two threads cannot be timed")
+    assert busy > 1.5
+
+
+def test_sessions_go_on_while_another_takes_steps():
+    """As many steps in one thread as in another, however busy the computer is: none waits for the other's call to end."""
+    scene = sn.Scene.from_dict(soft(8, run={"duration": 1.0, "integrator": "central-difference", "dt": 0.001, "threads": 1}))
+    sim, other = scene.session(), scene.session()
+    thread = threading.Thread(target=sim.step, args=(4000,))
+    thread.start()
+    while thread.is_alive():
+        other.step(20)
+    thread.join()
+    print(f"{other.steps} steps beside 4000")
+    assert sim.steps == 4000 and other.steps > 1000
 
 
 def test_a_single_step_lets_other_threads_run():
