@@ -262,4 +262,8 @@ def test_names_and_folders_may_have_any_letters(tmp_path, monkeypatch):
     assert (folder / "Lauf ü" / "summary.json").is_file() and result.summary["title"] == "Π"
     relative = sn.Scene.from_dict(small_scene({"file": "Männchen.vtu"}, title="Π"))
     assert np.array_equal(relative.run().probes["top"], result.probes["top"])
-    assert np.array_equal(sn.open("Lauf ü").t, result.t)
+    opened = sn.open("Lauf ü")
+    assert np.array_equal(opened.t, result.t)
+    monkeypatch.chdir("/")
+    for own in (opened, result, pickle.loads(pickle.dumps(result))):
+        assert own.frames.frame(-1)["displacement"].shape == mesh.points.shape

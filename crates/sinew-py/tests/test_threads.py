@@ -201,6 +201,11 @@ def test_a_sweep_keeps_order_and_names_what_was_lost():
 
 def test_a_sweep_by_threads():
     scene = sn.Scene.from_dict(cube())
+    for wrong in (None, 3, "run.dt", [1], {"run.dt": 0.1}, {"title": "abc"}):
+        with pytest.raises(TypeError, match="^values"):
+            sn.sweep(scene, wrong)
+    with pytest.raises(ValueError, match="different lengths"):
+        sn.sweep(scene, {"run.dt": [0.1], "run.duration": [1.0, 2.0]})
     with ThreadPoolExecutor(2) as pool:
         results = sn.sweep(scene, [{"run.dt": 0.002}, {"run.dt": 0.001}], executor=pool)
     assert [len(result.t) for result in results] == [51, 101]
@@ -348,6 +353,40 @@ def test_other_signals_are_heard_in_steps():
         signal.setitimer(signal.ITIMER_REAL, 0)
         signal.signal(signal.SIGALRM, before)
     assert heard and sim.steps > 0
+
+
+@pytest.mark.parametrize("what", ["t", "positions", "step", "tool"])
+def test_a_handler_of_a_signal_may_ask_the_session(what):
+    """In steps the handler runs in the thread that takes them: the session answers or refuses, and does not wait for itself."""
+    said = python(
+        """
+import signal, sys
+from test_threads import LONG
+from conftest import probed
+import sinew_sim as sn
+sim = sn.Scene.from_dict(probed(4)).session()
+tool = sim.tool("ball")
+ask = {"t": lambda: sim.t, "positions": lambda: sim.positions, "step": sim.step, "tool": lambda: tool.force}[sys.argv[1]]
+def handler(number, frame):
+    try:
+        ask()
+        print("answered")
+    except RuntimeError as error:
+        print("refused", error)
+    raise TimeoutError
+signal.signal(signal.SIGALRM, handler)
+signal.setitimer(signal.ITIMER_REAL, 0.3)
+try:
+    sim.step(100_000_000)
+except TimeoutError:
+    sim.step()
+    print("goes on")
+""",
+        what,
+        timeout=10,
+    )
+    assert said.returncode == 0, said.stderr
+    assert said.stdout.splitlines()[0].split()[0] in ("answered", "refused") and "goes on" in said.stdout
 
 
 def test_a_process_ends_while_threads_step():

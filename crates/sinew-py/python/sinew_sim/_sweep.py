@@ -61,13 +61,21 @@ def sweep(
 
 def _sets(values: Any) -> list[dict[str, Any]]:
     if isinstance(values, Mapping):
+        for key, own in values.items():
+            if isinstance(own, str) or not hasattr(own, "__iter__"):
+                raise TypeError(f"values[{key!r}]: expected a list of values, one for each run, got {type(own).__name__}")
         lists = {key: list(own) for key, own in values.items()}
         lengths = {key: len(own) for key, own in lists.items()}
         if len(set(lengths.values())) > 1:
             raise ValueError(f"values: lists of different lengths: {lengths}")
         return [dict(zip(lists, own)) for own in zip(*lists.values())]
-    sets = [dict(own) for own in values]
-    return sets
+    if isinstance(values, str) or not hasattr(values, "__iter__"):
+        raise TypeError(f"values: expected lists by key, or a list of dictionaries, got {type(values).__name__}")
+    sets = list(values)
+    for number, own in enumerate(sets):
+        if not isinstance(own, Mapping):
+            raise TypeError(f"values[{number}]: expected a dictionary of values by key, got {type(own).__name__}")
+    return [dict(own) for own in sets]
 
 
 def _collect(executor: Executor, scene: Scene, sets: list[dict[str, Any]]) -> list[Result | Lost]:
