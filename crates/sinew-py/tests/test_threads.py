@@ -355,7 +355,7 @@ def test_other_signals_are_heard_in_steps():
     assert heard and sim.steps > 0
 
 
-@pytest.mark.parametrize("what", ["t", "positions", "step", "tool"])
+@pytest.mark.parametrize("what", ["t", "step"])
 def test_a_handler_of_a_signal_may_ask_the_session(what):
     """In steps the handler runs in the thread that takes them: the session answers or refuses, and does not wait for itself."""
     said = python(
