@@ -453,3 +453,19 @@ def test_an_oscillator_is_a_session():
     assert set(sim.energy()) == {"kinetic_J", "elastic_J", "work_of_tools_J"}
     with pytest.raises(ValueError, match="oscillator"):
         sim.positions
+
+
+@pytest.mark.parametrize("values", [cube(5), soft(5)], ids=["linear", "soft"])
+def test_no_other_scene_changes_a_session(values):
+    """The memory that one scene may take is that of this scene: others go on with the same bits."""
+    ends = []
+    for memory in (None, 1e-3):
+        sim = sn.Scene.from_dict(values).session()
+        sim.step(3)
+        if memory:
+            run = {"duration": 0.1, "integrator": "central-difference", "dt": 0.001, "memory": memory}
+            assert sn.Scene.from_dict(cube(2, run=run)).session().step() is None
+        sim.switch("newmark", dt=0.01)
+        sim.step(3)
+        ends.append(sim.save())
+    assert ends[0] == ends[1]
