@@ -13,6 +13,26 @@ _Floats = NDArray[np.float64]
 _Indices = NDArray[np.uint32]
 _Path = str | PathLike[str]
 
+__all__ = [
+    "Advanced",
+    "Diverged",
+    "Group",
+    "InternalError",
+    "Load",
+    "Matrices",
+    "Mesh",
+    "Refused",
+    "Scene",
+    "SceneError",
+    "Session",
+    "Tool",
+    "Warning",
+    "__version__",
+    "_command",
+    "_forked",
+    "_read_frame",
+]
+
 __version__: str
 
 class SceneError(ValueError):
@@ -94,10 +114,10 @@ class Scene:
     @classmethod
     def load(cls, path: _Path, *, set: Mapping[str, Any] | None = None) -> Scene: ...
     @classmethod
-    def parse(cls, text: str, *, folder: _Path = ".", set: Mapping[str, Any] | None = None) -> Scene: ...
+    def parse(cls, text: str, *, folder: _Path = ..., set: Mapping[str, Any] | None = None) -> Scene: ...
     @classmethod
     def from_dict(
-        cls, values: Mapping[str, Any], *, folder: _Path = ".", set: Mapping[str, Any] | None = None
+        cls, values: Mapping[str, Any], *, folder: _Path = ..., set: Mapping[str, Any] | None = None
     ) -> Scene: ...
     def with_values(self, set: Mapping[str, Any]) -> Scene: ...
     @property

@@ -20,7 +20,8 @@ def to_mesh(value: Any, name: str) -> _core.Mesh:
     if hasattr(value, "celltypes") and hasattr(value, "cells_dict"):
         return _of_pyvista(value)
     kind = type(value).__name__
-    raise TypeError(f"{name}: expected a Mesh, a meshio.Mesh or a grid of pyvista, got {kind}")
+    files = "" if "." in name else ', or a dictionary such as {"file": "organ.msh"}'
+    raise TypeError(f"{name}: expected a Mesh, a meshio.Mesh or a grid of pyvista{files}, got {kind}")
 
 
 def _of_meshio(mesh: Any) -> _core.Mesh:
@@ -28,15 +29,15 @@ def _of_meshio(mesh: Any) -> _core.Mesh:
     other = sorted({kind for kind in kinds if kind not in ("tetra", "triangle", "line", "vertex")})
     if other:
         raise ValueError(f"mesh: cells of the kinds {', '.join(other)}: expected tetrahedra with four nodes (tetra)")
-    blocks = [np.asarray(block.data) for block in mesh.cells if block.type == "tetra"]
-    tets = np.concatenate(blocks) if blocks else np.zeros((0, 4), int)
+    of_blocks = [np.asarray(block.data) for block in mesh.cells if block.type == "tetra"]
+    tets = np.concatenate(of_blocks) if of_blocks else np.zeros((0, 4), int)
     groups: dict[str, Any] = {}
     # Indices of a set count within their block.
     before = np.cumsum([0] + [len(block.data) if block.type == "tetra" else 0 for block in mesh.cells])
-    for name, sets in mesh.cell_sets.items():
+    for name, blocks in mesh.cell_sets.items():
         if name.startswith("gmsh:"):
             continue
-        members = [None if own is None else np.asarray(own, int) for own in sets]
+        members = [None if block is None else np.asarray(block, int) for block in blocks]
         _add(groups, name, mesh, members, before)
     physical = mesh.cell_data.get("gmsh:physical")
     if physical is not None:

@@ -39,7 +39,7 @@ class Result:
     values: dict[str, Any] | None = None
 
     def __init__(self, folder: str | os.PathLike[str], keeps_folder: bool = True) -> None:
-        path = Path(folder)
+        path = Path(folder).absolute()  # or it would be another one in another working directory
         summary = path / "summary.json"
         if not summary.is_file():
             hint = "its run has not come to an end" if (path / "run.json").is_file() else "no run wrote into it"

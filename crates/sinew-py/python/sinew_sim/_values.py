@@ -15,8 +15,14 @@ from ._meshes import to_mesh
 MESH_NAME = "mesh-in-memory"
 
 
-def plain(value: Any, path: str = "") -> Any:
+#: Tables and lists within each other, beyond which they are taken for one that holds itself.
+_DEEPEST = 50
+
+
+def plain(value: Any, path: str = "", depth: int = 0) -> Any:
     """The value as dictionaries, lists, numbers, texts and truth values; `path` names it in messages."""
+    if depth > _DEEPEST:
+        raise _error(path[:40], f"more than {_DEEPEST} dictionaries or lists within each other: expected a scene's tables")
     if isinstance(value, (bool, str)):
         return value
     if isinstance(value, np.bool_):
@@ -35,11 +41,11 @@ def plain(value: Any, path: str = "") -> Any:
         for key in value:
             if not isinstance(key, str):
                 raise _error(path, f"the key {key!r}: expected keys that are texts")
-        return {key: plain(item, f"{path}{dot}{key}") for key, item in value.items()}
+        return {key: plain(item, f"{path}{dot}{key}", depth + 1) for key, item in value.items()}
     if isinstance(value, np.ndarray):
-        return plain(value.tolist(), path)
+        return plain(value.tolist(), path, depth)
     if isinstance(value, (list, tuple)):
-        return [plain(item, f"{path}[{number}]") for number, item in enumerate(value, 1)]
+        return [plain(item, f"{path}[{number}]", depth + 1) for number, item in enumerate(value, 1)]
     if value is None:
         raise _error(path, "None: expected a value; leave the key out if there is none")
     kind = type(value).__name__
