@@ -39,7 +39,7 @@ pub(crate) fn filled<'py, const N: usize>(
     };
     let wrong = || wrong_out(out, &[count, N]);
     let array = out.cast::<PyArray2<f64>>().map_err(|_| wrong())?;
-    if array.shape() != [count, N] {
+    if array.shape() != [count, N] || !array.is_c_contiguous() {
         return Err(wrong());
     }
     let mut array = array.try_readwrite().map_err(|_| wrong())?;

@@ -32,7 +32,6 @@ impl Load {
     #[setter]
     fn set_factor(&self, py: Python<'_>, factor: f64) -> PyResult<()> {
         self.world.with(py, |world| {
-            let t = world.t();
             world.scale_load(self.id, factor).map_err(of_command)
         })
     }

@@ -7,7 +7,7 @@ use std::time::Duration;
 use pyo3::exceptions::PyMemoryError;
 use pyo3::prelude::*;
 use serde_json::Value;
-use sinew::cli::{PlanError, plan_json};
+use sinew::cli::{PlanError, memory_of, plan_json};
 use sinew_measure::advice::{Question, check_budget, check_pilot_seconds, check_tolerance};
 use sinew_scene::Scene;
 
@@ -44,7 +44,8 @@ pub(crate) fn question(
 pub(crate) fn planned(py: Python<'_>, scene: Scene, question: Option<Question>) -> PyResult<Value> {
     let (to, from) = channel();
     let work = move || {
-        let planned = guarded(|| plan_json(scene, question).map_err(of_plan));
+        let planned =
+            guarded(|| memory_of(&scene).within(|| plan_json(scene, question).map_err(of_plan)));
         // Nobody listens after a signal.
         let _ = to.send(planned);
     };

@@ -75,7 +75,6 @@ pub(crate) fn into_folder(
         true => scene.clone(),
         false => with_tables_alone(scene)?,
     };
-    sinew::cli::limit_memory(&scene);
     let simulation = scene.build().map_err(|error| of_scene(&error))?;
     let mut warnings = simulation.warnings();
     warnings.retain(|warning| warning.kind != WarningKind::NoProbe);

@@ -7,9 +7,10 @@ use pyo3::exceptions::PyOSError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyType};
 use pythonize::pythonize;
+use sinew::cli::memory_of;
 use sinew_core::StableStep;
 use sinew_scene::{SceneSource, Simulation};
-use sinew_world::{Log, Replay, World};
+use sinew_world::{FollowError, Log, Replay, ReplayError, World};
 
 use crate::errors::{of_advance, of_scene, of_world, scene_error, value_error};
 use crate::guard::guarded;
@@ -94,6 +95,27 @@ impl From<sinew_scene::Scene> for Scene {
     }
 }
 
+/// The world at the end of a log.
+fn repeated(scene: sinew_scene::Scene, log: Log) -> PyResult<World> {
+    let mut replay = Replay::new(scene, log).map_err(|error| match error {
+        ReplayError::World(error) => of_world(error),
+        other => value_error(format!("log: {other}")),
+    })?;
+    let mut watch = Watch::new();
+    let mut shown = replay.world().show(&mut watch);
+    let ended = replay.advance(&mut shown);
+    drop(shown);
+    let t = replay.world().t();
+    ended.map_err(|error| match error {
+        FollowError::Record(error) => of_advance(error.into(), t),
+        other => value_error(format!("log: {other}")),
+    })?;
+    match watch.raised {
+        Some(raised) => Err(raised),
+        None => Ok(replay.into_world()),
+    }
+}
+
 /// Parses a source with values that are set in it.
 fn parsed(source: &SceneSource, values: &[String]) -> PyResult<Scene> {
     let scene = sinew_scene::Scene::parse_with(source, values);
@@ -107,22 +129,14 @@ impl Scene {
         }
         let scene = self.scene.clone();
         let built = py.detach(|| {
-            guarded(|| {
-                sinew::cli::limit_memory(&scene);
-                scene.build().map_err(|error| of_scene(&error))
-            })
+            guarded(|| memory_of(&scene).within(|| scene.build().map_err(|error| of_scene(&error))))
         })?;
         Ok(Arc::clone(self.built.get_or_init(|| Arc::new(built))))
     }
 
     fn world(&self, py: Python<'_>) -> PyResult<World> {
         let scene = self.scene.clone();
-        py.detach(|| {
-            guarded(|| {
-                sinew::cli::limit_memory(&scene);
-                World::new(scene).map_err(of_world)
-            })
-        })
+        py.detach(|| guarded(|| memory_of(&scene).within(|| World::new(scene).map_err(of_world))))
     }
 }
 
@@ -214,7 +228,10 @@ impl Scene {
     fn warnings(&self, py: Python<'_>) -> PyResult<Vec<Warning>> {
         let built = self.built(py)?;
         let warnings = py.detach(|| guarded(|| Ok(built.warnings())))?;
-        warnings.iter().map(|warning| Warning::of(py, warning)).collect()
+        warnings
+            .iter()
+            .map(|warning| Warning::of(py, warning))
+            .collect()
     }
 
     /// The mesh of the body at rest, with the groups that the scene selects; None for an oscillator.
@@ -312,8 +329,11 @@ impl Scene {
             (None, None) => PathBuf::new(),
         };
         let scene = &self.scene;
-        let warnings = py
-            .detach(|| guarded(|| run::into_folder(scene, &folder, &asked, &mut onlooker)))?;
+        let warnings = py.detach(|| {
+            guarded(|| {
+                memory_of(scene).within(|| run::into_folder(scene, &folder, &asked, &mut onlooker))
+            })
+        })?;
         let warnings = warnings.iter().map(|warning| Warning::of(py, warning));
         let warnings: Vec<Warning> = warnings.collect::<PyResult<_>>()?;
         let result = results.call_method1("_of_run", (folder, named.is_some(), warnings))?;
@@ -339,28 +359,7 @@ impl Scene {
         let log = log.map_err(|error| value_error(error.to_string()))?;
         let begun = own.world(py)?.save();
         let scene = own.scene.clone();
-        let world = py.detach(|| {
-            guarded(|| {
-                sinew::cli::limit_memory(&scene);
-                let mut replay = Replay::new(scene, log).map_err(|error| match error {
-                    sinew_world::ReplayError::World(error) => of_world(error),
-                    other => value_error(format!("log: {other}")),
-                })?;
-                let mut watch = Watch::new();
-                let mut shown = replay.world().show(&mut watch);
-                let ended = replay.advance(&mut shown);
-                drop(shown);
-                let t = replay.world().t();
-                ended.map_err(|error| match error {
-                    sinew_world::FollowError::Record(error) => of_advance(error.into(), t),
-                    other => value_error(format!("log: {other}")),
-                })?;
-                match watch.raised {
-                    Some(raised) => Err(raised),
-                    None => Ok(replay.into_world()),
-                }
-            })
-        })?;
+        let world = py.detach(|| guarded(|| memory_of(&scene).within(|| repeated(scene, log))))?;
         Ok(Session::begun_at(
             world,
             slf.clone().into_any().unbind(),

@@ -420,7 +420,7 @@ impl Session {
     ) -> PyResult<()> {
         let options: Options = options(options_of_it)?;
         self.world.work(py, |world| {
-            let (t, saved) = (world.t(), dt.map(|_| world.save()));
+            let saved = dt.map(|_| world.save());
             let method = Command::Integrator {
                 id: integrator,
                 options,

@@ -6,6 +6,8 @@ use std::sync::{Mutex, MutexGuard, TryLockError};
 
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
+use sinew::cli::memory_of;
+use sinew_integrators::Memory;
 use sinew_world::{Command, World};
 
 use crate::errors::of_command;
@@ -14,6 +16,8 @@ use crate::guard::{guarded, guarded_here, unusable};
 /// A world that threads of Python take turns with.
 pub(crate) struct Shared {
     world: Mutex<World>,
+    /// What factors may take.
+    memory: Memory,
     /// The thread that has its turn, or 0.
     owner: AtomicUsize,
 }
@@ -27,6 +31,7 @@ struct Turn<'s> {
 impl Shared {
     pub(crate) fn new(world: World) -> Self {
         Self {
+            memory: memory_of(world.scene().scene()),
             world: Mutex::new(world),
             owner: AtomicUsize::new(0),
         }
@@ -62,7 +67,7 @@ impl Shared {
         py.detach(|| {
             guarded(|| {
                 let world = self.world.lock().map_err(|_| unusable())?;
-                act(&mut self.turn(world))
+                self.memory.within(|| act(&mut self.turn(world)))
             })
         })
     }

@@ -158,7 +158,7 @@ SESSIONS = {
     "an unknown option": (ValueError, "no option `bta`; it takes", lambda s: s.switch("newmark", bta=0.3)),
     "an option out of bounds": (ValueError, "beta = 7: expected", lambda s: s.switch("newmark", beta=7)),
     "an option of None": (sn.SceneError, "beta: None", lambda s: s.switch("newmark", beta=None)),
-    "a method for other scenes": (sn.Refused, "`newmark`: tools", lambda s: s.switch("newmark")),
+    "a method for other scenes": (ValueError, "`newmark`: tools", lambda s: s.switch("newmark")),
     "a step of 0 of a method": (ValueError, "dt = 0", lambda s: s.switch("symplectic-euler", dt=0.0)),
     "a negative step": (ValueError, "dt = -1", lambda s: s.switch("symplectic-euler", dt=-1)),
     "a step of nan": (ValueError, "dt = NaN", lambda s: s.switch("symplectic-euler", dt=NAN)),

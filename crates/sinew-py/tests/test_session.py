@@ -141,10 +141,10 @@ def test_a_log_of_a_restored_session_replays():
     assert state(scene.replay(sim.log)) == state(sim)
 
 
-def test_advance_takes_whole_steps_and_a_shorter_one(session):
+def test_advance_covers_a_time_by_steps_of_one_length(session):
     sim = session
     said = sim.advance(0.0105)
-    assert (said.steps, said.shortened) == (11, pytest.approx(0.0005))
+    assert (said.steps, said.shortened) == (11, pytest.approx(0.0105 / 11))
     assert sim.t == 0.0105 and sim.dt == 0.001
     said = sim.advance(by=0.0005)
     assert (said.steps, said.shortened) == (1, pytest.approx(0.0005))

@@ -7,7 +7,8 @@ use clap::{Parser, Subcommand};
 
 use crate::command::{self, Failure};
 
-pub use crate::command::limit_memory;
+#[cfg(feature = "implicit")]
+pub use crate::command::memory_of;
 pub use crate::command::plan::{PlanError, plan_json};
 
 /// Soft-tissue dynamics: plan and run scenes.

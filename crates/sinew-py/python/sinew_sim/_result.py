@@ -30,7 +30,7 @@ class Result:
     reactions: columns of reactions.csv by the name of each support: {"force_N": (rows, 3), "moment_Nm": (rows, 3)}, and "t_s".
     tools: by the name of each tool, {"position_m": (rows, 3), "force_N": (rows, 3), "torque_Nm": (rows, 3), ..}.
     summary: the object of summary.json.
-    warnings: a list of Warning, about the scene and about the motion.
+    warnings: a list of Warning, about the scene and about the motion (of kind "motion"; of a folder that is opened all are).
     frames: fields of a run that has a folder, else None.
     folder: the path of the folder, else None.
     values: what a sweep set in the scene, else None.
@@ -109,8 +109,12 @@ def open(folder: str | os.PathLike[str]) -> Result:
     return Result(folder)
 
 
-def _of_run(folder: str, keeps_folder: bool) -> Result:
-    return Result(folder, keeps_folder)
+def _of_run(folder: str, keeps_folder: bool, warnings: list[_core.Warning]) -> Result:
+    """The result of a run of which the warnings about the scene are known with their kinds."""
+    result = Result(folder, keeps_folder)
+    known = {warning.text: warning for warning in warnings}
+    result.warnings = [known.get(warning.text, warning) for warning in result.warnings]
+    return result
 
 
 def _progress(progress: Any) -> Callable[[float, float], Any] | None:

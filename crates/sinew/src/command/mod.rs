@@ -24,4 +24,5 @@ mod scene_with;
 mod share_of;
 
 pub(crate) use failure::Failure;
-pub use scene_with::limit_memory;
+#[cfg(feature = "implicit")]
+pub use scene_with::memory_of;

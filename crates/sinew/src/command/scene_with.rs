@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+#[cfg(feature = "implicit")]
+use sinew_integrators::Memory;
 use sinew_integrators::explicit::Substeps;
 #[cfg(feature = "live")]
 use sinew_scene::SceneSource;
@@ -100,19 +102,24 @@ impl Values {
 #[cfg(feature = "implicit")]
 const SHARE: f64 = 0.9;
 
-/// Lets factors take as much memory as a scene says, or nine tenths of what is left.
+/// The memory that factors of a scene may take: as much as it says, or nine tenths of what is left.
 #[cfg(feature = "implicit")]
-pub fn limit_memory(scene: &Scene) {
-    use sinew_integrators::Memory;
+pub fn memory_of(scene: &Scene) -> Memory {
     let asked = scene.settings().memory.map(|megabytes| 1e6 * megabytes);
     let left = || Some(SHARE * memory_left()? as f64);
     let bytes = asked.or_else(left);
-    Memory::set_left(bytes.map(|bytes| Memory::of(bytes as u64)));
+    bytes.map_or(Memory::unlimited(), |bytes| Memory::of(bytes as u64))
+}
+
+/// Lets factors take that much memory from now on.
+#[cfg(feature = "implicit")]
+pub(super) fn limit_memory(scene: &Scene) {
+    Memory::set_left(Some(memory_of(scene)));
 }
 
 /// Without implicit methods there are no factors.
 #[cfg(not(feature = "implicit"))]
-pub fn limit_memory(_: &Scene) {}
+pub(super) fn limit_memory(_: &Scene) {}
 
 /// The key of the scene that an option sets.
 fn key_of(option: &str, value: &str) -> String {

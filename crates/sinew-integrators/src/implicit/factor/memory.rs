@@ -1,5 +1,6 @@
 //! The memory that a factor may take.
 
+use std::cell::Cell;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::implicit::factor_error::FactorError;
@@ -8,6 +9,11 @@ const NOT_SET: u64 = u64::MAX;
 
 /// Bytes that a user set for this process.
 static SET: AtomicU64 = AtomicU64::new(NOT_SET);
+
+thread_local! {
+    /// Limit of [`Memory::within`] for this thread.
+    static HERE: Cell<Option<Memory>> = const { Cell::new(None) };
+}
 
 /// The most memory that a factor may take.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -20,9 +26,12 @@ impl Memory {
         Self(Some(bytes))
     }
 
-    /// Limit set by [`Memory::set_left`]; unlimited if none was set.
+    /// Limit of [`Memory::within`], else the one set by [`Memory::set_left`]; unlimited if none was set.
     #[must_use]
     pub fn left() -> Self {
+        if let Some(here) = HERE.get() {
+            return here;
+        }
         let set = SET.load(Ordering::Relaxed);
         Self((set != NOT_SET).then_some(set))
     }
@@ -31,6 +40,25 @@ impl Memory {
     pub fn set_left(memory: Option<Self>) {
         let bytes = memory.and_then(|memory| memory.0);
         SET.store(bytes.unwrap_or(NOT_SET), Ordering::Relaxed);
+    }
+
+    /// Acts under a limit that holds for factors made on this thread meanwhile: for programs that run several scenes.
+    pub fn within<T>(self, act: impl FnOnce() -> T) -> T {
+        /// Puts back what was before, whatever the act did.
+        struct Back(Option<Memory>);
+        impl Drop for Back {
+            fn drop(&mut self) {
+                HERE.set(self.0);
+            }
+        }
+        let _back = Back(HERE.replace(Some(self)));
+        act()
+    }
+
+    /// No limit.
+    #[must_use]
+    pub fn unlimited() -> Self {
+        Self(None)
     }
 
     /// True if a factor of `bytes` bytes may be made.
