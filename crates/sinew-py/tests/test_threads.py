@@ -187,6 +187,39 @@ def test_a_forked_child_goes_on_with_the_session_of_its_parent():
     assert said == str(hash(sim.save())).encode()
 
 
+@pytest.fixture(scope="module")
+def large():
+    """A scene and a session whose products of matrices have taken threads in this process."""
+    scene = sn.Scene.from_dict(cube(24, run={"duration": 0.002, "integrator": "central-difference", "dt": 5e-4}))
+    sim = scene.session()
+    sim.step()
+    assert sim.stable_step > 0 and sim.energy()["kinetic_J"] > 0
+    return scene, sim
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="no fork here")
+@pytest.mark.parametrize("what", ["run", "stable_step", "step", "energy", "velocity"])
+def test_a_forked_child_asks_a_large_body(what, large):
+    """A child has none of the threads of its parent, and must not wait for them."""
+    scene, sim = large
+    ask = {
+        "run": scene.run,
+        "stable_step": scene.stable_step,
+        "step": sim.step,
+        "energy": sim.energy,
+        "velocity": lambda: sim.velocity,
+    }[what]
+    child = os.fork()
+    if child == 0:
+        signal.alarm(20)
+        try:
+            ask()
+            os._exit(7)
+        finally:
+            os._exit(1)
+    assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 7
+
+
 def test_a_sweep_keeps_order_and_names_what_was_lost():
     scene = sn.Scene.from_dict(cube())
     moduli = [4000.0, -1.0, 8000.0]
