@@ -125,7 +125,15 @@ pub(crate) fn rows_of<const N: usize>(
             described(value)
         ))
     };
-    let array: PyArrayLike2<'_, f64, AllowTypeChange> = value.extract().map_err(|_| wrong())?;
+    let numpy = value.py().import("numpy")?;
+    let array = numpy
+        .call_method1("asarray", (value,))
+        .map_err(|_| wrong())?;
+    let kind: String = array.getattr("dtype")?.getattr("kind")?.extract()?;
+    if !["b", "f", "i", "u"].contains(&kind.as_str()) {
+        return Err(wrong());
+    }
+    let array: PyArrayLike2<'_, f64, AllowTypeChange> = array.extract().map_err(|_| wrong())?;
     let view = array.as_array();
     if view.ncols() != N {
         return Err(wrong());

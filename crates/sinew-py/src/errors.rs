@@ -133,7 +133,11 @@ pub(crate) fn of_report(error: ReportError) -> PyErr {
 pub(crate) fn of_run(error: RecordRunError) -> PyErr {
     match error {
         RecordRunError::Scene(error) => of_scene(&error),
-        other => PyOSError::new_err(other.to_string()),
+        other => PyOSError::new_err(
+            other
+                .to_string()
+                .replace("`sinew run --again`", "again=True"),
+        ),
     }
 }
 

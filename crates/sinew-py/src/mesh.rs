@@ -46,6 +46,11 @@ impl Group {
         }
     }
 
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> (Bound<'py, PyType>, (u8, Py<PyAny>)) {
+        let own = slf.get();
+        (slf.get_type(), (own.dim, own.members.clone_ref(slf.py())))
+    }
+
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
         let count = self.members.bind(py).len()?;
         Ok(format!("Group(dim={}, {count} members)", self.dim))

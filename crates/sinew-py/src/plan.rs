@@ -11,7 +11,7 @@ use sinew::cli::{PlanError, memory_of, plan_json};
 use sinew_measure::advice::{Question, check_budget, check_pilot_seconds, check_tolerance};
 use sinew_scene::Scene;
 
-use crate::errors::{of_scene, scene_error, value_error};
+use crate::errors::{of_scene, value_error};
 use crate::guard::guarded;
 
 /// Time between two looks for a signal.
@@ -72,6 +72,6 @@ fn of_plan(error: PlanError) -> PyErr {
     match error {
         PlanError::Scene(error) => of_scene(&error),
         PlanError::Memory(text) => PyMemoryError::new_err(text),
-        other => scene_error(&other),
+        other => value_error(other.to_string().replace("--pilot-seconds", "seconds")),
     }
 }

@@ -1,5 +1,6 @@
 //! Whole runs of a scene into a folder.
 
+use std::io;
 use std::path::{Path, PathBuf};
 
 use pyo3::prelude::*;
@@ -7,6 +8,7 @@ use sinew_core::OptionValue;
 use sinew_record::{Request, RunFolder};
 use sinew_scene::{Scene, Simulation, Warning, WarningKind};
 use sinew_world::World;
+use tempfile::TempDir;
 
 use crate::errors::{of_run, of_scene, of_world, scene_error, value_error};
 use crate::watch::Onlooker;
@@ -19,6 +21,15 @@ const TABLES_ALONE: [&str; 2] = [
 
 /// Degrees of freedom from which on rows of energy come with frames, unless a scene says otherwise.
 const LARGE: usize = 30_000;
+
+/// Memory as a file system of Linux: results are safe there without waiting for a disk, which a folder that is thrown away
+/// does not need.
+const MEMORY: &str = "/dev/shm";
+
+/// A folder that is removed after use.
+pub(crate) fn scratch() -> io::Result<TempDir> {
+    tempfile::tempdir_in(MEMORY).or_else(|_| tempfile::tempdir())
+}
 
 /// A run that is asked for.
 pub(crate) struct Asked {

@@ -311,17 +311,11 @@ impl Scene {
             keeps_fields: named.is_some(),
         };
         let progress = results.call_method1("_progress", (progress,))?;
-        let mut onlooker = Onlooker {
-            progress: (!progress.is_none()).then(|| progress.unbind()),
-            duration: self.scene.settings().duration,
-            raised: None,
-            is_ended: false,
-        };
+        let progress = (!progress.is_none()).then(|| progress.unbind());
+        let mut onlooker = Onlooker::new(progress, self.scene.settings().duration);
         let scratch = match named {
             Some(_) => None,
-            None => {
-                Some(tempfile::tempdir().map_err(|error| PyOSError::new_err(error.to_string()))?)
-            }
+            None => Some(run::scratch().map_err(|error| PyOSError::new_err(error.to_string()))?),
         };
         let folder = match (&named, &scratch) {
             (Some(folder), _) => folder.clone(),

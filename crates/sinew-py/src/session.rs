@@ -5,11 +5,11 @@ use std::sync::Arc;
 use numpy::PyArray1;
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
-use pyo3::types::{PyBytes, PyDict};
+use pyo3::types::{PyBytes, PyDict, PyInt};
 use sinew_core::Options;
 use sinew_fem::stress::von_mises;
 use sinew_scene::Reaction;
-use sinew_world::{Command, Ended, Saved, World};
+use sinew_world::{Command, Ended, ReportError, Saved, World};
 
 use crate::arrays::{filled, filled_flat, indices, read_only, rows, rows_of, vector};
 use crate::errors::{of_advance, of_advance_to, of_command, of_report, of_step, value_error};
@@ -56,6 +56,29 @@ impl Session {
         Self::begun_at(world, scene, begun)
     }
 
+    /// A field of N numbers a row: in a new array, found while other threads of Python run, or in that of the caller.
+    fn field<'py, const N: usize>(
+        &self,
+        py: Python<'py>,
+        out: Option<&Bound<'py, PyAny>>,
+        count: fn(&World) -> usize,
+        write: fn(&mut World, &mut [[f64; N]]) -> Result<(), ReportError>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        if out.is_some() {
+            return self.world.with(py, |world| {
+                filled(py, out, count(world), |out| {
+                    write(world, out).map_err(of_report)
+                })
+            });
+        }
+        let values = self.world.work(py, |world| {
+            let mut values = vec![[0.0; N]; count(world)];
+            write(world, &mut values).map_err(of_report)?;
+            Ok(values)
+        })?;
+        Ok(rows(py, values)?.into_any())
+    }
+
     /// A session whose motion began earlier.
     pub(crate) fn begun_at(world: World, scene: Py<PyAny>, begun: Saved) -> Self {
         Self {
@@ -69,6 +92,32 @@ impl Session {
 fn nodes_of(world: &World) -> usize {
     let body = world.body().model().body();
     body.map_or(0, |body| body.mesh.points.len())
+}
+
+/// Displacements or velocities: of nodes, or of the mass of an oscillator.
+enum Motion {
+    Nodes(Vec<[f64; 3]>),
+    Mass(f64),
+}
+
+/// The value of the mass, if the scene is an oscillator.
+fn of_mass(world: &World, values: &[f64]) -> Option<f64> {
+    let body = world.body().model().body();
+    values.first().copied().filter(|_| body.is_none())
+}
+
+/// Velocities at the time of the state, which large bodies compute with several threads.
+fn velocities(world: &mut World) -> PyResult<Motion> {
+    let nodes = nodes_of(world);
+    if nodes > 0 {
+        let mut values = vec![[0.0; 3]; nodes];
+        world.velocities(&mut values).map_err(of_report)?;
+        return Ok(Motion::Nodes(values));
+    }
+    let mut v = vec![0.0; world.state().u.len()];
+    let found = (world.state()).velocity_at_t(world.body().system(), world.inputs(), &mut v);
+    found.map_err(|error| PyRuntimeError::new_err(error.to_string()))?;
+    Ok(Motion::Mass(of_mass(world, &v).unwrap_or(0.0)))
 }
 
 fn tets_of(world: &World) -> usize {
@@ -89,10 +138,15 @@ fn end_of(ended: &Ended, watch: Watch, world: &World) -> PyResult<()> {
 impl Session {
     /// Takes n steps of dt. Raises Diverged or Refused; after that only reset() or restore() goes on. KeyboardInterrupt
     /// leaves the session after the last whole step.
-    #[pyo3(signature = (n = 1))]
-    fn step(&self, py: Python<'_>, n: i64) -> PyResult<()> {
-        let steps = usize::try_from(n)
-            .map_err(|_| value_error(format!("n: {n}: expected a number of steps, 0 or above")))?;
+    #[pyo3(signature = (n = None), text_signature = "($self, n=1)")]
+    fn step(&self, py: Python<'_>, n: Option<Bound<'_, PyInt>>) -> PyResult<()> {
+        let wrong = |n: &Bound<'_, PyInt>| {
+            value_error(format!("n: {n}: expected a number of steps, 0 or above"))
+        };
+        let steps: usize = match &n {
+            Some(n) => n.extract().map_err(|_| wrong(n))?,
+            None => 1,
+        };
         self.world.work(py, |world| {
             if steps == 1 {
                 let taken = world.step().map(drop);
@@ -189,29 +243,33 @@ impl Session {
         Ok(read_only(rows(py, values)?)?.into_any())
     }
 
-    /// Displacements of the nodes from rest (m), (nodes, 3).
+    /// Displacements of the nodes from rest (m), (nodes, 3); of the mass of an oscillator, (1, 1).
     #[getter]
     fn displacement<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let values = self.world.with(py, |world| {
+        let motion = self.world.with(py, |world| {
+            if let Some(u) = of_mass(world, &world.state().u) {
+                return Ok(Motion::Mass(u));
+            }
             let mut values = vec![[0.0; 3]; nodes_of(world)];
             world.displacements(&mut values).map_err(of_report)?;
-            Ok(values)
+            Ok(Motion::Nodes(values))
         })?;
-        Ok(read_only(rows(py, values)?)?.into_any())
+        match motion {
+            Motion::Nodes(values) => Ok(read_only(rows(py, values)?)?.into_any()),
+            Motion::Mass(value) => Ok(read_only(rows(py, vec![[value]])?)?.into_any()),
+        }
     }
 
-    /// Velocities of the nodes (m/s) at the time t, (nodes, 3).
+    /// Velocities of the nodes (m/s) at the time t, (nodes, 3); of the mass of an oscillator, (1, 1).
     #[getter]
     fn velocity<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let values = self.world.with(py, |world| {
-            let mut values = vec![[0.0; 3]; nodes_of(world)];
-            world.velocities(&mut values).map_err(of_report)?;
-            Ok(values)
-        })?;
-        Ok(read_only(rows(py, values)?)?.into_any())
+        match self.world.work(py, velocities)? {
+            Motion::Nodes(values) => Ok(read_only(rows(py, values)?)?.into_any()),
+            Motion::Mass(value) => Ok(read_only(rows(py, vec![[value]])?)?.into_any()),
+        }
     }
 
-    /// Writes positions, displacement and velocity into arrays of the caller, (nodes, 3) float64, without allocating.
+    /// Writes positions, displacement and velocity into arrays of the caller, (nodes, 3) float64.
     #[pyo3(signature = (*, positions = None, displacement = None, velocity = None))]
     fn read_into(
         &self,
@@ -220,6 +278,15 @@ impl Session {
         displacement: Option<&Bound<'_, PyAny>>,
         velocity: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<()> {
+        if velocity.is_some() {
+            let Motion::Nodes(values) = self.world.work(py, velocities)? else {
+                return Err(value_error("velocity: an oscillator has no nodes"));
+            };
+            filled(py, velocity, values.len(), |out| {
+                out.copy_from_slice(&values);
+                Ok(())
+            })?;
+        }
         self.world.with(py, |world| {
             let nodes = nodes_of(world);
             if positions.is_some() {
@@ -230,11 +297,6 @@ impl Session {
             if displacement.is_some() {
                 filled(py, displacement, nodes, |out| {
                     world.displacements(out).map_err(of_report)
-                })?;
-            }
-            if velocity.is_some() {
-                filled(py, velocity, nodes, |out| {
-                    world.velocities(out).map_err(of_report)
                 })?;
             }
             Ok(())
@@ -248,11 +310,7 @@ impl Session {
         py: Python<'py>,
         out: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        self.world.with(py, |world| {
-            filled(py, out, tets_of(world), |out| {
-                world.stress(out).map_err(of_report)
-            })
-        })
+        self.field::<6>(py, out, tets_of, |world, out| world.stress(out))
     }
 
     /// Von Mises' stress of each tetrahedron (Pa), (tets,).
@@ -262,7 +320,7 @@ impl Session {
         py: Python<'py>,
         out: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let values = self.world.with(py, |world| {
+        let values = self.world.work(py, |world| {
             let mut stress = vec![[0.0; 6]; tets_of(world)];
             world.stress(&mut stress).map_err(of_report)?;
             Ok(stress.iter().map(von_mises).collect())
@@ -278,11 +336,7 @@ impl Session {
         py: Python<'py>,
         out: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        self.world.with(py, |world| {
-            filled(py, out, tets_of(world), |out| {
-                world.strain(out).map_err(of_report)
-            })
-        })
+        self.field::<6>(py, out, tets_of, |world, out| world.strain(out))
     }
 
     /// Forces on the nodes by tools, and by the other face of a cut, in the last step (N), (nodes, 3).
@@ -292,16 +346,12 @@ impl Session {
         py: Python<'py>,
         out: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        self.world.with(py, |world| {
-            filled(py, out, nodes_of(world), |out| {
-                world.contact_forces(out).map_err(of_report)
-            })
-        })
+        self.field::<3>(py, out, nodes_of, |world, out| world.contact_forces(out))
     }
 
     /// Energies (J): kinetic_J, elastic_J, work_of_tools_J since the motion began, and of_cuts_J where the body may be cut.
     fn energy<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let (energy, tools, cuts) = self.world.with(py, |world| {
+        let (energy, tools, cuts) = self.world.work(py, |world| {
             let energy = world.energy().map_err(of_report)?;
             let cuts = world.cuts().map(sinew_scene::CutTotals::energy);
             Ok((energy, world.work_of_tools(), cuts))

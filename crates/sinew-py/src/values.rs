@@ -21,6 +21,11 @@ pub(crate) fn assignments(values: Option<&Bound<'_, PyDict>>) -> PyResult<Vec<St
     let plain = plain.cast::<PyDict>()?;
     let assignment = |(key, value): (Bound<'_, PyAny>, Bound<'_, PyAny>)| {
         let key: String = key.extract()?;
+        if key.contains('=') {
+            return Err(value_error(format!(
+                "set: {key:?}: expected the key of a value, such as \"run.duration\""
+            )));
+        }
         Ok(format!("{key}={}", to_toml(&value)?))
     };
     plain.iter().map(assignment).collect()

@@ -1,5 +1,7 @@
 //! The one who watches steps for Python: Ctrl-C ends them in order.
 
+use std::time::{Duration, Instant};
+
 use pyo3::prelude::*;
 use sinew_core::{Moment, RecordError, Verdict};
 use sinew_record::{Companion, Pace};
@@ -47,11 +49,28 @@ impl Recorder for Watch {}
 /// Watches a run, and tells a function of Python how far it is.
 pub(crate) struct Onlooker {
     /// Called with the time (s) of the state and the duration (s); `False` ends the run.
-    pub(crate) progress: Option<Py<PyAny>>,
-    pub(crate) duration: f64,
+    progress: Option<Py<PyAny>>,
+    duration: f64,
     /// The exception that ended the run.
     pub(crate) raised: Option<PyErr>,
     pub(crate) is_ended: bool,
+    /// When it was last told.
+    told: Instant,
+}
+
+/// Time between two calls of a function of Python.
+const TELL: Duration = Duration::from_millis(40);
+
+impl Onlooker {
+    pub(crate) fn new(progress: Option<Py<PyAny>>, duration: f64) -> Self {
+        Self {
+            progress,
+            duration,
+            raised: None,
+            is_ended: false,
+            told: Instant::now(),
+        }
+    }
 }
 
 impl Companion for Onlooker {
@@ -60,6 +79,10 @@ impl Companion for Onlooker {
     }
 
     fn progress(&mut self, _: usize, t: f64) {
+        if self.told.elapsed() < TELL && t < self.duration {
+            return;
+        }
+        self.told = Instant::now();
         let told = Python::attach(|py| {
             py.check_signals()?;
             let Some(progress) = &self.progress else {
