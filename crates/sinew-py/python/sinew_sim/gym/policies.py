@@ -1,0 +1,134 @@
+"""Policies for the tasks: a scripted one for each, and a random one.
+
+A policy is called with an observation and returns an action. It is made for one episode of a task:
+
+>>> import gymnasium, sinew_sim.gym
+>>> from sinew_sim.gym import policies
+>>> env = gymnasium.make("sinew/Retract-v0")
+>>> observation, _ = env.reset(seed=1)
+>>> policy = policies.scripted(env.unwrapped)
+>>> action = policy(observation)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ._hand import CONTROL_STEP, Floats
+from ._task import Task
+from .bimanual_retract import BimanualRetract
+from .dissect import Dissect
+from .grasp_lift import GraspLift
+from .retract import Retract
+
+Policy = Callable[[Floats], NDArray[np.float32]]
+
+#: Share of the way to a goal that a scripted tool goes in a control step.
+GAIN = 0.2
+
+#: Speed with which a scripted tool draws tissue (m/s).
+GENTLY = 0.06
+
+
+#: Speed with which a scripted jaw goes aside (m/s).
+QUICKLY = 0.1
+
+#: Speed with which a scripted jaw goes down (m/s).
+DOWN = 0.05
+
+#: How near a scripted jaw must be above its mark before it goes down (m).
+NEAR = 0.002
+
+#: Force on a jaw (N) from which on it is on the tissue.
+TOUCH = 0.03
+
+
+def random(task: Task, seed: int | None = None) -> Policy:
+    """A policy that draws each action anew, alike over the space of actions."""
+    task.action_space.seed(seed)
+    return lambda observation: task.action_space.sample()
+
+
+def scripted(task: Task) -> Policy:
+    """The scripted policy of a task, for one episode."""
+    if isinstance(task, Retract):
+        return Scripted(task, [Jaw("jaw", "mark", "to_goal")])
+    if isinstance(task, BimanualRetract):
+        return Scripted(task, [Jaw(side, side, f"{side}_to_goal") for side in ("left", "right")])
+    if isinstance(task, GraspLift):
+        return Scripted(task, [Jaw("jaw", "top", "to_goal")])
+    if isinstance(task, Dissect):
+        return Scripted(task, [burn, Jaw("jaw", "spot", None, lift=0.004)])
+    raise TypeError(f"task: expected one of the tasks of sinew_sim.gym, got {type(task).__name__}")
+
+
+class Reading:
+    """The entries of an observation by name."""
+
+    def __init__(self, names: tuple[str, ...], observation: Floats) -> None:
+        self._values = dict(zip(names, observation))
+
+    def number(self, name: str) -> float:
+        return float(self._values[name])
+
+    def vector(self, name: str, unit: str = "m") -> Floats:
+        return np.array([self._values[f"{name}_{axis}_{unit}"] for axis in "xyz"])
+
+
+#: What one hand does: its part of the action.
+Part = Callable[[Reading], list[float]]
+
+
+class Scripted:
+    """A policy whose hands follow a part each."""
+
+    def __init__(self, task: Task, parts: list[Part]) -> None:
+        self._names = task.names
+        self._parts = parts
+
+    def __call__(self, observation: Floats) -> NDArray[np.float32]:
+        reading = Reading(self._names, observation)
+        return np.array([number for part in self._parts for number in part(reading)], np.float32)
+
+
+class Jaw:
+    """A jaw that goes above a mark, down until it touches, closes, and draws the mark.
+
+    way: the name of the way from the mark to its goal in the observation; None to go up by `lift` (m) from where it closed.
+    """
+
+    def __init__(self, name: str, mark: str, way: str | None, lift: float = 0.0) -> None:
+        self._name, self._mark, self._way = name, mark, way
+        self._lift = np.array([0.0, 0.0, lift])
+        self._seized: Floats | None = None
+
+    def __call__(self, reading: Reading) -> list[float]:
+        place = reading.vector(self._name)
+        if reading.number(f"{self._name}_holds"):
+            if self._seized is None:
+                self._seized = place
+            way = reading.vector(self._way) if self._way else self._seized + self._lift - place
+            return [*_towards(way, GENTLY), 1.0]
+        has_touched = float(np.linalg.norm(reading.vector(f"{self._name}_force", "N"))) > TOUCH
+        aside = reading.vector(self._mark) - place
+        aside[2] = 0.0
+        if has_touched or np.linalg.norm(aside) < NEAR:
+            return [*_towards(aside, QUICKLY)[:2], -DOWN, 1.0 if has_touched else -1.0]
+        return [*_towards(aside, QUICKLY), -1.0]
+
+
+def burn(reading: Reading) -> list[float]:
+    """The burner goes to the nearest joining tissue that is left, once the jaw holds."""
+    if not reading.number("jaw_holds"):
+        return [0.0, 0.0, 0.0]
+    return list(_towards(reading.vector("to_join"), GENTLY))
+
+
+def _towards(way: Floats, fastest: float) -> Floats:
+    """A velocity along a way, slower near its end."""
+    velocity = GAIN / CONTROL_STEP * way
+    speed = float(np.linalg.norm(velocity))
+    return velocity * min(1.0, fastest / speed) if speed > 0.0 else velocity
