@@ -27,9 +27,15 @@ from .dissect import Dissect
 from .grasp_lift import GraspLift
 from .retract import Retract
 
-IDS = ("sinew/Retract-v0", "sinew/BimanualRetract-v0", "sinew/GraspLift-v0", "sinew/Dissect-v0")
+#: The tasks by their ids.
+TASKS: dict[str, type[Task]] = {
+    "sinew/Retract-v0": Retract,
+    "sinew/BimanualRetract-v0": BimanualRetract,
+    "sinew/GraspLift-v0": GraspLift,
+    "sinew/Dissect-v0": Dissect,
+}
 
-for _id, _task in zip(IDS, (Retract, BimanualRetract, GraspLift, Dissect)):
+for _id, _task in TASKS.items():
     gymnasium.register(_id, entry_point=f"{_task.__module__}:{_task.__name__}")
 
-__all__ = ["IDS", "BimanualRetract", "Dissect", "GraspLift", "Hand", "Retract", "Task"]
+__all__ = ["TASKS", "BimanualRetract", "Dissect", "GraspLift", "Hand", "Retract", "Task"]

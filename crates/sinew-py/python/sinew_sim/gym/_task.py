@@ -81,6 +81,8 @@ class Task(gymnasium.Env[Floats, NDArray[np.float32]]):
     MARKS: ClassVar[dict[str, tuple[float, float, float]]]
     #: Control steps of an episode.
     STEPS: ClassVar[int]
+    #: Ranges for `randomise` with which the figures of the README are measured: half to twice the stiffness, and starts.
+    VARIED: ClassVar[dict[str, tuple[Any, Any]]]
     #: Names of what the task adds to the observation.
     EXTRA: ClassVar[tuple[str, ...]] = ()
     #: Stress (Pa) at the end of the scale of colours.

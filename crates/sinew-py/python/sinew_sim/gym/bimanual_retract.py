@@ -51,6 +51,11 @@ class BimanualRetract(Task):
     )
     MARKS = SPOTS
     STEPS = 200
+    VARIED = {
+        "region.1.youngs_modulus": (2000.0, 8000.0),
+        "tool.1.start": ((0.016, 0.014, 0.028), (0.03, 0.034, 0.04)),
+        "tool.2.start": ((0.042, 0.014, 0.028), (0.056, 0.034, 0.04)),
+    }
     EXTRA = tuple(f"{side}_to_goal_{axis}_m" for side in ("left", "right") for axis in "xyz")
 
     def scene_values(self) -> dict[str, Any]:

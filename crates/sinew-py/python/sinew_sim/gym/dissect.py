@@ -26,10 +26,10 @@ FAR = 0.05
 class Dissect(Task):
     """A burner takes away the soft tissue that joins a layer to what lies below, while a jaw holds the layer.
 
-    The tissue, 30 x 24 x 12 mm, is held at its bottom: 3 mm with Young's modulus 8 kPa, 3 mm of joining tissue with 2 kPa, and
-    the layer, 6 mm with 8 kPa. The burner is a rod along y, 9 mm long with round ends of radius 1.5 mm, which takes away each
-    tetrahedron whose middle is inside it, and touches nothing. Pieces that nothing holds are gone, so the jaw, a rod along y
-    with round ends, must hold the layer.
+    The tissue, 30 x 24 x 12 mm, is held at its bottom: 3 mm with Young's modulus 6 kPa, 3 mm of joining tissue with 2 kPa, and
+    the layer, 6 mm with 6 kPa. The burner is a rod along y, 20 mm long with round ends of radius 1.5 mm, which takes away each
+    tetrahedron whose middle is inside it, and touches nothing. Pieces that nothing holds are gone, so the jaw, a ball, must
+    hold the layer.
 
     Reward of a control step: -j - 10 h - a / 50 mm - max(0, F / 0.5 N - 1), with the share j of the joining tetrahedra that
     are left, the share h of all other tetrahedra that are gone, the distance a from the jaw to its mark on the layer, and the
@@ -44,14 +44,19 @@ class Dissect(Task):
 
     HANDS = (
         Hand("burner", 0.1, (-0.01, 0.0, 0.0), (0.04, 0.024, 0.03), jaws=False),
-        Hand("jaw", 0.1, (0.0, 0.0, 0.0135), (0.03, 0.024, 0.04)),
+        Hand("jaw", 0.1, (0.0, 0.0, 0.0145), (0.03, 0.024, 0.04)),
     )
     MARKS = {"spot": (0.015, 0.012, 0.012), "near": (0.0, 0.012, 0.012), "far": (0.03, 0.012, 0.012)}
-    STEPS = 300
+    STEPS = 200
+    VARIED = {
+        "region.1.youngs_modulus": (1000.0, 4000.0),
+        "region.2.youngs_modulus": (3000.0, 12000.0),
+        "tool.1.start": ((-0.008, 0.008, 0.003), (-0.004, 0.016, 0.008)),
+        "tool.2.start": ((0.01, 0.008, 0.018), (0.02, 0.016, 0.026)),
+    }
     EXTRA = ("left", "harm", "to_join_x_m", "to_join_y_m", "to_join_z_m")
 
     def scene_values(self) -> dict[str, Any]:
-        across = [np.pi / 2, 0.0, 0.0]
         tissue = {"density": 1060.0, "model": "neo-hookean", "poissons_ratio": 0.45, "element": "fbar-edge"}
         return {
             "title": "A layer, freed by a burner",
@@ -59,7 +64,7 @@ class Dissect(Task):
             "mesh": {"block": {"cells": [10, 8, 4], "size": [0.03, 0.024, 0.012], "split": "kuhn"}},
             "region": [
                 {"where": {"box": [[0.0, 0.0, JOIN[0]], [0.03, 0.024, JOIN[1]]]}, "youngs_modulus": 2000.0, **tissue},
-                {"where": "rest", "youngs_modulus": 8000.0, **tissue},
+                {"where": "rest", "youngs_modulus": 6000.0, **tissue},
             ],
             "damping": {"mass": 20.0},
             "fixed": [{"group": "bottom"}],
@@ -67,13 +72,13 @@ class Dissect(Task):
             "tool": [
                 {
                     "name": "burner",
-                    "shape": {"capsule": {"radius": 0.0015, "length": 0.009}, "rotation": across},
-                    "start": [-0.005, 0.006, 0.0045],
+                    "shape": {"capsule": {"radius": 0.0015, "length": 0.02}, "rotation": [np.pi / 2, 0.0, 0.0]},
+                    "start": [-0.005, 0.012, 0.0045],
                     "hold": True,
                 },
                 {
                     "name": "jaw",
-                    "shape": {"capsule": {"radius": 0.004, "length": 0.01}, "rotation": across},
+                    "shape": {"sphere": {"radius": 0.005}},
                     "start": [0.015, 0.012, 0.022],
                     "hold": True,
                 },

@@ -39,6 +39,10 @@ class GraspLift(Task):
     HANDS = (Hand("jaw", 0.1, (-0.01, 0.0, 0.0135), (0.06, 0.024, 0.06)),)
     MARKS = {"middle": (0.02, 0.012, 0.006), "top": (0.02, 0.012, 0.012)}
     STEPS = 200
+    VARIED = {
+        "region.1.youngs_modulus": (2500.0, 10000.0),
+        "tool.1.start": ((0.01, 0.004, 0.02), (0.03, 0.02, 0.03)),
+    }
     EXTRA = ("to_goal_x_m", "to_goal_y_m", "to_goal_z_m")
 
     def scene_values(self) -> dict[str, Any]:

@@ -33,6 +33,9 @@ GAIN = 0.2
 GENTLY = 0.06
 
 
+#: Speed of the scripted burner (m/s).
+BURNING = 0.08
+
 #: Speed with which a scripted jaw goes aside (m/s).
 QUICKLY = 0.1
 
@@ -124,7 +127,8 @@ def burn(reading: Reading) -> list[float]:
     """The burner goes to the nearest joining tissue that is left, once the jaw holds."""
     if not reading.number("jaw_holds"):
         return [0.0, 0.0, 0.0]
-    return list(_towards(reading.vector("to_join"), GENTLY))
+    way = reading.vector("to_join")
+    return list(BURNING * way / max(float(np.linalg.norm(way)), 1e-9))
 
 
 def _towards(way: Floats, fastest: float) -> Floats:

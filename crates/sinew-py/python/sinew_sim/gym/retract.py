@@ -39,6 +39,10 @@ class Retract(Task):
     HANDS = (Hand("jaw", 0.1, (0.0, 0.0, 0.0105), (0.07, 0.04, 0.06)),)
     MARKS = {"mark": (0.05, 0.02, 0.009), "end": (0.06, 0.02, 0.009), "middle": (0.03, 0.02, 0.009)}
     STEPS = 200
+    VARIED = {
+        "region.1.youngs_modulus": (2000.0, 8000.0),
+        "tool.1.start": ((0.035, 0.01, 0.02), (0.065, 0.03, 0.03)),
+    }
     EXTRA = ("to_goal_x_m", "to_goal_y_m", "to_goal_z_m")
 
     def scene_values(self) -> dict[str, Any]:
