@@ -10,18 +10,37 @@ from gymnasium.error import DependencyNotInstalled
 from numpy.typing import NDArray
 
 from .._core import Scene, Session, Tool
-from ._hand import Hand
+from ._hand import Floats, Hand
 
 #: Width and height (pixels).
 SIZE = (640, 480)
 
-_STEEL, _BED, _BACK = "#b8c4d0", "#d9d4cc", "white"
+_STEEL, _BED, _GOAL, _BACK = "#9fb2c4", "#dfe6ea", "#1b9e4b", "white"
+
+#: Title of the scale of colours.
+_STRESS = "von Mises (kPa)"
+
+_BAR = {
+    "vertical": True,
+    "position_x": 0.84,
+    "position_y": 0.25,
+    "height": 0.5,
+    "width": 0.05,
+    "color": "black",
+    "fmt": "%.0f",
+    "n_labels": 4,
+    "title_font_size": 14,
+    "label_font_size": 14,
+}
+
+#: Radius of the ball at a goal, as a share of the size of the body.
+_BALL = 0.015
 
 
 class Painter:
     """Draws the surface of tissue, coloured by von Mises stress, and the tools."""
 
-    def __init__(self, hands: Sequence[Hand], stress: float) -> None:
+    def __init__(self, hands: Sequence[Hand], goals: Floats, stress: float) -> None:
         try:
             import pyvista
         except ImportError as missing:
@@ -30,6 +49,7 @@ class Painter:
             ) from missing
         self._pyvista: Any = pyvista
         self._hands = hands
+        self._goals = goals
         self._stress = stress
         self._plotter: Any = None
 
@@ -40,14 +60,15 @@ class Painter:
         plotter = self._plotter
         plotter.add_mesh(
             self._tissue(sim),
-            scalars="von Mises stress (Pa)",
-            clim=(0.0, self._stress),
-            cmap="viridis",
+            scalars=_STRESS,
+            clim=(0.0, self._stress / 1e3),
+            cmap="YlOrRd",
             show_edges=True,
-            edge_color="#404040",
-            line_width=0.5,
+            edge_color="#805040",
+            edge_opacity=0.4,
+            ambient=0.25,
             name="tissue",
-            scalar_bar_args={"vertical": True, "position_x": 0.87, "position_y": 0.2, "height": 0.6, "color": "black"},
+            scalar_bar_args=_BAR,
         )
         for table in scene.as_dict()["tool"]:
             tool = sim.tool(table["name"])
@@ -68,17 +89,22 @@ class Painter:
             self._plotter = None
 
     def _begun(self, scene: Scene) -> Any:
-        """A plotter whose camera looks at the body from the front, above and aside."""
+        """A plotter whose camera sees the body, the starts of hands and the goals, from the front, above and aside."""
         plotter = self._pyvista.Plotter(off_screen=True, window_size=SIZE)
         plotter.set_background(_BACK)
+        plotter.enable_anti_aliasing("ssaa")
         assert scene.mesh is not None
-        points = scene.mesh.points
+        names = [hand.name for hand in self._hands]
+        starts = [tool["start"] for tool in scene.as_dict()["tool"] if tool["name"] in names]
+        points = np.concatenate([scene.mesh.points, starts, self._goals])
         low, high = points.min(axis=0), points.max(axis=0)
-        middle = (low + high) / 2.0
-        middle[2] = high[2]
         size = float(np.linalg.norm(high - low))
-        plotter.camera.focal_point = middle
-        plotter.camera.position = middle + size * np.array([0.9, -1.6, 1.0])
+        for number, goal in enumerate(self._goals):
+            ball = self._pyvista.Sphere(radius=_BALL * size, center=goal)
+            plotter.add_mesh(ball, color=_GOAL, name=f"goal {number}")
+        middle = (low + high) / 2.0
+        plotter.camera.focal_point = middle + size * np.array([0.12, 0.05, 0.0])
+        plotter.camera.position = middle + size * np.array([0.8, -1.5, 1.0])
         plotter.camera.up = (0.0, 0.0, 1.0)
         plotter.camera.clipping_range = (0.01 * size, 10.0 * size)
         return plotter
@@ -86,7 +112,7 @@ class Painter:
     def _tissue(self, sim: Session) -> Any:
         assert sim.mesh is not None
         grid = self._pyvista.UnstructuredGrid({self._pyvista.CellType.TETRA: sim.mesh.tets}, sim.positions)
-        grid.cell_data["von Mises stress (Pa)"] = sim.von_mises()
+        grid.cell_data[_STRESS] = sim.von_mises() / 1e3
         return grid.extract_surface()
 
     def _solid(self, shape: dict[str, Any], scene: Scene) -> Any:

@@ -107,7 +107,7 @@ class Task(gymnasium.Env[Floats, NDArray[np.float32]]):
         self._asks_error = error
         self._limit = self.STEPS if steps is None else steps
         self._steady = 0
-        self._painter: Painter | None = Painter(self.HANDS, self.STRESS) if render_mode else None
+        self._painter: Painter | None = Painter(self.HANDS, self.goals(), self.STRESS) if render_mode else None
         self.names = self._names()
         self._bounds = self._largest()
         self.action_space = spaces.Box(-self._bounds, self._bounds, dtype=np.float32)
@@ -129,6 +129,10 @@ class Task(gymnasium.Env[Floats, NDArray[np.float32]]):
     def extra(self) -> Floats:
         """What the task adds to the observation."""
         return np.empty(0)
+
+    def goals(self) -> Floats:
+        """Places that pictures mark as goals (m), (k, 3)."""
+        return np.empty((0, 3))
 
     def begun(self) -> None:
         """Called as an episode begins."""

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from ._hand import Hand
+from ._hand import Floats, Hand
 from ._slit import slit_block
 from ._task import Task
 
@@ -82,6 +82,9 @@ class BimanualRetract(Task):
             "run": {"duration": 2.0, "integrator": "central-difference", "dt": "auto"},
         }
 
+    def goals(self) -> Floats:
+        return GOALS
+
     def evaluate(self) -> tuple[float, bool]:
         marks = np.array([self.mark("left"), self.mark("right")])
         approach = float(np.linalg.norm(self.hands.places - marks, axis=1).mean())
@@ -90,6 +93,6 @@ class BimanualRetract(Task):
         is_met = bool((ways < NEAR).all()) and self.holds(0) and self.holds(1)
         return -(approach + float(ways.mean())) / FAR - excess, is_met
 
-    def extra(self) -> np.ndarray[Any, np.dtype[np.float64]]:
-        ways: np.ndarray[Any, np.dtype[np.float64]] = GOALS - [self.mark("left"), self.mark("right")]
+    def extra(self) -> Floats:
+        ways: Floats = GOALS - [self.mark("left"), self.mark("right")]
         return ways.ravel()

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from ._hand import Hand
+from ._hand import Floats, Hand
 from ._task import Task
 
 #: Where the middle of the piece is to go (m).
@@ -72,12 +72,15 @@ class GraspLift(Task):
             "run": {"duration": 2.0, "integrator": "central-difference", "dt": "auto", "free_flight": True},
         }
 
+    def goals(self) -> Floats:
+        return GOAL[None]
+
     def evaluate(self) -> tuple[float, bool]:
         approach = float(np.linalg.norm(self.hands.places[0] - self.mark("top")))
         way = float(np.linalg.norm(self.extra()))
         excess = max(0.0, self.force() / GENTLE - 1.0)
         return -(approach + way) / FAR - excess, way < NEAR and self.holds()
 
-    def extra(self) -> np.ndarray[Any, np.dtype[np.float64]]:
-        way: np.ndarray[Any, np.dtype[np.float64]] = GOAL - self.mark("middle")
+    def extra(self) -> Floats:
+        way: Floats = GOAL - self.mark("middle")
         return way
