@@ -10,6 +10,7 @@ Episodes are randomised by `Task.VARIED`: half to twice the stiffness, and the s
 from __future__ import annotations
 
 import argparse
+import sys
 import time
 from typing import Any
 
@@ -25,7 +26,8 @@ def measure(name: str, is_scripted: bool, episodes: int, with_error: int) -> dic
     env = gymnasium.make(name, randomise=sinew_sim.gym.TASKS[name].VARIED)
     task = env.unwrapped
     assert isinstance(task, Task)
-    successes, steps, seconds, failed, errors = 0, 0, 0.0, 0, []
+    successes, steps, seconds, failed = 0, 0, 0.0, 0
+    errors: list[float] = []
     for episode in range(episodes):
         observation, info = env.reset(seed=episode)
         policy = policies.scripted(task) if is_scripted else policies.random(task, seed=episode)
@@ -36,11 +38,13 @@ def measure(name: str, is_scripted: bool, episodes: int, with_error: int) -> dic
             is_over = terminated or truncated
         seconds += time.process_time() - began
         successes += info["is_success"]
+        print(f"\r{name}: {successes} of {episode + 1}", end="", file=sys.stderr, flush=True)
         failed += info["outcome"] != "finished"
         if not info["is_success"] and is_scripted:
             print(f"    episode {episode}: no success, {info['outcome']}, {info['values']}", flush=True)
         if info["outcome"] == "finished" and len(errors) < with_error:
             errors.append(task.trusted_error())
+    print(file=sys.stderr)
     assert task.scene.mesh is not None
     return {
         "nodes": len(task.scene.mesh.points),

@@ -24,12 +24,6 @@ ids = pytest.mark.parametrize("name", TASKS)
 MANY_NODES = {"mesh.block.cells": [20, 13, 6]}
 
 
-def bits(task: Any) -> list[bytes]:
-    """All that moves, as bytes."""
-    sim = task.sim
-    return [sim.positions.tobytes(), sim.velocity.tobytes(), *(tool.force.tobytes() for tool in task.hands.tools)]
-
-
 def run(env: Any, steps: int, seed: int = 3) -> list[Any]:
     """Observations and rewards of some steps of the scripted policy."""
     observation, _ = env.reset(seed=seed)
@@ -63,28 +57,29 @@ def test_gymnasium_finds_nothing_wrong(name: str) -> None:
 @ids
 def test_the_same_seed_and_actions_give_the_same_bits(name: str) -> None:
     env = gymnasium.make(name, randomise=TASKS[name].VARIED)
-    first = run(env, 25)
-    assert run(env, 25, seed=4) != first
-    assert run(env, 25) == first
-    assert run(gymnasium.make(name, randomise=TASKS[name].VARIED), 25) == first
+    first = run(env, 22)
+    assert run(env, 1, seed=4) != first[:2]
+    assert run(env, 22) == first
 
 
 @ids
 def test_a_reset_without_random_values_gives_the_bits_of_a_new_session(name: str) -> None:
     env = gymnasium.make(name)
-    first = run(env, 35)
-    sim = env.unwrapped.sim
-    assert run(env, 35) == first
-    assert env.unwrapped.sim is sim
+    task: Any = env.unwrapped
+    first = run(env, 24)
+    sim = task.sim
+    assert run(env, 24) == first
+    assert task.sim is sim
+    assert run(gymnasium.make(name), 24) == first
 
 
 @ids
 def test_the_log_replays_with_the_same_bits(name: str) -> None:
     env = gymnasium.make(name)
-    run(env, 35)
-    task = env.unwrapped
+    run(env, 24)
+    task: Any = env.unwrapped
     replayed = task.scene.replay(task.sim.log)
-    assert replayed.t == task.sim.t > 0.3
+    assert replayed.t == task.sim.t > 0.2
     assert replayed.positions.tobytes() == task.sim.positions.tobytes()
     for hand in task.HANDS:
         assert replayed.tool(hand.name).force.tobytes() == task.sim.tool(hand.name).force.tobytes()
@@ -134,10 +129,10 @@ def test_the_observation_has_the_marks_poses_forces_and_stress(name: str) -> Non
     env = gymnasium.make(name)
     run(env, 30)
     task: Any = env.unwrapped
-    action = env.action_space.sample() * 0.0
-    observation = env.step(action)[0]
+    keep_closed = np.where(env.action_space.high == 1.0, 1.0, 0.0).astype(np.float32)  # type: ignore[attr-defined]
+    observation = env.step(keep_closed)[0]
     value = dict(zip(task.names, observation))
-    assert len(value) == len(observation)
+    assert len(value) == len(task.names) == len(observation)
     size = 0.0
     for hand in task.HANDS:
         tool = task.sim.tool(hand.name)
@@ -315,7 +310,7 @@ def test_a_reset_takes_less_than_a_millisecond_at_2000_nodes() -> None:
         whole.append(time.perf_counter() - begun)
     print(f"reset at {nodes} nodes: session {1e3 * min(times):.2f} ms, environment {1e3 * min(whole):.2f} ms at best")
     assert np.median(times) < 5e-3
-    assert np.median(whole) < 10e-3
+    assert np.median(whole) < 5e-3
 
 
 @pytest.mark.skipif(not Path("/proc/self/statm").exists(), reason="the memory in use is read from /proc, which is not here")

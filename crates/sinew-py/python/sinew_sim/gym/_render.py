@@ -33,6 +33,9 @@ _BAR = {
     "label_font_size": 14,
 }
 
+#: The faces of a tetrahedron.
+_FACES = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]]
+
 #: Radius of the ball at a goal, as a share of the size of the body.
 _BALL = 0.015
 
@@ -110,10 +113,14 @@ class Painter:
         return plotter
 
     def _tissue(self, sim: Session) -> Any:
+        """The surface: the faces that one tetrahedron alone has, with its stress."""
         assert sim.mesh is not None
-        grid = self._pyvista.UnstructuredGrid({self._pyvista.CellType.TETRA: sim.mesh.tets}, sim.positions)
-        grid.cell_data[_STRESS] = sim.von_mises() / 1e3
-        return grid.extract_surface()
+        faces = sim.mesh.tets[:, _FACES].reshape(-1, 3)
+        _, first, counts = np.unique(np.sort(faces, axis=1), axis=0, return_index=True, return_counts=True)
+        outer = first[counts == 1]
+        surface = self._pyvista.PolyData.from_regular_faces(sim.positions, faces[outer])
+        surface.cell_data[_STRESS] = sim.von_mises()[outer // len(_FACES)] / 1e3
+        return surface
 
     def _solid(self, shape: dict[str, Any], scene: Scene) -> Any:
         """A shape in the frame of its tool."""

@@ -215,6 +215,7 @@ class Task(gymnasium.Env[Floats, NDArray[np.float32]]):
         self.sim: Session = self.scene.session()
         self.values = values
         self.hands = Hands(self.sim, self.HANDS)
+        self._first_stress = float(self.sim.von_mises().max())
         self._epoch_of_marks = -1
 
     def _begin(self) -> None:
@@ -222,7 +223,7 @@ class Task(gymnasium.Env[Floats, NDArray[np.float32]]):
         self._find_marks()
         self._commands: list[Command] = []
         self._steady = 0
-        self._stress = float(self.sim.von_mises().max())
+        self._stress = self._first_stress
         self._outcome = "running"
         self._error: float | None = None
         self._over = False

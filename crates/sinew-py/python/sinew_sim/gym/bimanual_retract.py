@@ -26,7 +26,7 @@ GENTLE = 0.5
 FAR = 0.05
 
 #: Places that the jaws seize at rest, and goals of them (m): left, right.
-SPOTS = {"left": (MIDDLE - 0.006, 0.024, 0.02), "right": (MIDDLE + 0.006, 0.024, 0.02)}
+SPOTS = {"left_lip": (MIDDLE - 0.006, 0.024, 0.02), "right_lip": (MIDDLE + 0.006, 0.024, 0.02)}
 GOALS = np.array([(MIDDLE - 0.006 - OPENING, 0.024, 0.02), (MIDDLE + 0.006 + OPENING, 0.024, 0.02)])
 
 
@@ -86,7 +86,7 @@ class BimanualRetract(Task):
         return GOALS
 
     def evaluate(self) -> tuple[float, bool]:
-        marks = np.array([self.mark("left"), self.mark("right")])
+        marks = np.array([self.mark("left_lip"), self.mark("right_lip")])
         approach = float(np.linalg.norm(self.hands.places - marks, axis=1).mean())
         ways = np.linalg.norm(GOALS - marks, axis=1)
         excess = max(0.0, max(self.force(0), self.force(1)) / GENTLE - 1.0)
@@ -94,5 +94,5 @@ class BimanualRetract(Task):
         return -(approach + float(ways.mean())) / FAR - excess, is_met
 
     def extra(self) -> Floats:
-        ways: Floats = GOALS - [self.mark("left"), self.mark("right")]
+        ways: Floats = GOALS - [self.mark("left_lip"), self.mark("right_lip")]
         return ways.ravel()

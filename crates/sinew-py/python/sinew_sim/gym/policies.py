@@ -60,7 +60,7 @@ def scripted(task: Task) -> Policy:
     if isinstance(task, Retract):
         return Scripted(task, [Jaw("jaw", "mark", "to_goal")])
     if isinstance(task, BimanualRetract):
-        return Scripted(task, [Jaw(side, side, f"{side}_to_goal") for side in ("left", "right")])
+        return Scripted(task, [Jaw(side, f"{side}_lip", f"{side}_to_goal") for side in ("left", "right")])
     if isinstance(task, GraspLift):
         return Scripted(task, [Jaw("jaw", "top", "to_goal")])
     if isinstance(task, Dissect):
