@@ -253,7 +253,7 @@ def test_the_error_takes_a_cut_body() -> None:
 
 def test_a_motion_that_is_not_followed_ends_the_episode() -> None:
     env = gymnasium.make("sinew/Retract-v0", steps=20)
-    # Half the stable step is not enough for tissue a hundred times as stiff: "run.dt" is taken as it is given.
+    # A step several times as long as the stable one.
     env.reset(options={"values": {"run.dt": 0.0025}})
     left = 20
     for _ in range(20):

@@ -99,15 +99,17 @@ class Painter:
         assert scene.mesh is not None
         names = [hand.name for hand in self._hands]
         starts = [tool["start"] for tool in scene.as_dict()["tool"] if tool["name"] in names]
-        points = np.concatenate([scene.mesh.points, starts, self._goals])
+        # Tissue that gets to a goal reaches beyond it.
+        reach = 0.3 * np.ptp(scene.mesh.points, axis=0)
+        points = np.concatenate([scene.mesh.points, starts, self._goals - reach, self._goals + reach])
         low, high = points.min(axis=0), points.max(axis=0)
         size = float(np.linalg.norm(high - low))
         for number, goal in enumerate(self._goals):
             ball = self._pyvista.Sphere(radius=_BALL * size, center=goal)
             plotter.add_mesh(ball, color=_GOAL, name=f"goal {number}")
         middle = (low + high) / 2.0
-        plotter.camera.focal_point = middle + size * np.array([0.12, 0.05, 0.0])
-        plotter.camera.position = middle + size * np.array([0.8, -1.5, 1.0])
+        plotter.camera.focal_point = middle + size * np.array([0.15, 0.08, 0.0])
+        plotter.camera.position = middle + size * np.array([0.95, -1.5, 1.0])
         plotter.camera.up = (0.0, 0.0, 1.0)
         plotter.camera.clipping_range = (0.01 * size, 10.0 * size)
         return plotter

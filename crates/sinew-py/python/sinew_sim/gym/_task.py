@@ -61,7 +61,8 @@ class Task(gymnasium.Env[Floats, NDArray[np.float32]]):
     each second of the clock. `values`: what is set in the scene. `error`: with `error=True`, at the end of an episode, the
     relative error |u - u*| / |u*| of the displacements of all nodes, u* being those of the same commands run again with
     steps a quarter as long; None before, and for those who did not ask. It takes four times as long as the episode;
-    `trusted_error()` computes it at any time.
+    `trusted_error()` computes it at any time. It is some 1e-4 to 1e-2 while jaws seize the same nodes in both runs, and may be
+    1e-1 where they seize one more or less. `failure`: what the solver said, where it could not follow.
 
     Arguments of `gymnasium.make`:
 
@@ -304,7 +305,7 @@ class Task(gymnasium.Env[Floats, NDArray[np.float32]]):
         return Command(places, tuple(closed))
 
     def _check_starts(self, scene: Scene, argument: str) -> None:
-        """Starts of tools are in the boxes of their hands: a tool would jump into its box else."""
+        """Refuses starts outside the box of a hand, into which the tool would jump."""
         starts = {tool["name"]: tool["start"] for tool in scene.as_dict()["tool"]}
         for hand in self.HANDS:
             start = np.asarray(starts[hand.name])

@@ -32,7 +32,6 @@ GAIN = 0.2
 #: Speed with which a scripted tool draws tissue (m/s).
 GENTLY = 0.06
 
-
 #: Speed of the scripted burner (m/s).
 BURNING = 0.08
 
