@@ -21,14 +21,14 @@ import sinew_sim.gym
 from sinew_sim.gym import Task, policies
 
 
-def measure(name: str, is_scripted: bool, episodes: int, with_error: int) -> dict[str, Any]:
+def measure(name: str, is_scripted: bool, episodes: int, with_error: int, first: int) -> dict[str, Any]:
     """Successes, outcomes, control steps, seconds of the processor and errors of some episodes."""
     env = gymnasium.make(name, randomise=sinew_sim.gym.TASKS[name].VARIED)
     task = env.unwrapped
     assert isinstance(task, Task)
     successes, steps, seconds, failed = 0, 0, 0.0, 0
     errors: list[float] = []
-    for episode in range(episodes):
+    for episode in range(first, first + episodes):
         observation, info = env.reset(seed=episode)
         policy = policies.scripted(task) if is_scripted else policies.random(task, seed=episode)
         began, is_over = time.process_time(), False
@@ -38,7 +38,7 @@ def measure(name: str, is_scripted: bool, episodes: int, with_error: int) -> dic
             is_over = terminated or truncated
         seconds += time.process_time() - began
         successes += info["is_success"]
-        print(f"\r{name}: {successes} of {episode + 1}", end="", file=sys.stderr, flush=True)
+        print(f"\r{name}: {successes} of {episode + 1 - first}", end="", file=sys.stderr, flush=True)
         failed += info["outcome"] != "finished"
         if not info["is_success"] and is_scripted:
             print(f"    episode {episode}: no success, {info['outcome']}, {info['values']}", flush=True)
@@ -63,6 +63,7 @@ def main() -> None:
     parser.add_argument("--episodes", type=int, default=100, help="episodes of the scripted policy")
     parser.add_argument("--random", type=int, default=20, help="episodes of the random policy")
     parser.add_argument("--errors", type=int, default=10, help="episodes, of each policy, of which the error is computed")
+    parser.add_argument("--first", type=int, default=0, help="seed of the first episode")
     given = parser.parse_args()
     print("| task | nodes | policy | success | steps an episode | not followed | control steps / s / core | error: median, largest |")
     print("|---|---|---|---|---|---|---|---|")
@@ -71,7 +72,7 @@ def main() -> None:
             count = given.episodes if is_scripted else given.random
             if not count:
                 continue
-            found = measure(name, is_scripted, count, given.errors)
+            found = measure(name, is_scripted, count, given.errors, given.first)
             errors = found["errors"]
             error = f"{np.median(errors):.1e}, {np.max(errors):.1e} of {len(errors)}" if errors else "-"
             print(

@@ -3,10 +3,11 @@
     python learn_retract.py             # at most 10 minutes
     python learn_retract.py --quick     # a check that it works, not a result
 
-A policy is a matrix: the action is tanh of the matrix times features of the observation (the way from the jaw to the mark
-while the jaw holds nothing, that from the mark to its goal while it holds, and constants). Each generation draws policies
-about a mean, lets each one act in an episode with random stiffness and start, and takes mean and spread of the best ones. What
-was reached is then measured on other episodes, and the curve goes to learn_retract.png.
+A policy has 16 weights: the velocity along each axis is tanh of a weighted sum of the way from the jaw to the mark along that
+axis, while the jaw holds nothing, the way from the mark to its goal, while it holds, and a constant for each of both cases;
+the jaw does the same with the lengths of these ways. Each generation draws policies about a mean, lets each one act in an
+episode with random stiffness and start, and takes mean and spread of the best ones. What was reached is then measured on
+other episodes, and the curve goes to learn_retract.png.
 """
 
 from __future__ import annotations
@@ -26,8 +27,8 @@ from sinew_sim.gym import Retract
 
 Floats = NDArray[np.float64]
 
-#: Shape of the matrix: entries of an action, features.
-SHAPE = (4, 8)
+#: Shape of the weights: entries of an action, features of each.
+SHAPE = (4, 4)
 
 #: Length (m) that counts as 1 in the features.
 SCALE = 0.02
@@ -40,21 +41,23 @@ def environment(steps: int) -> Any:
 
 
 def features(task: Retract, observation: Floats) -> Floats:
+    """The features of each entry of an action, (4, 4)."""
     value = dict(zip(task.names, observation))
     holds = value["jaw_holds"]
     approach = np.array([value[f"mark_{axis}_m"] - value[f"jaw_{axis}_m"] for axis in "xyz"]) / SCALE
     way = np.array([value[f"to_goal_{axis}_m"] for axis in "xyz"]) / SCALE
-    return np.concatenate([(1.0 - holds) * approach, holds * way, [1.0 - holds, holds]])
+    ways = [(1.0 - holds) * np.append(approach, np.linalg.norm(approach)), holds * np.append(way, np.linalg.norm(way))]
+    return np.stack([*ways, np.full(4, 1.0 - holds), np.full(4, holds)], axis=1)
 
 
-def episode(matrix: Floats, seed: int, steps: int) -> tuple[float, bool]:
+def episode(weights: Floats, seed: int, steps: int) -> tuple[float, bool]:
     """The sum of the rewards of an episode, and whether it succeeded."""
     env = environment(steps)
     task = env.unwrapped
     observation, info = env.reset(seed=seed)
     total, is_over = 0.0, False
     while not is_over:
-        action = task.action_space.high * np.tanh(matrix @ features(task, observation))
+        action = task.action_space.high * np.tanh((weights * features(task, observation)).sum(axis=1))
         observation, reward, terminated, truncated, info = env.step(action.astype(np.float32))
         total += reward
         is_over = terminated or truncated
@@ -68,7 +71,7 @@ def main() -> None:
     parser.add_argument("--minutes", type=float, default=8.0, help="no generation begins after this time")
     parser.add_argument("--out", default="learn_retract.png", help="picture of the curve")
     given = parser.parse_args()
-    generations, population, elite, steps, trials = (2, 6, 2, 30, 2) if given.quick else (16, 24, 6, 120, 20)
+    generations, population, elite, steps, trials = (2, 6, 2, 30, 2) if given.quick else (16, 20, 5, 100, 20)
 
     began = time.perf_counter()
     random = np.random.default_rng(1)
@@ -76,8 +79,8 @@ def main() -> None:
     curve: list[tuple[float, float, float]] = []
     with ProcessPoolExecutor(given.cores, mp_context=multiprocessing.get_context("spawn")) as pool:
 
-        def act(matrices: list[Floats], seeds: list[int]) -> tuple[Floats, Floats]:
-            found = list(pool.map(episode, matrices, seeds, [steps] * len(seeds)))
+        def act(policies: list[Floats], seeds: list[int]) -> tuple[Floats, Floats]:
+            found = list(pool.map(episode, policies, seeds, [steps] * len(seeds)))
             return np.array([total for total, _ in found]), np.array([float(success) for _, success in found])
 
         for generation in range(generations):

@@ -27,7 +27,7 @@ class Dissect(Task):
     """A burner takes away the soft tissue that joins a layer to what lies below, while a jaw holds the layer.
 
     The tissue, 30 x 24 x 12 mm, is held at its bottom: 3 mm with Young's modulus 6 kPa, 3 mm of joining tissue with 2 kPa, and
-    the layer, 6 mm with 6 kPa. The burner is a rod along y, 20 mm long with round ends of radius 1.5 mm, which takes away each
+    the layer, 6 mm with 6 kPa. The burner is a rod along y, 22 mm long with round ends of radius 1.5 mm, which takes away each
     tetrahedron whose middle is inside it, and touches nothing. Pieces that nothing holds are gone, so the jaw, a ball, must
     hold the layer.
 
@@ -72,7 +72,7 @@ class Dissect(Task):
             "tool": [
                 {
                     "name": "burner",
-                    "shape": {"capsule": {"radius": 0.0015, "length": 0.02}, "rotation": [np.pi / 2, 0.0, 0.0]},
+                    "shape": {"capsule": {"radius": 0.0015, "length": 0.022}, "rotation": [np.pi / 2, 0.0, 0.0]},
                     "start": [-0.005, 0.012, 0.0045],
                     "hold": True,
                 },

@@ -63,7 +63,7 @@ def scripted(task: Task) -> Policy:
     if isinstance(task, GraspLift):
         return Scripted(task, [Jaw("jaw", "top", "to_goal")])
     if isinstance(task, Dissect):
-        return Scripted(task, [burn, Jaw("jaw", "spot", None, lift=0.004)])
+        return Scripted(task, [burn, Jaw("jaw", "spot", None, lift=0.005)])
     raise TypeError(f"task: expected one of the tasks of sinew_sim.gym, got {type(task).__name__}")
 
 
@@ -123,10 +123,13 @@ class Jaw:
 
 
 def burn(reading: Reading) -> list[float]:
-    """The burner goes to the nearest joining tissue that is left, once the jaw holds."""
-    if not reading.number("jaw_holds"):
-        return [0.0, 0.0, 0.0]
-    way = reading.vector("to_join")
+    """The burner waits in the middle of the width until the jaw holds, then goes to the nearest joining tissue that is left."""
+    if reading.number("left") == 1.0:
+        aside = (reading.vector("spot") - reading.vector("burner")) * (0.0, 1.0, 0.0)
+        if not reading.number("jaw_holds") or np.linalg.norm(aside) > NEAR / 4.0:
+            return list(_towards(aside, QUICKLY))
+    # Less along y: what is left aside is nearest later.
+    way = reading.vector("to_join") * (1.0, 0.3, 1.0)
     return list(BURNING * way / max(float(np.linalg.norm(way)), 1e-9))
 
 
