@@ -57,13 +57,13 @@ def random(task: Task, seed: int | None = None) -> Policy:
 def scripted(task: Task) -> Policy:
     """The scripted policy of a task, for one episode."""
     if isinstance(task, Retract):
-        return Scripted(task, [Jaw("jaw", "mark", "to_goal")])
+        return Scripted(task, [Jaw("jaw", "mark", draw("to_goal"))])
     if isinstance(task, BimanualRetract):
-        return Scripted(task, [Jaw(side, f"{side}_lip", f"{side}_to_goal") for side in ("left", "right")])
+        return Scripted(task, [Jaw(side, f"{side}_lip", draw(f"{side}_to_goal")) for side in ("left", "right")])
     if isinstance(task, GraspLift):
-        return Scripted(task, [Jaw("jaw", "top", "to_goal")])
+        return Scripted(task, [Jaw("jaw", "top", draw("to_goal"))])
     if isinstance(task, Dissect):
-        return Scripted(task, [burn, Jaw("jaw", "spot", None, lift=0.005)])
+        return Scripted(task, [burn, Jaw("jaw", "spot", raise_layer)])
     raise TypeError(f"task: expected one of the tasks of sinew_sim.gym, got {type(task).__name__}")
 
 
@@ -96,15 +96,27 @@ class Scripted:
         return np.array([number for part in self._parts for number in part(reading)], np.float32)
 
 
+#: Where a jaw that holds is to go, as a way (m), by what is observed and the place where it closed.
+Way = Callable[[Reading, Floats], Floats]
+
+
+def draw(way: str) -> Way:
+    """Along a way of the observation, from a mark to its goal."""
+    return lambda reading, seized: reading.vector(way)
+
+
+def raise_layer(reading: Reading, seized: Floats) -> Floats:
+    """Up from where the jaw closed, and further when little tissue joins the layer to what lies below."""
+    lift = 0.004 + 0.006 * max(0.0, 1.0 - 2.5 * reading.number("left"))
+    way: Floats = seized + np.array([0.0, 0.0, lift]) - reading.vector("jaw")
+    return way
+
+
 class Jaw:
-    """A jaw that goes above a mark, down until it touches, closes, and draws the mark.
+    """A jaw that goes above a mark, down until it touches, closes, and goes along a way while it holds."""
 
-    way: the name of the way from the mark to its goal in the observation; None to go up by `lift` (m) from where it closed.
-    """
-
-    def __init__(self, name: str, mark: str, way: str | None, lift: float = 0.0) -> None:
+    def __init__(self, name: str, mark: str, way: Way) -> None:
         self._name, self._mark, self._way = name, mark, way
-        self._lift = np.array([0.0, 0.0, lift])
         self._seized: Floats | None = None
 
     def __call__(self, reading: Reading) -> list[float]:
@@ -112,8 +124,7 @@ class Jaw:
         if reading.number(f"{self._name}_holds"):
             if self._seized is None:
                 self._seized = place
-            way = reading.vector(self._way) if self._way else self._seized + self._lift - place
-            return [*_towards(way, GENTLY), 1.0]
+            return [*_towards(self._way(reading, self._seized), GENTLY), 1.0]
         has_touched = float(np.linalg.norm(reading.vector(f"{self._name}_force", "N"))) > TOUCH
         aside = reading.vector(self._mark) - place
         aside[2] = 0.0
