@@ -63,7 +63,7 @@ impl Blocks {
         }
     }
 
-    fn to_python(self, py: Python<'_>) -> PyResult<Py<PyAny>> {
+    fn into_python(self, py: Python<'_>) -> PyResult<Py<PyAny>> {
         let (rows, size) = ((self.ends.len() - 1) * self.layers, self.layers);
         let count = self.columns.len();
         let ends = PyArray1::from_vec(py, self.ends);
@@ -116,11 +116,11 @@ impl Numbers {
         })
     }
 
-    pub(crate) fn to_python(self, py: Python<'_>) -> PyResult<Matrices> {
+    pub(crate) fn into_python(self, py: Python<'_>) -> PyResult<Matrices> {
         let array = |values: Vec<f64>| PyArray1::from_vec(py, values).into_any().unbind();
         Ok(Matrices {
-            stiffness: self.stiffness.to_python(py)?,
-            damping: self.damping.to_python(py)?,
+            stiffness: self.stiffness.into_python(py)?,
+            damping: self.damping.into_python(py)?,
             mass: array(self.mass),
             force: array(self.force),
             nodes: PyArray1::from_vec(py, self.nodes).into_any().unbind(),

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::exceptions::PyOSError;
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyType};
+use pyo3::types::{PyDict, PyDictMethods, PyType};
 use sha2::{Digest, Sha256};
 use sinew_mesh::vtu::{VtuEncoding, write_vtu};
 use sinew_mesh::{GroupMembers, MshEncoding, MshVersion, TetMesh, write_msh};
@@ -81,13 +81,13 @@ impl Mesh {
         let tets: Vec<[u32; 4]> = tets.into_iter().map(|tet| upright(&points, tet)).collect();
         let mut mesh =
             TetMesh::new(points, tets).map_err(|error| value_error(format!("tets: {error}")))?;
-        for (name, members) in groups.into_iter().flat_map(|groups| groups.iter()) {
+        for (name, members) in groups.into_iter().flat_map(PyDictMethods::iter) {
             let name: String = name.extract()?;
             let members = members_of(&mesh, &name, &members)?;
             let added = mesh.add_group(&name, members).map(drop);
             added.map_err(|error| value_error(format!("groups[\"{name}\"]: {error}")))?;
         }
-        for (name, values) in data.into_iter().flat_map(|data| data.iter()) {
+        for (name, values) in data.into_iter().flat_map(PyDictMethods::iter) {
             let name: String = name.extract()?;
             let added = data_of(&mut mesh, &name, &values);
             added?;

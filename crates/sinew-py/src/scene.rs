@@ -287,7 +287,7 @@ impl Scene {
     fn matrices(&self, py: Python<'_>) -> PyResult<Matrices> {
         let built = self.built(py)?;
         let numbers = py.detach(|| guarded(|| Numbers::of(&built)))?;
-        numbers.to_python(py)
+        numbers.into_python(py)
     }
 
     /// Runs the scene to its end and returns a Result. out: a folder for fields and tables, as the command writes it; None

@@ -346,7 +346,7 @@ impl Session {
         py: Python<'py>,
         out: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        self.field::<3>(py, out, nodes_of, |world, out| world.contact_forces(out))
+        self.field::<3>(py, out, nodes_of, World::contact_forces)
     }
 
     /// Energies (J): kinetic_J, elastic_J, work_of_tools_J since the motion began, and of_cuts_J where the body may be cut.

@@ -23,7 +23,11 @@ impl Watch {
     }
 
     fn look(&mut self) -> Verdict {
-        match Python::attach(|py| py.check_signals()) {
+        let looked = Python::attach(|py| -> PyResult<()> {
+            py.check_signals()?;
+            Ok(())
+        });
+        match looked {
             Ok(()) => Verdict::Continue,
             Err(error) => {
                 self.raised = Some(error);
