@@ -3,9 +3,9 @@
 use std::sync::Arc;
 
 use numpy::PyArray1;
-use pyo3::exceptions::PyRuntimeError;
+use pyo3::exceptions::{PyOverflowError, PyRuntimeError};
 use pyo3::prelude::*;
-use pyo3::types::{PyBytes, PyDict, PyInt};
+use pyo3::types::{PyBytes, PyDict};
 use sinew_core::Options;
 use sinew_fem::stress::von_mises;
 use sinew_scene::Reaction;
@@ -94,6 +94,26 @@ fn nodes_of(world: &World) -> usize {
     body.map_or(0, |body| body.mesh.points.len())
 }
 
+/// A number of steps.
+struct Steps(usize);
+
+impl<'py> FromPyObject<'_, 'py> for Steps {
+    type Error = PyErr;
+
+    fn extract(n: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
+        let is_beyond = |error: &PyErr| error.is_instance_of::<PyOverflowError>(n.py());
+        n.extract()
+            .map(Self)
+            .map_err(|error: PyErr| match is_beyond(&error) {
+                true => value_error(format!(
+                    "n: {}: expected a number of steps, 0 or above",
+                    &*n
+                )),
+                false => error,
+            })
+    }
+}
+
 /// Displacements or velocities: of nodes, or of the mass of an oscillator.
 enum Motion {
     Nodes(Vec<[f64; 3]>),
@@ -138,15 +158,9 @@ fn end_of(ended: &Ended, watch: Watch, world: &World) -> PyResult<()> {
 impl Session {
     /// Takes n steps of dt. Raises Diverged or Refused; after that only reset() or restore() goes on. KeyboardInterrupt
     /// leaves the session after the last whole step.
-    #[pyo3(signature = (n = None), text_signature = "($self, n=1)")]
-    fn step(&self, py: Python<'_>, n: Option<Bound<'_, PyInt>>) -> PyResult<()> {
-        let wrong = |n: &Bound<'_, PyInt>| {
-            value_error(format!("n: {n}: expected a number of steps, 0 or above"))
-        };
-        let steps: usize = match &n {
-            Some(n) => n.extract().map_err(|_| wrong(n))?,
-            None => 1,
-        };
+    #[pyo3(signature = (n = Steps(1)), text_signature = "($self, n=1)")]
+    fn step(&self, py: Python<'_>, n: Steps) -> PyResult<()> {
+        let Steps(steps) = n;
         self.world.work(py, |world| {
             if steps == 1 {
                 let taken = world.step().map(drop);

@@ -237,7 +237,7 @@ def test_a_sweep_by_threads():
     for wrong in (None, 3, "run.dt", [1], {"run.dt": 0.1}, {"title": "abc"}):
         with pytest.raises(TypeError, match="^values"):
             sn.sweep(scene, wrong)
-    with pytest.raises(ValueError, match="different lengths"):
+    with pytest.raises(ValueError, match="equal length"):
         sn.sweep(scene, {"run.dt": [0.1], "run.duration": [1.0, 2.0]})
     with ThreadPoolExecutor(2) as pool:
         results = sn.sweep(scene, [{"run.dt": 0.002}, {"run.dt": 0.001}], executor=pool)
