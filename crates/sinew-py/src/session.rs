@@ -120,6 +120,15 @@ enum Motion {
     Mass(f64),
 }
 
+impl Motion {
+    fn into_array(self, py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
+        Ok(match self {
+            Self::Nodes(values) => read_only(rows(py, values)?)?.into_any(),
+            Self::Mass(value) => read_only(rows(py, vec![[value]])?)?.into_any(),
+        })
+    }
+}
+
 /// The value of the mass, if the scene is an oscillator.
 fn of_mass(world: &World, values: &[f64]) -> Option<f64> {
     let body = world.body().model().body();
@@ -268,19 +277,13 @@ impl Session {
             world.displacements(&mut values).map_err(of_report)?;
             Ok(Motion::Nodes(values))
         })?;
-        match motion {
-            Motion::Nodes(values) => Ok(read_only(rows(py, values)?)?.into_any()),
-            Motion::Mass(value) => Ok(read_only(rows(py, vec![[value]])?)?.into_any()),
-        }
+        motion.into_array(py)
     }
 
     /// Velocities of the nodes (m/s) at the time t, (nodes, 3); of the mass of an oscillator, (1, 1).
     #[getter]
     fn velocity<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        match self.world.work(py, velocities)? {
-            Motion::Nodes(values) => Ok(read_only(rows(py, values)?)?.into_any()),
-            Motion::Mass(value) => Ok(read_only(rows(py, vec![[value]])?)?.into_any()),
-        }
+        self.world.work(py, velocities)?.into_array(py)
     }
 
     /// Writes positions, displacement and velocity into arrays of the caller, (nodes, 3) float64.
