@@ -49,17 +49,12 @@ const STEPS: &[Step] = &[
          -- -D warnings",
     ),
     cargo("tests", "test --workspace"),
-    // One by one: together each would turn on features of the other. Products on one thread, and the methods that are left
-    // without a factorisation.
+    // Products on one thread. That methods without a factorisation compile is a lint above: their tests are the same.
     cargo(
         "tests of sinew-sparse without default features",
         "test --no-default-features -p sinew-sparse",
     ),
     own("kernels under valgrind", watch_memory_if_possible),
-    cargo(
-        "conformance of the integrators without default features",
-        "test --no-default-features -p sinew-integrators --test conformance",
-    ),
     cargo("documentation", "doc --workspace --no-deps"),
     own("packages, and a crate that uses them", packages::check),
     cargo("verification", "xtask verify --long --out target/ci-verify"),

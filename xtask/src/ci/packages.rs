@@ -37,7 +37,8 @@ pub(super) fn check() -> Result<(), Failure> {
         let file = root().join(format!("target/package/{name}-{version}.crate"));
         finish(
             Command::new("tar")
-                .arg("-xzf")
+                // With times of now, so that what an earlier run built of other content is not taken for theirs.
+                .arg("-xzmf")
                 .arg(file)
                 .current_dir(&folder),
         )?;
