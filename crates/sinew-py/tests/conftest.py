@@ -73,3 +73,14 @@ def python(text, *arguments, cwd=None, timeout=120):
 def session():
     """A session of a small linear cube."""
     return sn.Scene.from_dict(cube()).session()
+
+
+@pytest.fixture(scope="session")
+def pictures() -> None:
+    """Skips what draws in three dimensions where this computer cannot: without a display VTK needs libEGL and Mesa, or
+    libOSMesa. It is tried in a process of its own, since VTK ends one in which it fails."""
+    pytest.importorskip("pyvista", reason="pyvista is not installed: pip install 'sinew-sim[plot]'")
+    draw = "import pyvista as p; q = p.Plotter(off_screen=True); q.add_mesh(p.Sphere()); q.screenshot(None, return_img=True)"
+    tried = subprocess.run([sys.executable, "-c", draw], capture_output=True, text=True, timeout=300)
+    if tried.returncode != 0:
+        pytest.skip("no picture can be drawn without a display: install libegl1 and libgl1-mesa-dri")

@@ -376,8 +376,8 @@ def test_wrong_options_and_actions_are_named() -> None:
 
 
 @ids
+@pytest.mark.usefixtures("pictures")
 def test_a_picture_shows_something(name: str) -> None:
-    pytest.importorskip("pyvista", reason="pyvista is not installed: pip install 'sinew-sim[plot]'")
     env = gymnasium.make(name, render_mode="rgb_array")
     env.reset()
     first: Any = env.render()

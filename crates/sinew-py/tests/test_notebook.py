@@ -12,8 +12,9 @@ import pytest
 TOUR = Path(__file__).resolve().parents[1] / "notebooks" / "tour.ipynb"
 
 
+@pytest.mark.usefixtures("pictures")
 def test_the_tour_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    for package in ("nbclient", "nbformat", "ipykernel", "pyvista", "matplotlib", "scipy"):
+    for package in ("nbclient", "nbformat", "ipykernel", "matplotlib", "scipy"):
         pytest.importorskip(package)
     import nbclient
     import nbformat
