@@ -1,6 +1,6 @@
 """Learns to draw back a flap, sinew/Retract-v0, by the cross-entropy method: numpy alone, a few minutes on two cores.
 
-    python learn_retract.py             # some 9 minutes
+    python learn_retract.py             # some 6 minutes
     python learn_retract.py --quick     # a check that it works, not a result
 
 A policy has 16 weights: the velocity along each axis is tanh of a weighted sum of the way from the jaw to the mark along that
