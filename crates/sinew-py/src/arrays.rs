@@ -25,18 +25,12 @@ pub(crate) fn read_only<'py, T: Element>(
     Ok(array)
 }
 
-/// Rows of N numbers that `write` gives, in a new array or in that of the caller.
-pub(crate) fn filled<'py, const N: usize>(
-    py: Python<'py>,
-    out: Option<&Bound<'py, PyAny>>,
+/// Has rows of N numbers written into an array of the caller.
+pub(crate) fn fill<const N: usize>(
+    out: &Bound<'_, PyAny>,
     count: usize,
     write: impl FnOnce(&mut [[f64; N]]) -> PyResult<()>,
-) -> PyResult<Bound<'py, PyAny>> {
-    let Some(out) = out else {
-        let mut values = vec![[0.0; N]; count];
-        write(&mut values)?;
-        return Ok(rows(py, values)?.into_any());
-    };
+) -> PyResult<()> {
     let wrong = || wrong_out(out, &[count, N]);
     let array = out.cast::<PyArray2<f64>>().map_err(|_| wrong())?;
     if array.shape() != [count, N] || !array.is_c_contiguous() {
@@ -44,11 +38,10 @@ pub(crate) fn filled<'py, const N: usize>(
     }
     let mut array = array.try_readwrite().map_err(|_| wrong())?;
     let values = array.as_slice_mut().map_err(|_| wrong())?;
-    write(values.as_chunks_mut().0)?;
-    Ok(out.clone())
+    write(values.as_chunks_mut().0)
 }
 
-/// Numbers that `write` gives, in a new array or in that of the caller.
+/// Numbers, in a new array or in that of the caller.
 pub(crate) fn filled_flat<'py>(
     py: Python<'py>,
     out: Option<&Bound<'py, PyAny>>,
@@ -113,6 +106,16 @@ pub(crate) fn vector(value: &Bound<'_, PyAny>, name: &str, unit: &str) -> PyResu
     })
 }
 
+/// A value as an array, and the letter of numpy for the kind of its numbers.
+fn as_array<'py>(value: &Bound<'py, PyAny>) -> PyResult<(Bound<'py, PyAny>, String)> {
+    let array = value
+        .py()
+        .import("numpy")?
+        .call_method1("asarray", (value,))?;
+    let kind = array.getattr("dtype")?.getattr("kind")?.extract()?;
+    Ok((array, kind))
+}
+
 /// Rows of N numbers of an argument.
 pub(crate) fn rows_of<const N: usize>(
     value: &Bound<'_, PyAny>,
@@ -125,11 +128,7 @@ pub(crate) fn rows_of<const N: usize>(
             described(value)
         ))
     };
-    let numpy = value.py().import("numpy")?;
-    let array = numpy
-        .call_method1("asarray", (value,))
-        .map_err(|_| wrong())?;
-    let kind: String = array.getattr("dtype")?.getattr("kind")?.extract()?;
+    let (array, kind) = as_array(value).map_err(|_| wrong())?;
     if !["b", "f", "i", "u"].contains(&kind.as_str()) {
         return Err(wrong());
     }
@@ -154,11 +153,7 @@ pub(crate) fn index_rows<const N: usize>(
             described(value)
         ))
     };
-    let numpy = value.py().import("numpy")?;
-    let array = numpy
-        .call_method1("asarray", (value,))
-        .map_err(|_| wrong())?;
-    let kind: String = array.getattr("dtype")?.getattr("kind")?.extract()?;
+    let (array, kind) = as_array(value).map_err(|_| wrong())?;
     let is_empty = array.getattr("size")?.extract::<usize>()? == 0;
     if kind != "i" && kind != "u" && !is_empty {
         return Err(wrong());

@@ -2,10 +2,9 @@
 
 use std::fmt::Display;
 
+use pyo3::create_exception;
 use pyo3::exceptions::{PyKeyError, PyOSError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
-use pyo3::{Bound, create_exception};
 use sinew_record::RecordRunError;
 use sinew_world::{
     AdvanceError, AdvanceToError, CommandError, ReportError, WorldError, WorldStepError,
@@ -144,16 +143,4 @@ pub(crate) fn of_run(error: RecordRunError) -> PyErr {
 /// An exception for a value that is not as it should be.
 pub(crate) fn value_error(text: impl Into<String>) -> PyErr {
     PyValueError::new_err(text.into())
-}
-
-/// Keys with values, for keyword arguments.
-pub(crate) fn kwargs<'py>(
-    py: Python<'py>,
-    entries: &[(&str, Bound<'py, PyAny>)],
-) -> PyResult<Bound<'py, PyDict>> {
-    let all = PyDict::new(py);
-    for (key, value) in entries {
-        all.set_item(key, value)?;
-    }
-    Ok(all)
 }

@@ -2,6 +2,7 @@
 
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 use sinew_core::{BlockMatrix, LinearOperators};
 use sinew_scene::Simulation;
 
@@ -75,11 +76,11 @@ impl Blocks {
                 .into_any()
                 .unbind());
         };
-        let kwargs =
-            crate::errors::kwargs(py, &[("shape", (rows, rows).into_pyobject(py)?.into_any())])?;
+        let shape = PyDict::new(py);
+        shape.set_item("shape", (rows, rows))?;
         let parts = ((blocks, columns, ends),);
         Ok(sparse
-            .call_method("bsr_array", parts, Some(&kwargs))?
+            .call_method("bsr_array", parts, Some(&shape))?
             .unbind())
     }
 }

@@ -1,6 +1,5 @@
 //! Meshes.
 
-use std::io::Write;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -11,6 +10,7 @@ use pyo3::types::{PyDict, PyDictMethods, PyType};
 use sha2::{Digest, Sha256};
 use sinew_mesh::vtu::{VtuEncoding, write_vtu};
 use sinew_mesh::{GroupMembers, MshEncoding, MshVersion, TetMesh, write_msh};
+use sinew_scene::output::{Delivery, Destination};
 
 use crate::arrays::{index_rows, indices, read_only, rows, rows_of};
 use crate::errors::{scene_error, value_error};
@@ -78,9 +78,14 @@ impl Mesh {
             )));
         }
         let tets = index_rows::<4>(tets, "tets", ("node", points.len()))?;
-        let tets: Vec<[u32; 4]> = tets.into_iter().map(|tet| upright(&points, tet)).collect();
         let mut mesh =
             TetMesh::new(points, tets).map_err(|error| value_error(format!("tets: {error}")))?;
+        let volumes = mesh.signed_volumes();
+        for (tet, volume) in mesh.tets.iter_mut().zip(volumes) {
+            if volume < 0.0 {
+                tet.swap(1, 2);
+            }
+        }
         for (name, members) in groups.into_iter().flat_map(PyDictMethods::iter) {
             let name: String = name.extract()?;
             let members = members_of(&mesh, &name, &members)?;
@@ -89,8 +94,7 @@ impl Mesh {
         }
         for (name, values) in data.into_iter().flat_map(PyDictMethods::iter) {
             let name: String = name.extract()?;
-            let added = data_of(&mut mesh, &name, &values);
-            added?;
+            data_of(&mut mesh, &name, &values)?;
         }
         Ok(Self {
             mesh: Arc::new(mesh),
@@ -140,15 +144,10 @@ impl Mesh {
                     false => write_vtu(&mesh, VtuEncoding::RawAppended, &mut bytes)
                         .map_err(|error| failed(&error))?,
                 }
-                // Whole or not at all.
-                let folder = path
-                    .parent()
-                    .filter(|folder| !folder.as_os_str().is_empty());
-                let folder = folder.unwrap_or(std::path::Path::new("."));
-                let mut file =
-                    tempfile::NamedTempFile::new_in(folder).map_err(|error| failed(&error))?;
-                file.write_all(&bytes).map_err(|error| failed(&error))?;
-                file.persist(&path).map_err(|error| failed(&error))?;
+                let destination = Destination::new(&path, &[]);
+                let written = destination.and_then(|destination| destination.write(&bytes));
+                let _whole: Delivery =
+                    written.map_err(|error| PyOSError::new_err(error.to_string()))?;
                 Ok(())
             })
         })
@@ -248,22 +247,6 @@ impl Mesh {
         }
         sum.update(format!("{:?}{:?}", self.mesh.groups, self.mesh.data));
         sum.finalize().to_vec()
-    }
-}
-
-/// A tetrahedron with positive orientation.
-fn upright(points: &[[f64; 3]], tet: [u32; 4]) -> [u32; 4] {
-    let [a, b, c, d] = tet.map(|node| points[node as usize]);
-    let sub = |p: [f64; 3]| [p[0] - a[0], p[1] - a[1], p[2] - a[2]];
-    let [b, c, d] = [b, c, d].map(sub);
-    let cross = [
-        b[1] * c[2] - b[2] * c[1],
-        b[2] * c[0] - b[0] * c[2],
-        b[0] * c[1] - b[1] * c[0],
-    ];
-    match cross[0] * d[0] + cross[1] * d[1] + cross[2] * d[2] < 0.0 {
-        true => [tet[0], tet[2], tet[1], tet[3]],
-        false => tet,
     }
 }
 

@@ -51,15 +51,10 @@ pub(crate) fn planned(py: Python<'_>, scene: Scene, question: Option<Question>) 
     };
     let begun = thread::Builder::new().name("sinew plan".into()).spawn(work);
     begun.map_err(|error| PyMemoryError::new_err(error.to_string()))?;
-    let waits = from;
-    let waits = std::sync::Mutex::new(waits);
+    let mut from = from;
     loop {
-        let heard = py.detach(|| {
-            let waits = waits
-                .lock()
-                .unwrap_or_else(std::sync::PoisonError::into_inner);
-            waits.recv_timeout(LOOK)
-        });
+        let heard;
+        (heard, from) = py.detach(move || (from.recv_timeout(LOOK), from));
         match heard {
             Ok(planned) => return planned,
             Err(RecvTimeoutError::Timeout) => py.check_signals()?,

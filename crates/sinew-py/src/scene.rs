@@ -95,6 +95,21 @@ impl From<sinew_scene::Scene> for Scene {
     }
 }
 
+/// A source with the mesh in memory of which it is made, if there is one.
+fn with_mesh(
+    py: Python<'_>,
+    source: SceneSource,
+    mesh: Option<&Py<Mesh>>,
+) -> PyResult<SceneSource> {
+    let Some(mesh) = mesh.map(Py::get) else {
+        return Ok(source);
+    };
+    let values = py.import("sinew_sim._values")?;
+    let name: PathBuf = values.getattr("MESH_NAME")?.extract()?;
+    let path = source.resolve(&name);
+    Ok(source.with_mesh(path, Arc::clone(&mesh.mesh), mesh.content()))
+}
+
 /// The world at the end of a log.
 fn repeated(scene: sinew_scene::Scene, log: Log) -> PyResult<World> {
     let mut replay = Replay::new(scene, log).map_err(|error| match error {
@@ -182,12 +197,8 @@ impl Scene {
         let apart = helpers.call_method1("scene", (values,))?;
         let (values, mesh): (Bound<'_, PyAny>, Option<Py<Mesh>>) = apart.extract()?;
         let source = SceneSource::from_value(&to_toml(&values)?, &folder);
-        let mut source = source.map_err(|error| of_scene(&error))?;
-        if let Some(mesh) = mesh {
-            let name: PathBuf = helpers.getattr("MESH_NAME")?.extract()?;
-            let (path, mesh) = (source.resolve(&name), mesh.get());
-            source = source.with_mesh(path, Arc::clone(&mesh.mesh), mesh.content());
-        }
+        let source = source.map_err(|error| of_scene(&error))?;
+        let source = with_mesh(class.py(), source, mesh.as_ref())?;
         parsed(&source, &assignments(set)?)
     }
 
@@ -404,15 +415,7 @@ impl Scene {
             let content: Vec<u8> = content.extract()?;
             source = source.with_file(path.extract::<PathBuf>()?, content);
         }
-        if let Some(mesh) = mesh {
-            let name: PathBuf = files
-                .py()
-                .import("sinew_sim._values")?
-                .getattr("MESH_NAME")?
-                .extract()?;
-            let path = source.resolve(&name);
-            source = source.with_mesh(path, Arc::clone(&mesh.get().mesh), mesh.get().content());
-        }
+        let source = with_mesh(files.py(), source, mesh.as_ref())?;
         parsed(&source, &[])
     }
 }

@@ -11,7 +11,7 @@ use sinew_fem::stress::von_mises;
 use sinew_scene::Reaction;
 use sinew_world::{Command, Ended, ReportError, Saved, World};
 
-use crate::arrays::{filled, filled_flat, indices, read_only, rows, rows_of, vector};
+use crate::arrays::{fill, filled_flat, indices, read_only, rows, rows_of, vector};
 use crate::errors::{of_advance, of_advance_to, of_command, of_report, of_step, value_error};
 use crate::load::Load;
 use crate::mesh::Mesh;
@@ -64,12 +64,13 @@ impl Session {
         count: fn(&World) -> usize,
         write: fn(&mut World, &mut [[f64; N]]) -> Result<(), ReportError>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        if out.is_some() {
-            return self.world.with(py, |world| {
-                filled(py, out, count(world), |out| {
+        if let Some(out) = out {
+            self.world.with(py, |world| {
+                fill(out, count(world), |out| {
                     write(world, out).map_err(of_report)
                 })
-            });
+            })?;
+            return Ok(out.clone());
         }
         let values = self.world.work(py, |world| {
             let mut values = vec![[0.0; N]; count(world)];
@@ -295,24 +296,24 @@ impl Session {
         displacement: Option<&Bound<'_, PyAny>>,
         velocity: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<()> {
-        if velocity.is_some() {
+        if let Some(velocity) = velocity {
             let Motion::Nodes(values) = self.world.work(py, velocities)? else {
                 return Err(value_error("velocity: an oscillator has no nodes"));
             };
-            filled(py, velocity, values.len(), |out| {
+            fill(velocity, values.len(), |out| {
                 out.copy_from_slice(&values);
                 Ok(())
             })?;
         }
         self.world.with(py, |world| {
             let nodes = nodes_of(world);
-            if positions.is_some() {
-                filled(py, positions, nodes, |out| {
+            if let Some(positions) = positions {
+                fill(positions, nodes, |out| {
                     world.positions(out).map_err(of_report)
                 })?;
             }
-            if displacement.is_some() {
-                filled(py, displacement, nodes, |out| {
+            if let Some(displacement) = displacement {
+                fill(displacement, nodes, |out| {
                     world.displacements(out).map_err(of_report)
                 })?;
             }
