@@ -109,12 +109,6 @@ impl SceneSource {
         self
     }
 
-    /// The files that were given, by their resolved paths.
-    pub fn given(&self) -> impl ExactSizeIterator<Item = (&Path, &Arc<[u8]>)> {
-        let given = self.given.iter();
-        given.map(|(path, given)| (path.as_path(), &given.content))
-    }
-
     /// The content of a file that was given; `None` for one that is read from the disk. The path is a resolved one.
     #[must_use]
     pub fn given_file(&self, path: &Path) -> Option<&[u8]> {
