@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use sinew_cnn::Machine;
 use sinew_core::{
-    Batch, Integrator, Outcome, Run, SimulateError, State, StepError, System, simulate,
+    Batch, Integrator, Outcome, Run, RunReport, SimulateError, State, StepError, System, simulate,
 };
 use sinew_measure::thread_cpu_time;
 
@@ -70,12 +70,12 @@ pub(crate) fn time_run(
     integrator: &mut dyn Integrator,
     state: &mut State,
     run: &Run,
-) -> Result<Spent, TimedRunError> {
+) -> Result<(RunReport, Spent), TimedRunError> {
     let (report, spent) = time(|| simulate(system, integrator, state, run, &mut ()));
     let report = report?;
     let is_finished = report.outcome == Outcome::Finished;
     whole(report.steps, run.steps, is_finished, state)?;
-    Ok(spent)
+    Ok((report, spent))
 }
 
 fn whole(
@@ -160,7 +160,7 @@ mod tests {
             let mut method = sinew_integrators::build("forward-euler", &Options::new()).unwrap();
             let mut state = State::new(vec![0.0], vec![-5.0]);
             let run = Run::covering(20.0, dt).with_divergence_limit(1e3);
-            time_run(&model, &mut *method, &mut state, &run)
+            time_run(&model, &mut *method, &mut state, &run).map(|(_, spent)| spent)
         };
         assert!(timed(1e-3).is_ok_and(|spent| spent.wall > 0.0));
         let error = timed(0.02).unwrap_err();

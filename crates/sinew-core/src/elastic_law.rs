@@ -66,6 +66,17 @@ pub trait ElasticLaw: Send + Sync {
         self.tangent_product(trial, TangentKind::Exact, w, out)
     }
 
+    /// The square (1/s^2) of the largest frequency of plane waves as short as an element, at most half a sweep; `None` for a law that does not tell.
+    ///
+    /// It is no bound of the largest eigenvalue of `M^-1 S` by itself, S being that of [`ElasticLaw::stiffest_product`], but grows as that does or faster when
+    /// the body is deformed: so a stable step that was found once can be followed without a product.
+    ///
+    /// # Errors
+    /// As [`ElasticLaw::elastic_force`].
+    fn fastest_wave(&self, _trial: &Trial<'_>) -> Result<Option<f64>, EvaluationError> {
+        Ok(None)
+    }
+
     /// Writes a symmetric positive semidefinite block (N/m, row-major, layers each way) for every cell: its own block of the tangent, or more
     /// where that has a negative eigenvalue.
     ///

@@ -8,6 +8,9 @@ pub const PRODUCTS_OF_BEGINNING: u64 = 16;
 /// Share of the estimate up to which eigenvalues count as too small to be sought.
 const TOO_SMALL: f64 = 0.9;
 
+/// Growth of the estimate by a product up to which it counts as found.
+const SETTLED: f64 = 1.005;
+
 /// Size of the noise that is added with each product, as a share of the field: one that has found its vector would have nothing of another that grows elsewhere.
 const NOISE: f64 = 0.1;
 
@@ -28,11 +31,13 @@ pub fn follow_largest_eigenvalue<E>(
     fields: &mut Vec<f64>,
     mass: &[f64],
     room: &mut [f64],
+    most: u64,
     mut multiply: impl FnMut(&[f64], &mut [f64]) -> Result<(), E>,
 ) -> Result<f64, E> {
     let n = mass.len();
-    let mut products = 1;
-    if fields.len() != 2 * n {
+    let mut products = most.max(1);
+    let is_known = fields.len() == 2 * n;
+    if !is_known {
         fields.clear();
         fields.extend(noise(n, 0));
         multiply(fields, room)?;
@@ -51,6 +56,7 @@ pub fn follow_largest_eigenvalue<E>(
             .zip(mass)
             .for_each(|(force, mass)| *force /= mass);
         let [pushed, size] = [&*room, &*now].map(|field| weighted_dot(mass, field, field));
+        let before_it = estimate;
         estimate = if pushed == 0.0 {
             0.0
         } else {
@@ -74,6 +80,9 @@ pub fn follow_largest_eigenvalue<E>(
             if *product != 0.0 {
                 *now += sign(dof) * share / mass.sqrt();
             }
+        }
+        if is_known && estimate <= SETTLED * before_it {
+            break;
         }
     }
     Ok(estimate)
@@ -113,7 +122,7 @@ mod tests {
 
     fn follow(fields: &mut Vec<f64>, mass: &[f64], stiffness: impl Fn(usize) -> f64) -> f64 {
         let mut room = vec![0.0; mass.len()];
-        let found = follow_largest_eigenvalue(fields, mass, &mut room, |x, out| {
+        let found = follow_largest_eigenvalue(fields, mass, &mut room, 1, |x, out| {
             chain(&stiffness, x, out);
             Ok::<_, Infallible>(())
         });
@@ -147,12 +156,13 @@ mod tests {
         let (mut fields, mut room) = (Vec::new(), [0.0; 5]);
         let mut found = 0.0;
         for _ in 0..20 {
-            let result = follow_largest_eigenvalue(&mut fields, &[1.0; 5], &mut room, |x, out| {
-                for ((out, x), value) in out.iter_mut().zip(x).zip(values) {
-                    *out = value * x;
-                }
-                Ok::<_, Infallible>(())
-            });
+            let result =
+                follow_largest_eigenvalue(&mut fields, &[1.0; 5], &mut room, 1, |x, out| {
+                    for ((out, x), value) in out.iter_mut().zip(x).zip(values) {
+                        *out = value * x;
+                    }
+                    Ok::<_, Infallible>(())
+                });
             found = match result {
                 Ok(found) => found,
             };

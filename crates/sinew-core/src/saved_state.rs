@@ -7,7 +7,7 @@ use crate::system::loads_revision;
 use crate::{Acceleration, Contact, Start, State, System};
 
 const KIND: Kind = Kind {
-    name: b"sinew state v7\r\n",
+    name: b"sinew state v8\r\n",
     words: "state",
 };
 
@@ -218,6 +218,8 @@ mod tests {
             parts: 0,
             taken: 0,
             stable_step: 1e-3,
+            wave: 0.0,
+            seen: 0.0,
             damping: 0.0,
         });
         for (number, state) in [never, back, nowhere, whole].into_iter().enumerate() {

@@ -55,10 +55,14 @@ pub struct State {
 pub struct StepCut {
     /// Number of substeps of a step.
     pub parts: u32,
-    /// Parts taken since what a product does not tell was found.
+    /// Parts taken since it was found, or where damping goes by the stiffness since what a product does not tell was.
     pub taken: u32,
     /// The stable step (s) that was found last.
     pub stable_step: f64,
+    /// The square (1/s^2) of the fastest wave ([`crate::ElasticLaw::fastest_wave`]) as that step was found; 0 where none tells.
+    pub wave: f64,
+    /// The square (1/s^2) of the fastest wave as it was seen last.
+    pub seen: f64,
     /// The largest eigenvalue of `M^-1 D` over that of `M^-1 K` (s), D being the damping but for that by mass, as found then.
     pub damping: f64,
 }
@@ -71,9 +75,11 @@ impl StepCut {
             parts,
             taken: _,
             stable_step,
+            wave,
+            seen,
             damping,
         } = self;
-        parts > 0 && stable_step > 0.0 && damping >= 0.0
+        parts > 0 && stable_step > 0.0 && wave >= 0.0 && seen >= 0.0 && damping >= 0.0
     }
 }
 

@@ -78,9 +78,10 @@ pub(crate) fn assemble(
     };
     add_averages(&mut stiffness, body, parts)?;
     clear_held(&mut stiffness, body);
-    let hyperelastic = materials.iter().zip(&members);
-    let hyperelastic = hyperelastic.filter_map(|(material, members)| {
-        let (law, stated) = material.hyperelastic()?;
+    let hyperelastic = materials.iter().zip(&facts).zip(&members);
+    let hyperelastic = hyperelastic.filter_map(|((material, facts), members)| {
+        let [least, _] = facts.density;
+        let (law, stated) = material.hyperelastic(least)?;
         Some((law, stated, members.as_slice()))
     });
     let large = LargeDeformation::new(mesh, &body.smoothing, hyperelastic);

@@ -146,8 +146,8 @@ impl Material {
         matches!(self.kind, Kind::Hyperelastic { .. })
     }
 
-    /// Its law and all else that loops read of it; `None` unless it is of large deformation.
-    pub(crate) fn hyperelastic(&self) -> Option<(Arc<dyn Compiled>, RegionLaw<'_>)> {
+    /// Its law and all else that loops read of it, where it is of this density (kg/m^3); `None` unless it is of large deformation.
+    pub(crate) fn hyperelastic(&self, density: f64) -> Option<(Arc<dyn Compiled>, RegionLaw<'_>)> {
         match &self.kind {
             Kind::Hyperelastic {
                 law,
@@ -158,6 +158,7 @@ impl Material {
             } => {
                 let stated = RegionLaw {
                     mu: law.lame().1,
+                    density,
                     edge_share: element.edge_share(),
                     tissue,
                     shares: &self.shares,

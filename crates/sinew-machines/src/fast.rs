@@ -677,9 +677,9 @@ impl<T: ElementPrecision> Loaded<T> {
             let layers = self.fields.layers();
             for layer in 0..layers {
                 let out = self.fields.layer(field, layer);
-                let of_layer = values.iter().skip(layer).step_by(layers);
-                for (cell, value) in of_layer.enumerate() {
-                    out[layout.numbering.position(cell as u32)] = T::of(*value);
+                let cells = values.chunks_exact(layers);
+                for (cell, position) in cells.zip(layout.numbering.positions_of_cells()) {
+                    out[*position as usize] = T::of(cell[layer]);
                 }
             }
         }
@@ -696,9 +696,9 @@ impl<T: ElementPrecision> Loaded<T> {
             let layers = self.fields.layers();
             for layer in 0..layers {
                 let from = self.fields.layer(field, layer);
-                let of_layer = values.iter_mut().skip(layer).step_by(layers);
-                for (cell, value) in of_layer.enumerate() {
-                    *value = from[layout.numbering.position(cell as u32)].to_f64();
+                let cells = values.chunks_exact_mut(layers);
+                for (cell, position) in cells.zip(layout.numbering.positions_of_cells()) {
+                    cell[layer] = from[*position as usize].to_f64();
                 }
             }
         }

@@ -169,7 +169,7 @@ impl Contender {
     fn lap(&mut self, case: &Case) -> Result<f64, TimedRunError> {
         let system = case.simulation().system();
         self.state.clone_from(case.simulation().initial_state());
-        let spent = time_run(system, &mut *self.integrator, &mut self.state, &self.run)?;
+        let (_, spent) = time_run(system, &mut *self.integrator, &mut self.state, &self.run)?;
         Ok(spent.cpu)
     }
 

@@ -8,6 +8,8 @@ mod guards;
 mod laps;
 mod memory;
 mod page;
+mod plain_tets;
+mod pulled;
 mod roofs;
 mod row;
 mod table;
@@ -19,6 +21,7 @@ use serde::Serialize;
 
 pub use elements::{ElementMark, ElementRow};
 pub use guards::{Guard, Limit};
+pub use pulled::PulledRow;
 pub use roofs::{OperationRate, ReadRate, Roofs};
 pub use row::KernelRow;
 
@@ -52,6 +55,8 @@ pub struct KernelResults {
     pub rows: Vec<KernelRow>,
     /// Forces of hyperelastic elements: one row for each body, law, element, precision and instruction set.
     pub elements: Vec<ElementRow>,
+    /// Steps of a pulled cube, beside a plain scalar loop and in automatic steps.
+    pub pulled: Vec<PulledRow>,
     /// Marks for ratios of these.
     pub marks: Vec<ElementMark>,
 }
@@ -69,7 +74,7 @@ impl KernelBench {
     ) -> Result<KernelResults, LabError> {
         let mut rows = Vec::new();
         let bodies = bodies::bodies(&self.meshes, self.generated.as_deref(), self.quick)?;
-        let of = bodies.len() + 3;
+        let of = bodies.len() + 4;
         for (done, body) in bodies.into_iter().enumerate() {
             let what = body.name.clone();
             progress(Progress::Run { done, of, what });
@@ -79,10 +84,14 @@ impl KernelBench {
             let what = what.to_owned();
             progress(Progress::Run { done, of, what });
         };
-        next(of - 3, "forces of hyperelastic elements");
+        next(of - 4, "forces of hyperelastic elements");
         let elements = elements::rows(self.quick)?;
-        next(of - 2, "what the computer can do");
+        next(of - 3, "what the computer can do");
         let roofs = Roofs::measure(self.quick);
+        next(of - 2, "steps of a pulled cube");
+        let pulled = pulled::rows(self.quick, &roofs)?;
+        let mut marks = elements::marks(&elements);
+        marks.extend(pulled::marks(&pulled));
         next(of - 1, "guards");
         let guards = guards::guards(self.quick)?;
         Ok(KernelResults {
@@ -91,8 +100,9 @@ impl KernelBench {
             roofs,
             guards,
             rows,
-            marks: elements::marks(&elements),
+            marks,
             elements,
+            pulled,
         })
     }
 }

@@ -2,7 +2,9 @@
 
 use super::KernelResults;
 use super::row::KernelRow;
-use super::table::{HEAD, HEAD_OF_ELEMENTS, cells, cells_of_element};
+use super::table::{
+    HEAD, HEAD_OF_ELEMENTS, HEAD_OF_PULLED, OF_PULLED, cells, cells_of_element, cells_of_pulled,
+};
 use sinew_draw::page::{Cell, Column, Table, TableRow};
 use sinew_draw::{Family, Page, Roofline};
 
@@ -40,6 +42,9 @@ impl KernelResults {
              numbers in f64, relative to the largest force.",
         );
         page.table(&self.elements_on_page());
+        page.section("pulled", "Steps of a pulled cube");
+        page.paragraph(OF_PULLED);
+        page.table(&self.pulled_on_page());
         page.list(self.marks.iter().map(ToString::to_string));
         page.section("guards", "Guards");
         page.list(self.guards.iter().map(|guard| {
@@ -87,6 +92,22 @@ impl KernelResults {
         });
         Table {
             rows: rows.collect(),
+            columns: columns.collect(),
+            ..Table::default()
+        }
+    }
+
+    fn pulled_on_page(&self) -> Table {
+        let columns = HEAD_OF_PULLED.iter().enumerate();
+        let columns = columns.map(|(index, head)| match index {
+            0..=2 => Column::text(*head),
+            _ => Column::number(*head, ""),
+        });
+        let rows = self.pulled.iter();
+        Table {
+            rows: rows
+                .map(|row| TableRow::new(cells_of_pulled(row).map(Cell::text)))
+                .collect(),
             columns: columns.collect(),
             ..Table::default()
         }

@@ -281,7 +281,7 @@ impl Second {
     /// CPU time (s) of the second.
     fn simulate(&mut self) -> Result<f64, LabError> {
         let mut state = State::at_rest(sinew_core::System::dofs(&self.model));
-        let spent = time_run(&self.model, &mut *self.integrator, &mut state, &self.run)?;
+        let (_, spent) = time_run(&self.model, &mut *self.integrator, &mut state, &self.run)?;
         Ok(spent.cpu)
     }
 }

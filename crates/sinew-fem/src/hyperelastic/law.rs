@@ -156,6 +156,14 @@ pub trait HyperelasticLaw: Copy + Debug + Send + Sync {
         local.plus(bulk.modulus, Tensor::outer(normal, normal))
     }
 
+    /// The sum of [`Self::node_block`] over the three axes: of isotropic laws its largest eigenvalue is that of the stiffest plane wave, and twice a shear modulus.
+    #[inline(always)]
+    fn wave_moduli<N: Number>(&self, at: &Point<N, Self::Own<N>>, bulk: Bulk<N>) -> Tensor<N> {
+        let [x, y, z] = Tensor::<N>::identity().0;
+        let sum = self.node_block(at, bulk, x) + self.node_block(at, bulk, y);
+        sum + self.node_block(at, bulk, z)
+    }
+
     /// The deformation with the values that the law caches for it.
     #[inline(always)]
     fn at<N: Number>(&self, displacement_gradient: Tensor<N>) -> Point<N, Self::Own<N>> {
@@ -227,6 +235,13 @@ pub trait HyperelasticLaw: Copy + Debug + Send + Sync {
     fn stress_with<N: Number>(&self, at: &Point<N, Self::Own<N>>, bulk: Bulk<N>) -> Tensor<N> {
         self.stress(at)
             .plus(bulk.stress, self.dilation_gradient(at))
+    }
+
+    /// `share` times the local stress and `bulk` (Pa) times d theta/dF, the sum that forces go by.
+    #[inline(always)]
+    fn stress_of<N: Number>(&self, at: &Point<N, Self::Own<N>>, share: N, bulk: N) -> Tensor<N> {
+        let local = self.stress(at).scaled(share);
+        local.plus(bulk, self.dilation_gradient(at))
     }
 
     /// The change of [`Self::stress_with`] by a change of F, the stress of the dilation changing with its modulus.
@@ -305,6 +320,14 @@ pub enum NodeBlock {
     Exact,
     /// The exact one and something positive semidefinite, where that is needed.
     Majorant,
+}
+
+/// The sum of [`block_of`] over the three axes.
+#[inline(always)]
+pub(super) fn wave_moduli_of<N: Number>(deformation: &Deformation<N>, a: N, b: N) -> Tensor<N> {
+    let cofactor = deformation.cofactor;
+    let squares = cofactor.times_transposed(cofactor);
+    Tensor::diagonal(N::of(3.0) * a).plus(b, squares)
 }
 
 /// `a |g|^2 I + b (c g)(c g)'`: the block of laws in I1 and J, since `g_J D_iJkL g_L = 0` for D = dc/dF, which is the only indefinite part.

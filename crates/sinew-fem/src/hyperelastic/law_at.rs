@@ -52,6 +52,8 @@ pub(crate) trait LawAt<N: Number> {
     fn freezes(&self) -> bool;
 
     fn node_block(&self, bulk: Bulk<N>, gradient: [N; 3]) -> Tensor<N>;
+
+    fn wave_moduli(&self, bulk: Bulk<N>) -> Tensor<N>;
 }
 
 /// A law with its type at a deformation.
@@ -170,6 +172,11 @@ impl<N: Number, L: HyperelasticLaw> LawAt<N> for OwnAt<'_, N, L> {
     #[inline(always)]
     fn freezes(&self) -> bool {
         self.law.frozen_tangent(self, Tensor::zero()).is_some()
+    }
+
+    #[inline(always)]
+    fn wave_moduli(&self, bulk: Bulk<N>) -> Tensor<N> {
+        self.law.wave_moduli(self, bulk)
     }
 
     #[inline(always)]

@@ -3,7 +3,7 @@
 use sinew_sparse::simd::Number;
 
 use super::deformation::Deformation;
-use super::law::{Bulk, HyperelasticLaw, NodeBlock, Point, block_of};
+use super::law::{Bulk, HyperelasticLaw, NodeBlock, Point, block_of, wave_moduli_of};
 use super::parameters::{LawParameter, LawValues, ParameterError};
 use super::tensor::Tensor;
 
@@ -59,6 +59,14 @@ impl HyperelasticLaw for NeoHookean {
             .scaled(N::of(self.mu))
     }
 
+    /// [`Self::stress`] and the dilation's in one.
+    #[inline(always)]
+    fn stress_of<N: Number>(&self, at: &Point<N, N>, share: N, bulk: N) -> Tensor<N> {
+        let mu = share * N::of(self.mu);
+        let of_volume = (mu * at.volume_change).mul_add(at.own, bulk);
+        at.distortion.scaled(mu).plus(of_volume, at.cofactor)
+    }
+
     #[inline(always)]
     fn tangent<N: Number>(&self, at: &Point<N, N>, change: Tensor<N>) -> Tensor<N> {
         let over = at.own;
@@ -79,5 +87,12 @@ impl HyperelasticLaw for NeoHookean {
         let mu = N::of(self.mu);
         let b = (mu * at.own).mul_add(at.own, bulk.modulus);
         block_of(at, gradient, mu, b)
+    }
+
+    #[inline(always)]
+    fn wave_moduli<N: Number>(&self, at: &Point<N, N>, bulk: Bulk<N>) -> Tensor<N> {
+        let mu = N::of(self.mu);
+        let b = (mu * at.own).mul_add(at.own, bulk.modulus);
+        wave_moduli_of(at, mu, b)
     }
 }

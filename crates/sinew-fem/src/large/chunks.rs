@@ -28,6 +28,17 @@ pub(super) const LANES: usize = f32::LANES;
 /// Tetrahedra in a chunk, unless a patch has more.
 const SIZE: usize = 256;
 
+/// The place of a tetrahedron's corner among those of all places: vertex by vertex for as many tetrahedra as the widest vector has lanes, so that vectors write rows
+/// side by side.
+pub(super) fn corner(tet: usize, vertex: usize) -> usize {
+    4 * (tet - tet % LANES) + LANES * vertex + tet % LANES
+}
+
+/// The tetrahedron at whose corner a place is.
+pub(super) fn tet_at(corner: usize) -> usize {
+    corner / (4 * LANES) * LANES + corner % LANES
+}
+
 /// Cuts tetrahedra into chunks of whole patches and whole vectors.
 pub(super) fn chunks(
     tets: &[u32],

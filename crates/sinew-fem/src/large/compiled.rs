@@ -11,6 +11,7 @@ use super::force::Forces;
 use super::node_blocks::{self, Blocks};
 use super::product::{self, Products};
 use super::wanted::{OnLaw, Wanted};
+use super::waves::{self, Waves};
 use crate::hyperelastic::{
     Boxed, HyperelasticLaw, NodeBlock, PointLaw, Tensor, sample_deformations,
 };
@@ -45,6 +46,8 @@ pub(crate) trait Compiled: Asked + Debug + Send + Sync {
     fn products(&self, products: &mut Products<'_>) -> Result<(), EvaluationError>;
 
     fn blocks(&self, blocks: &mut Blocks<'_>) -> Result<(), EvaluationError>;
+
+    fn waves(&self, waves: &mut Waves<'_>) -> Result<(), EvaluationError>;
 
     #[cfg(test)]
     fn check_conformance(&self);
@@ -157,6 +160,14 @@ impl<T: WithType> Compiled for T {
             wanted.on(self.law(), node_blocks::OfLaw { blocks, untyped })?;
         }
         blocks.of_means(self)
+    }
+
+    fn waves(&self, waves: &mut Waves<'_>) -> Result<(), EvaluationError> {
+        if waves.take_numbers() {
+            return waves.with_numbers(self);
+        }
+        let untyped = self;
+        Wanted::Stiffest.on(self.law(), waves::OfLaw { waves, untyped })
     }
 
     #[cfg(test)]

@@ -13,7 +13,7 @@ use super::chunks::LANES;
 use super::defined::{require_law, require_memory};
 use super::found::Found;
 use super::gather::Gather;
-use super::kept::{Rows, load, load_entries, store, store_entries};
+use super::kept::{Rows, load, load_entries, no_rows, store, store_entries};
 use super::memory::{Past, Points, Relaxing, Remembered, Remembering};
 use super::region::{HyperelasticRegion, Numbers};
 use super::rooms::{RegionRooms, Rooms};
@@ -71,6 +71,28 @@ impl<'a, T: Vectors> Forces<'a, T> {
         let Evaluation {
             regions,
             numbers,
+            remembered,
+            with_energy,
+            ..
+        } = self.evaluation;
+        let region = self.piece.region;
+        let has_shares = numbers[region].stiffness.is_some();
+        let is_plain = regions[region].is_plain() && !has_shares;
+        if is_plain && remembered.is_none() && !with_energy {
+            self.sweep::<true, L>(law)
+        } else {
+            self.sweep::<false, L>(law)
+        }
+    }
+
+    /// [`Self::run`]; `PLAIN` is true if nothing but the law's own forces is asked for.
+    fn sweep<const PLAIN: bool, L: HyperelasticLaw>(
+        self,
+        law: L,
+    ) -> Result<Deformed, EvaluationError> {
+        let Evaluation {
+            regions,
+            numbers,
             gather,
             rooms,
             places,
@@ -86,7 +108,7 @@ impl<'a, T: Vectors> Forces<'a, T> {
             Some(_) => Relaxing::none(),
             None => Relaxing::of(region.memory.as_ref(), past),
         };
-        let sweep = Sweep {
+        let sweep = Sweep::<T, L, PLAIN> {
             region,
             relaxing,
             remembered,
@@ -105,12 +127,13 @@ impl<'a, T: Vectors> Forces<'a, T> {
     }
 }
 
-/// All loops over a region, for one law.
+/// All loops over a region, for one law; `PLAIN` ones know neither energy nor memory, fibres, axes and shares of the stiffness: without their branches vectors stay in
+/// registers.
 ///
 /// The proof of all blocks below is the schedule: a task reads what its part did before or any part in a pass before,
 /// and nobody writes what another part of the pass reads ([`super::schedule::Schedule`]). Places of gradients, edges
 /// and corners are within assigned blocks, and these within the arrays ([`Places::hold`]).
-struct Sweep<'a, T, L> {
+struct Sweep<'a, T, L, const PLAIN: bool> {
     region: &'a HyperelasticRegion,
     numbers: &'a Numbers<T>,
     gather: &'a Gather,
@@ -128,7 +151,7 @@ struct Sweep<'a, T, L> {
     tasks: &'a [Task],
 }
 
-impl<T: Vectors, L: HyperelasticLaw> WithReal<T> for Sweep<'_, T, L> {
+impl<T: Vectors, L: HyperelasticLaw, const PLAIN: bool> WithReal<T> for Sweep<'_, T, L, PLAIN> {
     type Output = Result<Deformed, EvaluationError>;
 
     #[inline(always)]
@@ -152,7 +175,7 @@ impl<T: Vectors, L: HyperelasticLaw> WithReal<T> for Sweep<'_, T, L> {
     }
 }
 
-impl<T: Vectors, L: HyperelasticLaw> Sweep<'_, T, L> {
+impl<T: Vectors, L: HyperelasticLaw, const PLAIN: bool> Sweep<'_, T, L, PLAIN> {
     /// Takes the mean dilation of each patch of a chunk, times its share of the stiffness, and keeps the gradients.
     #[inline(always)]
     fn means<N: Number<Real = T>>(
@@ -173,7 +196,11 @@ impl<T: Vectors, L: HyperelasticLaw> Sweep<'_, T, L> {
         for first in chunk.slots.clone().step_by(N::LANES) {
             let own = first - chunk.slots.start;
             let gradient = rest.gradient_of::<N>(first, places.displacement);
-            let axes = self.numbers.axes.as_ref();
+            let axes = if PLAIN {
+                None
+            } else {
+                self.numbers.axes.as_ref()
+            };
             let at = at_place(&self.law, gradient, axes, Place::Tets(first));
             require_law(&at, |lane| rest.tag(first + lane))?;
             let volume = rest.volumes::<N>(first);
@@ -220,9 +247,13 @@ impl<T: Vectors, L: HyperelasticLaw> Sweep<'_, T, L> {
         found: &mut Found<N>,
     ) -> Result<(), EvaluationError> {
         let (region, rest, places) = (self.region, &*self.numbers.rest, &self.places);
-        let stiffness = self.numbers.stiffness.as_deref();
-        let mut remembering = self.remembering();
-        let mut sums = [[[T::default(); 4]; 3]; LANES];
+        let stiffness = if PLAIN {
+            None
+        } else {
+            self.numbers.stiffness.as_deref()
+        };
+        let mut remembering = if PLAIN { None } else { self.remembering() };
+        let mut sums = [no_rows(); LANES];
         for first in edges.step_by(N::LANES) {
             let starts = &self.rooms.starts_at[first..=first + N::LANES];
             for (sum, range) in sums.iter_mut().zip(starts.windows(2)) {
@@ -232,7 +263,11 @@ impl<T: Vectors, L: HyperelasticLaw> Sweep<'_, T, L> {
             let volume = N::load(&self.numbers.edge_volumes[first..]);
             let over = N::select_le(volume, N::of(0.0), N::of(0.0), volume.recip());
             let gradient = load::<N>(&sums).scaled(over);
-            let axes = self.numbers.axes.as_ref();
+            let axes = if PLAIN {
+                None
+            } else {
+                self.numbers.axes.as_ref()
+            };
             let at = at_place(&self.law, gradient, axes, Place::Means);
             let tag = |lane: usize| {
                 let tets = region.edges.of(region.edge_at(first + lane));
@@ -251,13 +286,13 @@ impl<T: Vectors, L: HyperelasticLaw> Sweep<'_, T, L> {
                 continue;
             }
             let mut density = N::of(0.0);
-            if self.with_energy {
+            if !PLAIN && self.with_energy {
                 density = self.law.energy(&at);
                 if let Some(stiffness) = stiffness {
                     density = stiffness.at_edges::<N>(first) * density;
                 }
             }
-            if self.relaxing.is_there() {
+            if !PLAIN && self.relaxing.is_there() {
                 require_memory(&self.relaxing, &at.deformation, tag)?;
                 let factor = N::of(self.relaxing.factor);
                 let half = N::of(0.5) * self.law.dilation(&at);
@@ -277,7 +312,7 @@ impl<T: Vectors, L: HyperelasticLaw> Sweep<'_, T, L> {
             // SAFETY: see `Sweep`.
             let to = unsafe { places.at_edges.write(own..own + N::LANES) };
             store(stress, to);
-            if self.with_energy {
+            if !PLAIN && self.with_energy {
                 let share = volume * N::of(region.edge_share / 6.0);
                 found.energy = share.mul_add(density, found.energy);
             }
@@ -324,14 +359,15 @@ impl<T: Vectors, L: HyperelasticLaw> Sweep<'_, T, L> {
         let (region, rest, places) = (self.region, &*self.numbers.rest, &self.places);
         let slots = region.chunks[chunk].slots.clone();
         let (is_smoothed, has_edges) = (region.is_smoothed(), !region.edges_of.is_empty());
-        let is_relaxing = self.relaxing.is_there();
-        let has_beside = !region.fibres.is_empty() || is_relaxing;
+        let is_relaxing = !PLAIN && self.relaxing.is_there();
+        let has_beside = !PLAIN && (!region.fibres.is_empty() || is_relaxing);
+        let with_energy = !PLAIN && self.with_energy;
         if has_beside {
             found.energy_of_sets += self.beside(&slots)?;
         }
         let own_share = 1.0 - region.edge_share;
         let lambda = self.relaxing.factor_of_dilation() * self.law.lame().0;
-        let mut remembering = self.remembering();
+        let mut remembering = if PLAIN { None } else { self.remembering() };
         // SAFETY: see `Sweep`.
         let (dilations, kept, corners) = unsafe {
             let dilations = from(region.kept.tets, &slots);
@@ -345,8 +381,12 @@ impl<T: Vectors, L: HyperelasticLaw> Sweep<'_, T, L> {
             )
         };
         let (kept, beside) = kept.split_at(places.gradients_of_chunk);
-        let stiffness = self.numbers.stiffness.as_deref();
-        let mut sums = [[[T::default(); 4]; 3]; LANES];
+        let stiffness = if PLAIN {
+            None
+        } else {
+            self.numbers.stiffness.as_deref()
+        };
+        let mut sums = [no_rows(); LANES];
         for first in slots.clone().step_by(N::LANES) {
             let own = first - slots.start;
             let gradient = if has_beside || is_smoothed && !has_edges {
@@ -354,7 +394,11 @@ impl<T: Vectors, L: HyperelasticLaw> Sweep<'_, T, L> {
             } else {
                 rest.gradient_of::<N>(first, places.displacement)
             };
-            let axes = self.numbers.axes.as_ref();
+            let axes = if PLAIN {
+                None
+            } else {
+                self.numbers.axes.as_ref()
+            };
             let at = at_place(&self.law, gradient, axes, Place::Tets(first));
             require_law(&at, |lane| rest.tag(first + lane))?;
             let dilation = if is_smoothed {
@@ -363,7 +407,7 @@ impl<T: Vectors, L: HyperelasticLaw> Sweep<'_, T, L> {
                 self.law.dilation(&at)
             };
             let mut bulk = N::of(lambda) * dilation;
-            if self.with_energy {
+            if with_energy {
                 found.note(first, at.volume_ratio, rest);
                 let mut density = N::of(own_share) * self.law.energy(&at);
                 if is_relaxing {
@@ -379,47 +423,45 @@ impl<T: Vectors, L: HyperelasticLaw> Sweep<'_, T, L> {
                 }
                 found.energy = rest.volumes::<N>(first).mul_add(density, found.energy);
             }
-            let mut stress = self.law.stress(&at);
+            let mut share = N::of(own_share);
             if let Some(stiffness) = stiffness {
-                let share = stiffness.of_tets::<N>(first);
-                stress = stress.scaled(share);
+                let of_tets = stiffness.of_tets::<N>(first);
+                share = of_tets * share;
                 if !is_smoothed {
-                    bulk = share * bulk;
+                    bulk = of_tets * bulk;
                 }
             }
             if let Some(remembering) = &mut remembering {
-                stress = stress.scaled(N::of(own_share));
-                if remembering.is_deviatoric() {
-                    stress = deviatoric(&at.deformation, stress);
+                let stress = if remembering.is_deviatoric() {
+                    deviatoric(&at.deformation, self.law.stress(&at).scaled(share))
                 } else {
-                    stress = stress.plus(bulk, self.law.dilation_gradient(&at));
-                    if has_beside {
-                        stress = stress + load_entries(&beside[9 * own..]);
+                    let own_stress = self.law.stress_of(&at, share, bulk);
+                    match has_beside {
+                        true => own_stress + load_entries(&beside[9 * own..]),
+                        false => own_stress,
                     }
-                }
+                };
                 remembering.take(Points::Tets, first, &at.deformation, stress);
                 continue;
             }
             if is_relaxing {
-                stress = stress.scaled(N::of(self.relaxing.factor));
-                let mut left = N::of(own_share * self.relaxing.bulk_left());
-                if let Some(stiffness) = stiffness {
-                    left = stiffness.of_tets::<N>(first) * left;
-                }
+                let left = share * N::of(self.relaxing.bulk_left());
                 bulk = left.mul_add(self.law.dilation(&at), bulk);
+                share = share * N::of(self.relaxing.factor);
             }
+            let volume = rest.volumes::<N>(first);
+            let mut stress = self.law.stress_of(&at, volume * share, volume * bulk);
             if has_edges {
                 for (lane, sum) in sums.iter_mut().enumerate().take(N::LANES) {
                     *sum = rows_of(places.at_edges, &self.rooms.edges_of[first + lane]);
                 }
-                stress = stress.scaled(N::of(own_share));
-                stress = stress.plus(N::of(region.edge_share / 6.0), load(&sums));
+                let share = volume * N::of(region.edge_share / 6.0);
+                stress = stress.plus(share, load(&sums));
             }
-            stress = stress.plus(bulk, self.law.dilation_gradient(&at));
             if has_beside {
-                stress = stress + load_entries(&beside[9 * own..]);
+                stress = stress.plus(volume, load_entries(&beside[9 * own..]));
             }
-            rest.forces(first, stress, &mut corners[4 * own..]);
+            rest.forces(first, stress, &mut corners[4 * (own - own % LANES)..]);
         }
         Ok(())
     }
@@ -433,7 +475,7 @@ fn from(first: usize, range: &Range<usize>) -> Range<usize> {
 /// The sum of some tensors, all of whose entries are added as one row.
 #[inline(always)]
 fn rows_of<T: Real>(all: SharedSlice<'_, Rows<T>>, places: &[u32]) -> Rows<T> {
-    let mut sums = [[T::default(); 4]; 3];
+    let mut sums = no_rows();
     for place in places {
         // SAFETY: see `Sweep`, which alone calls it.
         let other = unsafe { all.get(*place as usize) };

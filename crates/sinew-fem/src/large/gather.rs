@@ -6,6 +6,8 @@ use std::ops::{Add, Range};
 
 use sinew_sparse::simd::{Real, SharedSlice};
 
+use super::chunks::{LANES, corner, tet_at};
+
 /// The corners of tetrahedra at each node. Sums are taken by node, in the order of the tetrahedra, so that no two
 /// threads write to one place and the bits do not depend on their number.
 #[derive(Clone, Debug)]
@@ -14,7 +16,7 @@ pub(super) struct Gather {
     nodes: Vec<u32>,
     /// Start of each node's part of `corners`, and the end of the last.
     starts: Vec<u32>,
-    /// Corners: four times the tetrahedron's place, and the vertex.
+    /// Corners by their places ([`corner`]).
     corners: Vec<u32>,
     /// Places of corners; all `corners` are below.
     room: usize,
@@ -37,7 +39,7 @@ impl Gather {
         for (tet, nodes) in (0..).zip(tets) {
             for (vertex, node) in (0..).zip(nodes.into_iter().flatten()) {
                 let place = &mut free[node as usize];
-                of_nodes[*place as usize] = 4 * tet + vertex;
+                of_nodes[*place as usize] = corner(tet, vertex) as u32;
                 *place += 1;
                 last_places[node as usize] = tet;
             }
@@ -56,7 +58,7 @@ impl Gather {
             nodes,
             starts,
             corners,
-            room: 4 * places,
+            room: 4 * places.next_multiple_of(LANES),
         }
     }
 
@@ -65,7 +67,7 @@ impl Gather {
         &self.nodes
     }
 
-    /// Corners of all its nodes: four times the tetrahedron's place, and the vertex.
+    /// Corners of all its nodes, by their places.
     pub(super) fn corners(&self) -> &[u32] {
         &self.corners
     }
@@ -74,7 +76,7 @@ impl Gather {
     pub(super) fn tets_at(&self, index: usize) -> impl Iterator<Item = usize> {
         let range = self.starts[index] as usize..self.starts[index + 1] as usize;
         let corners = self.corners[range].iter();
-        corners.map(|corner| *corner as usize / 4)
+        corners.map(|corner| tet_at(*corner as usize))
     }
 
     /// Writes the sums of the forces (N) at the corners of some of its nodes, in its own order of nodes; each corner of [`Gather::corners`]
@@ -112,7 +114,7 @@ impl Gather {
         }
     }
 
-    /// [`Gather::sum`] for all nodes, with four corners for each place of a tetrahedron.
+    /// [`Gather::sum`] for all nodes, with the corners of all tetrahedra at their places.
     pub(super) fn sum_all(&self, at_corners: &mut [[f64; 4]], out: &mut [[f64; 4]]) {
         assert!(self.room <= at_corners.len());
         let (at_corners, out) = (SharedSlice::of(at_corners), SharedSlice::of(out));

@@ -8,6 +8,11 @@ use crate::hyperelastic::Tensor;
 /// A tensor, whose rows end in 0.
 pub(super) type Rows<T> = [[T; 4]; 3];
 
+/// Rows of zeros.
+pub(super) fn no_rows<T: Default + Copy>() -> Rows<T> {
+    [[T::default(); 4]; 3]
+}
+
 /// Tensors side by side.
 #[inline(always)]
 pub(super) fn load<N: Number>(from: &[Rows<N::Real>]) -> Tensor<N> {

@@ -7,7 +7,7 @@ use super::axes::Place;
 use super::chunks::LANES;
 use super::defined::{require_fibres, require_law, require_memory};
 use super::evaluator::{Evaluator, Untyped};
-use super::kept::{Rows, load, store};
+use super::kept::{Rows, load, no_rows, store};
 use super::memory::Relaxing;
 use super::region::HyperelasticRegion;
 use super::scratch::Scratch;
@@ -86,7 +86,7 @@ pub(super) fn mean_at_edges<N: Number<Real = f64>>(
     first: usize,
     of_tets: &[Rows<f64>],
 ) -> Tensor<N> {
-    let mut sums = [[[0.0; 4]; 3]; LANES];
+    let mut sums = [no_rows(); LANES];
     for (lane, sum) in sums.iter_mut().enumerate().take(N::LANES) {
         for tet in region.edges.of(region.edge_at(first + lane)) {
             let volume = region.rest.volume(*tet as usize);

@@ -27,6 +27,7 @@ mod stiffness;
 mod stress;
 mod threads;
 mod wanted;
+mod waves;
 mod when;
 
 pub(crate) use compiled::{Compiled, Own, Precision};
@@ -55,6 +56,7 @@ use product::Products;
 use region::{FirstPlaces, Numbers};
 use regions::{Regions, evaluate_alone};
 use stress::Cauchy;
+use waves::Waves;
 
 /// Marks a tetrahedron that is in no hyperelastic region.
 const NO_PLACE: u32 = u32::MAX;
@@ -281,6 +283,27 @@ impl LargeDeformation {
         })
     }
 
+    /// The square (1/s^2) of the largest frequency of plane waves as short as a tetrahedron, at the displacement in the scratch.
+    pub(crate) fn fastest_wave(
+        &self,
+        scratch: &Scratch,
+        past: Past<'_>,
+    ) -> Result<f64, EvaluationError> {
+        let mut fastest = 0.0;
+        for (region, law) in self.with_laws() {
+            let mut waves = Waves {
+                region,
+                scratch,
+                relaxing: Wanted::Stiffest.relaxing(region, past),
+                set: self.set,
+                fastest,
+            };
+            law.waves(&mut waves)?;
+            fastest = waves.fastest;
+        }
+        Ok(fastest)
+    }
+
     /// The Cauchy stress (Pa) of a tetrahedron of the mesh, in the order of [`crate::stress`], with the displacement (m) of each node; `None`
     /// where it is in no hyperelastic region, not a number where its law has no meaning.
     pub(crate) fn stress(
@@ -397,6 +420,7 @@ mod tests {
         let directions: Vec<[f64; 3]> = uneven().map(|x| [x.cos(), 0.0, x.sin()]).collect();
         let region = RegionLaw {
             mu: law.lame().1,
+            density: 1060.0,
             edge_share: element.edge_share(),
             tissue,
             shares: &shares,

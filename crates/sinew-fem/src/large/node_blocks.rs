@@ -7,7 +7,7 @@ use super::axes::Place;
 use super::beside::{block_beside, carried_block};
 use super::chunks::LANES;
 use super::evaluator::{Asked, Evaluator, Typed, Untyped};
-use super::kept::{load, store};
+use super::kept::{load, no_rows, store};
 use super::means::{at_edges, means, require, take_dilation};
 use super::memory::{Points, Relaxing};
 use super::product::{left_of_smoothed, left_of_tets};
@@ -69,7 +69,7 @@ impl Blocks<'_> {
                 return Ok(());
             }
         }
-        let mut lanes = [[[0.0; 4]; 3]; LANES];
+        let mut lanes = [no_rows(); LANES];
         for first in (0..rest.count()).step_by(N::LANES) {
             let gradient = if is_smoothed {
                 load::<N>(&scratch.gradients[first..])
@@ -95,9 +95,9 @@ impl Blocks<'_> {
                 }
                 store(block.scaled(rest.volumes(first)), &mut lanes);
                 let nodes = rest.nodes_from(vertex, first);
-                for (node, block) in nodes.iter().zip(&lanes[..N::LANES]) {
+                for (node, block) in nodes.zip(&lanes[..N::LANES]) {
                     let [[xx, xy, xz, _], [yx, yy, yz, _], [zx, zy, zz, _]] = *block;
-                    add(*node, [[xx, xy, xz], [yx, yy, yz], [zx, zy, zz]]);
+                    add(node, [[xx, xy, xz], [yx, yy, yz], [zx, zy, zz]]);
                 }
             }
         }

@@ -7,7 +7,7 @@ use super::axes::Place;
 use super::beside::TangentBeside;
 use super::chunks::LANES;
 use super::evaluator::{Asked, Evaluator, Typed};
-use super::kept::{load, store};
+use super::kept::{load, no_rows, store};
 use super::means::{add, at_edges, mean_at_edges, means, require};
 use super::memory::{Points, Relaxing};
 use super::region::HyperelasticRegion;
@@ -113,7 +113,7 @@ impl Products<'_> {
             let of_patch = N::of(lambda) * dilation_change;
             let mut stress = own.on(change).plus(of_patch, at.dilation_gradient());
             if !region.edges_of.is_empty() {
-                let mut sums = [[[0.0; 4]; 3]; LANES];
+                let mut sums = [no_rows(); LANES];
                 for (lane, sum) in sums.iter_mut().enumerate().take(N::LANES) {
                     for edge in region.edges_of[first + lane] {
                         add(sum, 1.0, &scratch.at_edges[edge as usize]);
@@ -125,7 +125,8 @@ impl Products<'_> {
                 let beside = TangentBeside::of(region, relaxing, first, at.deformation(), *wanted);
                 stress = beside.with(stress, change);
             }
-            rest.forces(first, stress, &mut corners[4 * first..]);
+            let stress = stress.scaled(rest.volumes(first));
+            rest.forces(first, stress, &mut corners[4 * (first - first % LANES)..]);
         }
         Ok(())
     }

@@ -12,7 +12,7 @@ use super::memory::RegionMemory;
 use super::rest::Rest;
 use super::stiffness::Stiffness;
 use crate::frame::{Axes, UnitVectors};
-use crate::hyperelastic::Tensor;
+use crate::hyperelastic::{SingularValues, Tensor};
 use crate::shares::Shares;
 use crate::smoothing::{Average, Sets, Smoothing};
 use crate::tissue::Tissue;
@@ -22,6 +22,8 @@ use crate::tissue::Tissue;
 pub(crate) struct RegionLaw<'a> {
     /// Lame's second constant (Pa) of the stiffest tetrahedron.
     pub(crate) mu: f64,
+    /// The least density (kg/m^3).
+    pub(crate) density: f64,
     /// Share of the local energy that is averaged over edges.
     pub(crate) edge_share: f64,
     pub(crate) tissue: &'a Tissue,
@@ -67,6 +69,9 @@ pub(crate) struct HyperelasticRegion {
     pub(super) patch_of: Vec<u32>,
     /// The mean gradients at each edge, made for the first tangent or own blocks: explicit runs need none.
     edge_averages: OnceLock<Vec<Average>>,
+    density: f64,
+    /// See [`Self::wave_numbers`].
+    wave_numbers: OnceLock<Vec<f64>>,
 }
 
 impl HyperelasticRegion {
@@ -76,6 +81,7 @@ impl HyperelasticRegion {
         smoothing: &Smoothing,
         RegionLaw {
             mu,
+            density,
             edge_share,
             tissue,
             shares,
@@ -92,11 +98,7 @@ impl HyperelasticRegion {
             edges_of.extend(smoothing.edges_of(tet));
             patch_of.extend(smoothing.patch_of(tet).map(|patch| patch as u32));
         }
-        // By the last tetrahedron of each.
-        let edges = numbered_anew(edges_of.as_flattened_mut().iter_mut().rev());
-        for edge in edges_of.as_flattened_mut() {
-            *edge = edges as u32 - 1 - *edge;
-        }
+        let edges = order_edges(&mut edges_of, slots, &chunks);
         let patches = numbered_anew(patch_of.iter_mut());
         let taken = (0u32..).zip(slots).filter(|(_, slot)| !slot.is_padding);
         let taken = taken.map(|(place, _)| place);
@@ -145,6 +147,8 @@ impl HyperelasticRegion {
             edges_of,
             patch_of,
             edge_averages: OnceLock::new(),
+            density,
+            wave_numbers: OnceLock::new(),
         }
     }
 
@@ -220,10 +224,32 @@ impl HyperelasticRegion {
         })
     }
 
+    /// Squares (1/m^2) of the largest wave number of each tetrahedron, over the density: with a modulus (Pa), the square of a frequency
+    /// (1/s^2), where each node has a quarter of the mass. 0 for padding.
+    pub(super) fn wave_numbers(&self) -> &[f64] {
+        self.wave_numbers.get_or_init(|| {
+            let of_tet = |tet| {
+                if !self.rest.is_taken(tet) {
+                    return 0.0;
+                }
+                let rows = self.rest.all_gradients::<f64>(tet);
+                let outer = |sum, row| Tensor::plus(sum, 1.0, Tensor::outer(row, row));
+                let squares = rows.into_iter().fold(Tensor::<f64>::zero(), outer);
+                4.0 * SingularValues::of(squares).values[0] / self.density
+            };
+            (0..self.rest.count()).map(of_tet).collect()
+        })
+    }
+
     /// An edge by its place among vectors of edges: padding behind the last one repeats it.
     #[inline(always)]
     pub(super) fn edge_at(&self, place: usize) -> usize {
         place.min(self.edges.count().saturating_sub(1))
+    }
+
+    /// True if loops need neither axes nor stress beside the law's.
+    pub(super) fn is_plain(&self) -> bool {
+        !self.has_beside() && self.axes.is_none()
     }
 
     /// True if there is stress beside the law's: that of fibres, or the remainder of earlier stress.
@@ -291,6 +317,35 @@ impl Numbers<f64> {
             axes: self.axes.as_ref().map(RegionAxes::rounded),
         }
     }
+}
+
+/// Numbers edges by the chunk of the last tetrahedron of each, those of one chunk by how many tetrahedra they have: so they are completed in order, and loops over
+/// tetrahedra at edges are about as long for edges side by side. Returns how many there are.
+fn order_edges(edges_of: &mut [[u32; 6]], slots: &[Slot], chunks: &[Chunk]) -> usize {
+    let count = numbered_anew(edges_of.as_flattened_mut().iter_mut());
+    let mut keys = vec![(0, 0); count];
+    for (number, chunk) in chunks.iter().enumerate() {
+        for place in chunk
+            .slots
+            .clone()
+            .filter(|place| !slots[*place].is_padding)
+        {
+            for edge in edges_of.get(place).into_iter().flatten() {
+                let (last, tets) = &mut keys[*edge as usize];
+                (*last, *tets) = (number, *tets + 1);
+            }
+        }
+    }
+    let mut order: Vec<u32> = (0..count as u32).collect();
+    order.sort_by_key(|edge| keys[*edge as usize]);
+    let mut place = vec![0; count];
+    for (new, old) in (0..).zip(order) {
+        place[old as usize] = new;
+    }
+    for edge in edges_of.as_flattened_mut() {
+        *edge = place[*edge as usize];
+    }
+    count
 }
 
 /// Replaces numbers by 0, 1, .. in the order in which they first appear; returns how many there are.

@@ -24,7 +24,7 @@ pub(crate) struct Rest<T = f64> {
 /// The mesh nodes of all tetrahedra.
 #[derive(Debug)]
 struct Nodes {
-    /// The four nodes, vertex by vertex, of each block.
+    /// Four times the four nodes, vertex by vertex, of each block: their places among the numbers of a field in rows of four.
     blocks: Aligned<[[u32; LANES]; 4]>,
     /// Number of mesh nodes: all nodes are below.
     count: usize,
@@ -49,7 +49,7 @@ impl Rest {
                 let tet = slot.tet as usize;
                 let of_tet = mesh.tets[tet];
                 for (nodes, node) in nodes.iter_mut().zip(of_tet) {
-                    nodes[lane] = node;
+                    nodes[lane] = 4 * node;
                 }
                 let vertices = tetra::vertices(&mesh.points, of_tet);
                 let [_, others @ ..] = tetra::gradients(&vertices).unwrap_or_default();
@@ -120,7 +120,7 @@ impl<T: Real> Rest<T> {
 
     /// The four nodes of a tetrahedron.
     pub(super) fn nodes(&self, tet: usize) -> [u32; 4] {
-        self.nodes.blocks[tet / LANES].map(|nodes| nodes[tet % LANES])
+        self.nodes.blocks[tet / LANES].map(|nodes| nodes[tet % LANES] / 4)
     }
 
     pub(super) fn tag(&self, tet: usize) -> u64 {
@@ -159,8 +159,9 @@ impl<T: Real> Rest<T> {
     }
 
     /// One of the four nodes of the tetrahedra from one to the end of its block.
-    pub(super) fn nodes_from(&self, vertex: usize, first: usize) -> &[u32] {
-        &self.nodes.blocks[first / LANES][vertex][first % LANES..]
+    pub(super) fn nodes_from(&self, vertex: usize, first: usize) -> impl Iterator<Item = u32> {
+        let places = &self.nodes.blocks[first / LANES][vertex][first % LANES..];
+        places.iter().map(|place| place / 4)
     }
 
     /// The gradient, in tetrahedra side by side, of a field (m) that is given at all mesh nodes: row i, column j is the derivative of component
@@ -174,7 +175,7 @@ impl<T: Real> Rest<T> {
         assert!(self.nodes.count <= field.len());
         let [a, b, c, d] = &self.nodes.blocks[first / LANES];
         let lane = first % LANES;
-        // SAFETY: all nodes are below the number of mesh nodes.
+        // SAFETY: all nodes, a fourth of these, are below the number of mesh nodes.
         let [a, b, c, d] = unsafe {
             [
                 N::gather_rows(field, &a[lane..]),
@@ -187,7 +188,8 @@ impl<T: Real> Rest<T> {
         Tensor::from_columns(edges) * Tensor(self.gradients(first))
     }
 
-    /// Writes the forces (N) of a stress (Pa) on the four vertices of tetrahedra side by side, four rows for each.
+    /// Writes the forces (N) of a stress times the volume (J) on the four vertices of tetrahedra side by side, at their places ([`corner`]) in `out`, which begins
+    /// with the first of their block.
     #[inline(always)]
     pub(super) fn forces<N: Number<Real = T>>(
         &self,
@@ -195,15 +197,15 @@ impl<T: Real> Rest<T> {
         stress: Tensor<N>,
         out: &mut [[T; 4]],
     ) {
-        let stress = stress.scaled(self.volumes(first));
         let [b, c, d] = self.gradients(first);
         let (b, c, d) = (stress.on(b), stress.on(c), stress.on(d));
         let none = [N::of(0.0); 3];
         let a = difference(difference(difference(none, b), c), d);
-        N::store_rows(a, out, 4);
-        N::store_rows(b, &mut out[1..], 4);
-        N::store_rows(c, &mut out[2..], 4);
-        N::store_rows(d, &mut out[3..], 4);
+        let out = &mut out[first % LANES..];
+        N::store_rows(a, out, 1);
+        N::store_rows(b, &mut out[LANES..], 1);
+        N::store_rows(c, &mut out[2 * LANES..], 1);
+        N::store_rows(d, &mut out[3 * LANES..], 1);
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use super::chunks::LANES;
+use super::chunks::{LANES, tet_at};
 use super::gather::Gather;
 use super::region::HyperelasticRegion;
 use super::when::{AllChunks, FIRST, When};
@@ -176,10 +176,11 @@ impl Rooms {
             rooms.find(region, all);
         }
         let corner = |corner: &u32| {
-            let (place, vertex) = (*corner as usize / 4, corner % 4);
+            let place = tet_at(*corner as usize);
             let (region, own) = all.chunks[all.of_place[place] as usize];
+            // Chunks are whole blocks.
             let first = regions[region].first + regions[region].chunks[own].slots.start;
-            rooms[region].corners[own] + 4 * (place - first) as u32 + vertex
+            rooms[region].corners[own] + corner - 4 * first as u32
         };
         Self {
             corners: gather.corners().iter().map(corner).collect(),

@@ -2,7 +2,7 @@
 
 use sinew_sparse::simd::{Aligned, Real, Shared, SharedSlice};
 
-use super::kept::{Rows, load};
+use super::kept::{Rows, load, no_rows};
 use super::region::HyperelasticRegion;
 use super::rooms::Rooms;
 use crate::hyperelastic::Tensor;
@@ -152,9 +152,9 @@ impl Scratch {
             corners: Vec::new(),
             sums: vec![[0.0; 4]; taken],
             kept: Kept::new(regions, rooms, 1),
-            gradients: vec![[[0.0; 4]; 3]; smoothed],
-            changes: vec![[[0.0; 4]; 3]; smoothed],
-            at_edges: vec![[[0.0; 4]; 3]; most(|region| region.edge_volumes.len())],
+            gradients: vec![no_rows(); smoothed],
+            changes: vec![no_rows(); smoothed],
+            at_edges: vec![no_rows(); most(|region| region.edge_volumes.len())],
             dilations_of_tets: [vec![0.0; smoothed], vec![0.0; smoothed]],
             dilations: vec![[0.0; 2]; most(|region| region.patches.count())],
         }

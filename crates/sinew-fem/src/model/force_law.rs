@@ -364,6 +364,12 @@ impl ElasticLaw for Model {
         Ok(())
     }
 
+    fn fastest_wave(&self, trial: &Trial<'_>) -> Result<Option<f64>, EvaluationError> {
+        self.at_trial((trial.load, trial.u), |large, scratch| {
+            large.fastest_wave(scratch, past(trial)).map(Some)
+        })
+    }
+
     fn node_blocks(&self, trial: &Trial<'_>, out: &mut [f64]) -> Result<(), EvaluationError> {
         self.operators.node_blocks(trial, out)?;
         let tangent = Wanted::Kind(TangentKind::Exact);

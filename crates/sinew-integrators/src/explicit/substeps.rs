@@ -1,13 +1,11 @@
 //! `substeps`: a step cut into equal parts.
 
 use sinew_cnn::Program;
-use sinew_core::spectrum::{
-    PRODUCTS_OF_BEGINNING, PRODUCTS_OF_ESTIMATE, Spectrum, follow_largest_eigenvalue,
-};
+use sinew_core::spectrum::{PRODUCTS_OF_ESTIMATE, Spectrum, follow_largest_eigenvalue};
 use sinew_core::{
-    Batch, CostClock, Damping, ElasticLaw, Fact, Integrator, LoadTime, OptionError, Options,
-    Prepared, Properties, SetupError, StableStep, State, StepCut, StepError, StepReport, System,
-    Trial,
+    Batch, CostClock, Damping, ElasticLaw, Fact, Integrator, Layers, LoadTime, OptionError,
+    Options, Prepared, Properties, Revision, SetupError, StableStep, State, StepCut, StepError,
+    StepReport, System, Trial,
 };
 
 use crate::{OptionDefault, OptionHelp, OptionKind, Stepper};
@@ -117,11 +115,20 @@ const PARTS_BETWEEN_GLANCES: u32 = 4;
 /// Share of the stable step up to which parts stay as they are; of those that are longer more are made, so that they are within [`MARGIN`].
 const KEPT: f64 = 0.95;
 
+/// Growth of the fastest wave's square up to which the stable step is followed by it; with more a look tells.
+const MOST_FOLLOWED: f64 = 1.5;
+
+/// Growth of the fastest wave's square that is not expected within two steps.
+const MUCH_ROOM: f64 = 2.0;
+
+/// Parts after which a look tells again, where the wave alone, by what it was at rest, would allow longer ones than are taken.
+const PARTS_BETWEEN_DOUBTS: u32 = 24;
+
+/// Products of a look after others, until their estimate settles.
+const PRODUCTS_OF_LOOK: u64 = 6;
+
 /// Most by which the stable step is expected to shrink until the next glance.
 const MOST_SHRINKING: f64 = 2.0;
-
-/// Motion of a cell in a step, as a share of its size, up to which it is not compared with that of its neighbours.
-const MUCH_MOTION: f64 = 0.05;
 
 /// Most motion of a cell against a neighbour in a part, as a share of its size: with more, strains pass by within a part, and energy comes from
 /// nothing although each part is stable.
@@ -137,7 +144,9 @@ pub struct Substepped {
     substeps: Substeps,
     /// Parts into which each part is cut once more.
     finer: u32,
-    parts: Option<(sinew_core::Revision, f64, u32)>,
+    parts: Option<(Revision, f64, u32)>,
+    /// The stable step at rest and the fastest wave there, of a law that tells it.
+    rest: Option<(Revision, Known)>,
     /// A force (N).
     room: Vec<f64>,
     /// The state before the step under way.
@@ -153,6 +162,7 @@ impl Substepped {
             substeps,
             finer: 1,
             parts: None,
+            rest: None,
             room: Vec::new(),
             kept: State::at_rest(0),
         }
@@ -172,7 +182,29 @@ impl Substepped {
         }
     }
 
-    fn parts(&self, system: &dyn System, dt: f64) -> Result<u32, SetupError> {
+    /// The stable step at rest.
+    fn stable_at_rest(&mut self, system: &dyn System) -> Result<StableStep, SetupError> {
+        let revision = system.revision();
+        if let Some((known, rest)) = self.rest
+            && known == revision
+        {
+            return Ok(StableStep::UpTo(rest.limit));
+        }
+        let stable = self.inner.stable_step(system)?;
+        self.rest = match stable {
+            StableStep::UpTo(limit) => Some((
+                revision,
+                Known {
+                    limit,
+                    wave: wave_at_rest(system),
+                },
+            )),
+            _ => None,
+        };
+        Ok(stable)
+    }
+
+    fn parts(&mut self, system: &dyn System, dt: f64) -> Result<u32, SetupError> {
         if let Some((revision, step, parts)) = self.parts
             && revision == system.revision()
             && step == dt
@@ -181,7 +213,7 @@ impl Substepped {
         }
         match self.substeps {
             Substeps::Fixed(parts) => Ok(parts),
-            Substeps::Auto => match self.inner.stable_step(system)? {
+            Substeps::Auto => match self.stable_at_rest(system)? {
                 StableStep::Any => Ok(self.finer),
                 StableStep::UpTo(limit) if limit > 0.0 && dt.is_finite() => {
                     let id = self.inner.id();
@@ -239,11 +271,25 @@ impl Substepped {
             parts: 1,
             taken: PARTS_BETWEEN_LOOKS,
             stable_step: f64::INFINITY,
+            wave: 0.0,
+            seen: 0.0,
             damping: 0.0,
         };
         state.fastest.clear();
-        self.look(&mut cut, batch, state)?;
-        cut.parts = Substeps::parts_of(batch.dt(), cut.stable_step);
+        let stable = match (self.rest, self.wave(batch, state)?) {
+            (Some((_, rest)), Some(wave)) if wave <= MOST_FOLLOWED * rest.wave => {
+                (cut.stable_step, cut.wave, cut.taken) = (rest.limit, rest.wave, 0);
+                cut.seen = wave;
+                rest.limit_at(wave)
+            }
+            (_, wave) => {
+                self.look(&mut cut, batch, state)?;
+                (cut.wave, cut.taken) = (wave.unwrap_or(0.0), 0);
+                cut.seen = cut.wave;
+                cut.stable_step
+            }
+        };
+        cut.parts = Substeps::parts_of(batch.dt(), stable);
         if cut.parts <= MOST_PARTS {
             return Ok(cut);
         }
@@ -257,7 +303,7 @@ impl Substepped {
         state: &mut State,
         mut cut: StepCut,
     ) -> Result<(), StepError> {
-        self.kept.clone_from(state);
+        keep(&mut self.kept, state);
         loop {
             let parts = cut.parts.saturating_mul(self.finer);
             self.inner
@@ -277,7 +323,7 @@ impl Substepped {
                 return self.end(batch, state, tried.err());
             }
             cut.parts = more;
-            state.clone_from(&self.kept);
+            keep(state, &mut self.kept);
             batch.discard_trial();
         }
     }
@@ -338,8 +384,9 @@ impl Substepped {
                 return Ok(needed);
             }
         }
-        let motion = self.motion(batch.system(), state);
-        if motion > MOST_MOTION * f64::from(parts) {
+        let most = MOST_MOTION * f64::from(parts);
+        let motion = self.motion(batch.system(), state, most);
+        if motion > most {
             return Ok(whole(motion / MOST_MOTION));
         }
         state.cut = Some(cut);
@@ -353,46 +400,105 @@ impl Substepped {
         parts: u32,
         (batch, state): (&mut Batch<'_>, &mut State),
     ) -> Result<u32, StepError> {
+        let part = batch.dt() * f64::from(self.finer);
+        // With much room every other step tells enough.
+        let is_second = cut.taken / parts % 2 == 1;
+        if is_second && Known::of(cut).allows(MUCH_ROOM * cut.seen, part) {
+            return Ok(parts);
+        }
+        let wave = self.wave(batch, state)?;
+        if let Some(wave) = wave
+            && self.is_followed(cut, wave, part)
+        {
+            cut.seen = wave;
+            return Ok(parts);
+        }
         let before = cut.stable_step;
         if !self.look(cut, batch, state)? {
             return Ok(parts);
         }
-        let part = batch.dt() * f64::from(self.finer);
-        let shrinking = (before / cut.stable_step).clamp(1.0, MOST_SHRINKING);
+        let mut shrinking = (before / cut.stable_step).clamp(1.0, MOST_SHRINKING);
+        let mut kept = KEPT;
+        if let Some(wave) = wave {
+            // It tells when to look again, which should not be soon.
+            shrinking = (wave / cut.seen).clamp(1.0, MOST_SHRINKING.powi(2)).sqrt();
+            kept = MARGIN;
+            (cut.wave, cut.seen, cut.taken) = (wave, wave, 0);
+        }
         let expected = cut.stable_step / shrinking;
         let enough = || Substeps::parts_of(part * f64::from(parts), expected);
         if part > cut.stable_step {
             return Ok(enough());
         }
-        if part > KEPT * expected {
+        if part > kept * expected {
             cut.parts = cut.parts.max(enough().min(MOST_PARTS));
         }
         Ok(parts)
     }
 
-    /// The largest motion of a cell against a neighbour since the step began, over its size; 0 where none moved by more than [`MUCH_MOTION`] of
-    /// its size at all, as in most steps.
-    fn motion(&self, system: &dyn System, state: &State) -> f64 {
+    /// The fastest wave in a state, where it is what stable steps go by until the next look.
+    fn wave(&self, batch: &Batch<'_>, state: &State) -> Result<Option<f64>, StepError> {
+        let Some(law) = followed(batch.system()) else {
+            return Ok(None);
+        };
+        let trial = Trial::of(state, LoadTime::at(state.t()).under(batch.inputs()));
+        law.fastest_wave(&trial)
+            .map_err(|source| StepError::Refused {
+                t: state.t(),
+                source,
+            })
+    }
+
+    /// True if parts of this length (s) stay stable by what the last look and the fastest wave tell.
+    fn is_followed(&self, cut: &StepCut, wave: f64, part: f64) -> bool {
+        let rest = self.rest.map(|(_, rest)| rest);
+        let by_rest = || rest.is_some_and(|rest| rest.allows(wave, part));
+        wave <= MOST_FOLLOWED * cut.wave
+            && Known::of(cut).allows(wave, part)
+            && (cut.taken < PARTS_BETWEEN_DOUBTS || by_rest())
+    }
+
+    /// The largest motion of a cell against a neighbour since the step began, over its size; 0 where it is surely `within` that, as in most steps.
+    fn motion(&self, system: &dyn System, state: &State, within: f64) -> f64 {
         let (Some(scales), Some(elastic)) = (system.scales(), system.as_elastic()) else {
             return 0.0;
         };
         let layers = system.layers().count();
         let sizes = scales.cell_size;
-        if largest_share([&*state.u, &*self.kept.u], sizes, layers) <= MUCH_MOTION {
-            return 0.0;
-        }
         let pattern = elastic.pattern();
         let moved = |dof: usize| state.u[dof] - self.kept.u[dof];
-        let of_cell = |cell: usize| {
+        let mut of_all = [[f64::INFINITY, f64::NEG_INFINITY]; Layers::Three.count()];
+        for (now, before) in state
+            .u
+            .chunks_exact(layers)
+            .zip(self.kept.u.chunks_exact(layers))
+        {
+            for ((now, before), [least, most]) in now.iter().zip(before).zip(&mut of_all) {
+                let moved = now - before;
+                *least = if moved < *least { moved } else { *least };
+                *most = if moved > *most { moved } else { *most };
+            }
+        }
+        let mut largest = 0.0_f64;
+        for (cell, size) in sizes.iter().enumerate() {
+            let own = (layers * cell..).zip(&of_all[..layers]);
+            // No neighbour is farther away than the farthest corner of the box around all motions.
+            let farthest = own.map(|(dof, [least, most])| {
+                let moved = moved(dof);
+                (moved - least).max(most - moved).powi(2)
+            });
+            if farthest.sum::<f64>() <= (within * size).powi(2) {
+                continue;
+            }
             let neighbours = pattern.neighbours(cell).iter();
             let squares = neighbours.map(|other| {
                 let [own, other] = [cell, *other as usize].map(|cell| layers * cell);
                 let apart = (0..layers).map(|layer| moved(own + layer) - moved(other + layer));
                 apart.map(|apart| apart.powi(2)).sum::<f64>()
             });
-            squares.fold(0.0, f64::max).sqrt() / sizes[cell]
-        };
-        (0..pattern.cells()).map(of_cell).fold(0.0, f64::max)
+            largest = largest.max(squares.fold(0.0, f64::max).sqrt() / size);
+        }
+        largest
     }
 
     /// Brings the stable step up to date with a state; false where it is left as it was.
@@ -456,22 +562,83 @@ impl Substepped {
     ) -> Result<f64, StepError> {
         let mass = batch.system().mass();
         let mut fields = std::mem::take(&mut state.fastest);
-        batch.count(sweeps(if fields.len() == 2 * mass.len() {
-            1
-        } else {
-            PRODUCTS_OF_BEGINNING
-        }));
         self.room.resize(mass.len(), 0.0);
         let trial = Trial::of(state, LoadTime::at(state.t()).under(batch.inputs()));
-        let found = follow_largest_eigenvalue(&mut fields, mass, &mut self.room, |x, out| {
+        let most = match followed(batch.system()) {
+            Some(_) => PRODUCTS_OF_LOOK,
+            None => 1,
+        };
+        let mut products = 0;
+        let found = follow_largest_eigenvalue(&mut fields, mass, &mut self.room, most, |x, out| {
+            products += 1;
             law.stiffest_product(&trial, x, out)
         });
+        batch.count(sweeps(products));
         state.fastest = fields;
         found.map_err(|source| StepError::Refused {
             t: state.t(),
             source,
         })
     }
+}
+
+/// A stable step with the fastest wave that goes with it.
+#[derive(Clone, Copy, Debug)]
+struct Known {
+    /// The stable step (s).
+    limit: f64,
+    /// The square (1/s^2) of the fastest wave; 0 where none tells.
+    wave: f64,
+}
+
+impl Known {
+    /// By the last look.
+    fn of(cut: &StepCut) -> Self {
+        Self {
+            limit: cut.stable_step,
+            wave: cut.wave,
+        }
+    }
+
+    /// The stable step (s) with another wave; that of slower ones does not count as longer.
+    fn limit_at(self, wave: f64) -> f64 {
+        self.limit / (wave / self.wave).max(1.0).sqrt()
+    }
+
+    /// True if parts of this length (s) are surely stable with this wave.
+    fn allows(self, wave: f64, part: f64) -> bool {
+        // Comparisons that are false for what is not a number.
+        wave > 0.0 && self.wave > 0.0 && part <= KEPT * self.limit_at(wave)
+    }
+}
+
+/// The law of a system whose fastest wave tells about stable steps: without damping that goes by the stiffness, and without loads that follow the surface.
+fn followed(system: &dyn System) -> Option<&dyn ElasticLaw> {
+    let law = system.as_elastic()?;
+    let Damping {
+        stiffness, extra, ..
+    } = law.damping();
+    (*stiffness == 0.0 && extra.is_none() && !law.loads_follow()).then_some(law)
+}
+
+fn wave_at_rest(system: &dyn System) -> f64 {
+    let rest = vec![0.0; system.dofs()];
+    let trial = Trial {
+        load: LoadTime::at(0.0),
+        dt: 0.0,
+        u: &rest,
+        v: &rest,
+        internal: &[],
+    };
+    let wave = followed(system).map(|law| law.fastest_wave(&trial));
+    wave.and_then(Result::ok).flatten().unwrap_or(0.0)
+}
+
+/// Copies a state but for the fields of the fastest motion, which only looks change: what a step that is taken again has seen of it is not lost.
+fn keep(to: &mut State, from: &mut State) {
+    let fields = [&mut *to, &mut *from].map(|state| std::mem::take(&mut state.fastest));
+    to.clone_from(from);
+    [to.fastest, from.fastest] = fields;
 }
 
 /// The work of this number of sweeps.
@@ -486,16 +653,6 @@ fn sweeps(sweeps: u64) -> StepReport {
 fn viscous_sweeps(system: &dyn System) -> u64 {
     let elastic = system.as_elastic();
     elastic.map_or(0, |law| u64::from(law.damping().stiffness != 0.0))
-}
-
-/// The largest difference of two vectors in a cell over its size.
-fn largest_share([now, before]: [&[f64]; 2], sizes: &[f64], layers: usize) -> f64 {
-    let cells = now.chunks_exact(layers).zip(before.chunks_exact(layers));
-    let shares = cells.zip(sizes).map(|((now, before), size)| {
-        let change = now.iter().zip(before).map(|(now, before)| now - before);
-        change.map(|change| change.powi(2)).sum::<f64>() / (size * size)
-    });
-    shares.fold(0.0, f64::max).sqrt()
 }
 
 impl Stepper for Substepped {

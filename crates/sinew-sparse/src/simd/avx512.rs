@@ -53,6 +53,38 @@ unsafe fn quarter(rows: &[*const [f32; 4]; MOST], first: usize) -> __m512 {
     }
 }
 
+/// Every fourth of sixteen rows, side by side, by the places of their first numbers.
+///
+/// # Safety
+/// As for the methods of [`Lanes`].
+#[inline(always)]
+unsafe fn quarter_at(from: *const f32, places: *const u32, first: usize) -> __m512 {
+    unsafe {
+        let row = |lane: usize| _mm_loadu_ps(from.add(*places.add(lane) as usize));
+        let all = _mm512_castps128_ps512(row(first));
+        let all = _mm512_insertf32x4::<1>(all, row(first + 4));
+        let all = _mm512_insertf32x4::<2>(all, row(first + 8));
+        _mm512_insertf32x4::<3>(all, row(first + 12))
+    }
+}
+
+/// The first three columns of sixteen rows, by every fourth of them side by side.
+///
+/// # Safety
+/// As for the methods of [`Lanes`].
+#[inline(always)]
+unsafe fn columns_of([a, b, c, d]: [__m512; 4]) -> [Avx512<__m512>; 3] {
+    unsafe {
+        let (xy_ab, xy_cd) = (_mm512_unpacklo_ps(a, b), _mm512_unpacklo_ps(c, d));
+        let (z_ab, z_cd) = (_mm512_unpackhi_ps(a, b), _mm512_unpackhi_ps(c, d));
+        [
+            Avx512(_mm512_shuffle_ps::<0x44>(xy_ab, xy_cd)),
+            Avx512(_mm512_shuffle_ps::<0xee>(xy_ab, xy_cd)),
+            Avx512(_mm512_shuffle_ps::<0x44>(z_ab, z_cd)),
+        ]
+    }
+}
+
 /// Writes rows that are stored side by side, each `stride` rows after the one before.
 ///
 /// # Safety
@@ -111,6 +143,24 @@ impl Lanes<f64> for Avx512<__m512d> {
     #[inline(always)]
     unsafe fn to_rows([x, y, z]: [Self; 3], to: *mut [f64; 4], stride: usize) {
         unsafe {
+            if stride == 1 {
+                // x and y of each row, then z and 0 behind them.
+                let low = _mm512_setr_epi64(0, 8, 1, 9, 2, 10, 3, 11);
+                let high = _mm512_setr_epi64(4, 12, 5, 13, 6, 14, 7, 15);
+                let xy_low = _mm512_permutex2var_pd(x.0, low, y.0);
+                let xy_high = _mm512_permutex2var_pd(x.0, high, y.0);
+                let rows = |xy, [a, b, c, d]: [i64; 4], place: usize| {
+                    let index =
+                        _mm512_setr_epi64(a, b, 8 + place as i64, 0, c, d, 9 + place as i64, 0);
+                    let rows = _mm512_maskz_permutex2var_pd(0x77, xy, index, z.0);
+                    _mm512_storeu_pd(to.add(place).cast(), rows);
+                };
+                rows(xy_low, [0, 1, 2, 3], 0);
+                rows(xy_low, [4, 5, 6, 7], 2);
+                rows(xy_high, [0, 1, 2, 3], 4);
+                rows(xy_high, [4, 5, 6, 7], 6);
+                return;
+            }
             let zero = _mm512_setzero_pd();
             let (xy_even, xy_odd) = (_mm512_unpacklo_pd(x.0, y.0), _mm512_unpackhi_pd(x.0, y.0));
             let (z_even, z_odd) = (_mm512_unpacklo_pd(z.0, zero), _mm512_unpackhi_pd(z.0, zero));
@@ -269,21 +319,66 @@ impl Lanes<f32> for Avx512<__m512> {
     #[inline(always)]
     unsafe fn from_rows(rows: [*const [f32; 4]; MOST]) -> [Self; 3] {
         unsafe {
-            let (a, b) = (quarter(&rows, 0), quarter(&rows, 1));
-            let (c, d) = (quarter(&rows, 2), quarter(&rows, 3));
-            let (xy_ab, xy_cd) = (_mm512_unpacklo_ps(a, b), _mm512_unpacklo_ps(c, d));
-            let (z_ab, z_cd) = (_mm512_unpackhi_ps(a, b), _mm512_unpackhi_ps(c, d));
-            [
-                Self(_mm512_shuffle_ps::<0x44>(xy_ab, xy_cd)),
-                Self(_mm512_shuffle_ps::<0xee>(xy_ab, xy_cd)),
-                Self(_mm512_shuffle_ps::<0x44>(z_ab, z_cd)),
-            ]
+            columns_of([
+                quarter(&rows, 0),
+                quarter(&rows, 1),
+                quarter(&rows, 2),
+                quarter(&rows, 3),
+            ])
+        }
+    }
+
+    #[inline(always)]
+    unsafe fn gather_rows(from: *const f32, places: *const u32) -> [Self; 3] {
+        unsafe {
+            columns_of([
+                quarter_at(from, places, 0),
+                quarter_at(from, places, 1),
+                quarter_at(from, places, 2),
+                quarter_at(from, places, 3),
+            ])
         }
     }
 
     #[inline(always)]
     unsafe fn to_rows([x, y, z]: [Self; 3], to: *mut [f32; 4], stride: usize) {
         unsafe {
+            if stride == 1 {
+                // x and y of each row, then z and 0 behind them.
+                let low = _mm512_setr_epi32(0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23);
+                let high =
+                    _mm512_setr_epi32(8, 24, 9, 25, 10, 26, 11, 27, 12, 28, 13, 29, 14, 30, 15, 31);
+                let xy_low = _mm512_permutex2var_ps(x.0, low, y.0);
+                let xy_high = _mm512_permutex2var_ps(x.0, high, y.0);
+                let rows = |xy, first: i32, place: usize| {
+                    let (a, z_first) = (first, 16 + place as i32);
+                    let index = _mm512_setr_epi32(
+                        a,
+                        a + 1,
+                        z_first,
+                        0,
+                        a + 2,
+                        a + 3,
+                        z_first + 1,
+                        0,
+                        a + 4,
+                        a + 5,
+                        z_first + 2,
+                        0,
+                        a + 6,
+                        a + 7,
+                        z_first + 3,
+                        0,
+                    );
+                    let rows = _mm512_maskz_permutex2var_ps(0x7777, xy, index, z.0);
+                    _mm512_storeu_ps(to.add(place).cast(), rows);
+                };
+                rows(xy_low, 0, 0);
+                rows(xy_low, 8, 4);
+                rows(xy_high, 0, 8);
+                rows(xy_high, 8, 12);
+                return;
+            }
             let zero = _mm512_setzero_ps();
             let (xy, z_low) = (_mm512_unpacklo_ps(x.0, y.0), _mm512_unpacklo_ps(z.0, zero));
             store_quarter(_mm512_shuffle_ps::<0x44>(xy, z_low), to, 4 * stride);

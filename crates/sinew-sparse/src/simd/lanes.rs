@@ -60,6 +60,17 @@ pub(crate) trait Lanes<T: Real>: Copy {
             ]
         }
     }
+    /// [`Lanes::from_rows`] of the rows whose first numbers are at `from + places`, for each lane one.
+    #[inline(always)]
+    unsafe fn gather_rows(from: *const T, places: *const u32) -> [Self; 3] {
+        let mut rows = [std::ptr::null(); MOST];
+        for (lane, row) in rows.iter_mut().enumerate().take(T::LANES) {
+            // SAFETY: there is a place for each lane.
+            *row = unsafe { from.wrapping_add(*places.add(lane) as usize) }.cast();
+        }
+        // SAFETY: the addresses of rows.
+        unsafe { Self::from_rows(rows) }
+    }
     /// Writes three columns and one of zeros as rows of four numbers, `stride` rows apart.
     #[inline(always)]
     unsafe fn to_rows([x, y, z]: [Self; 3], to: *mut [T; 4], stride: usize) {

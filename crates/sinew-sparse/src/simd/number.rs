@@ -43,11 +43,12 @@ pub trait Number:
     /// Writes the lanes to the beginning of a slice, which has space for them.
     fn store(self, to: &mut [Self::Real]);
 
-    /// The first three numbers of each of some rows: lane by lane those at `places`, of which there is one for each lane. That they are within `from` is
-    /// not checked: with a check before each row, compilers keep all places on the stack meanwhile.
+    /// The first three numbers of each of some rows: lane by lane those of which the first is at one of `places` among the numbers of all rows, of which there is
+    /// one for each lane: four times the row, so that no address takes an instruction of its own. That they are within `from` is not checked: with a check before
+    /// each row, compilers keep all places on the stack meanwhile.
     ///
     /// # Safety
-    /// All places are below the length of `from`.
+    /// All places are four times a number below the length of `from`.
     unsafe fn gather_rows(from: &[[Self::Real; 4]], places: &[u32]) -> [Self; 3];
 
     /// The first three numbers of each of some rows, `stride` rows apart from the first.
@@ -189,7 +190,7 @@ macro_rules! scalar {
 
             #[inline(always)]
             unsafe fn gather_rows(from: &[[Self; 4]], places: &[u32]) -> [Self; 3] {
-                Self::load_rows(&from[places[0] as usize..], 1)
+                Self::load_rows(&from[places[0] as usize / 4..], 1)
             }
 
             #[inline(always)]

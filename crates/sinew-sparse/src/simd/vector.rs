@@ -242,13 +242,10 @@ impl<T: Real, V: Lanes<T>> Number for Vector<T, V> {
     #[inline(always)]
     unsafe fn gather_rows(from: &[[T; 4]], places: &[u32]) -> [Self; 3] {
         let places = &places[..T::LANES];
-        let mut rows = [std::ptr::null(); MOST];
-        for (row, place) in rows.iter_mut().zip(places) {
-            debug_assert!((*place as usize) < from.len());
-            *row = from.as_ptr().wrapping_add(*place as usize);
-        }
+        let is_row = |place: &u32| (*place as usize) < 4 * from.len() && place % 4 == 0;
+        debug_assert!(places.iter().all(is_row));
         // SAFETY: see `Vector`; each row is one of the slice, by the caller's promise.
-        let [x, y, z] = unsafe { V::from_rows(rows) };
+        let [x, y, z] = unsafe { V::gather_rows(from.as_ptr().cast(), places.as_ptr()) };
         [Self::new(x), Self::new(y), Self::new(z)]
     }
 
@@ -383,7 +380,16 @@ mod tests {
                 }
                 assert_eq!(rows[1], [N::Real::of(9.0); 4]);
             }
-            let backwards: Vec<u32> = (0..N::LANES as u32).rev().map(|lane| 2 * lane).collect();
+            let backwards: Vec<u32> = (0..N::LANES as u32).rev().map(|lane| 8 * lane).collect();
+            let mut block = vec![[N::Real::of(9.0); 4]; N::LANES];
+            N::store_rows([b, a, b], &mut block, 1);
+            for (lane, row) in block.iter().enumerate() {
+                let expected = [y(lane), x(lane), y(lane), 0.0];
+                for (found, expected) in row.iter().zip(expected) {
+                    let found = found.to_f64();
+                    assert!(found == expected || found.is_nan() && expected.is_nan());
+                }
+            }
             let [again, other, _] = N::load_rows(&rows, 2);
             close(again, &|a, _| a);
             close(other, &|_, b| b);

@@ -1,0 +1,120 @@
+//! The fastest plane waves through deformed tetrahedra.
+
+use sinew_core::EvaluationError;
+use sinew_sparse::simd::{InstructionSet, Number, Vectors, WithReal};
+
+use super::axes::Place;
+use super::beside::block_beside;
+use super::evaluator::{Asked, Evaluator, Typed, Untyped};
+use super::means::require;
+use super::memory::Relaxing;
+use super::product::left_of_tets;
+use super::region::HyperelasticRegion;
+use super::scratch::Scratch;
+use super::wanted::{OnLaw, Wanted};
+use crate::hyperelastic::{Bulk, HyperelasticLaw, LawAt, Tensor};
+
+/// The square (1/s^2) of the largest frequency of plane waves as short as a tetrahedron, over all tetrahedra of a region.
+///
+/// A wave along g that moves tissue along a has the modulus `a_i g_J A_iJkL a_k g_L`, A being the tangent of the tetrahedron's own deformation (Marsden and Hughes,
+/// Mathematical Foundations of Elasticity, 1983, section 3.4). Over all g it is at most the largest eigenvalue of `A_iJkJ`, which is one for isotropic laws but for the
+/// shear moduli. Elements that average strain have the frequency of their tetrahedra here: what counts is the growth since the body was at rest.
+pub(crate) struct Waves<'a> {
+    pub(super) region: &'a HyperelasticRegion,
+    pub(super) scratch: &'a Scratch,
+    pub(super) relaxing: Relaxing<'a>,
+    pub(super) set: InstructionSet,
+    /// The largest square so far.
+    pub(super) fastest: f64,
+}
+
+impl Waves<'_> {
+    /// True if plain numbers compute it: vectors do not take the stress beside the law's.
+    pub(super) fn take_numbers(&self) -> bool {
+        Wanted::Stiffest.has_beside(self.region)
+    }
+
+    /// Computes it with plain numbers.
+    pub(super) fn with_numbers(&mut self, law: &dyn Asked) -> Result<(), EvaluationError> {
+        law.with(Wanted::Stiffest, Ok(()), |law: &mut (dyn Untyped + '_)| {
+            self.tets::<true, f64, _>(law)
+        })
+    }
+
+    /// `ALL` is true if the stress beside the law's may contribute, which is compiled for plain numbers only.
+    #[inline(always)]
+    fn tets<const ALL: bool, N: Number<Real = f64>, E: Evaluator<N> + ?Sized>(
+        &mut self,
+        law: &mut E,
+    ) -> Result<(), EvaluationError> {
+        let (region, relaxing) = (self.region, &self.relaxing);
+        let (rest, speeds) = (&region.rest, region.wave_numbers());
+        let mut fastest = N::of(self.fastest);
+        for first in (0..rest.count()).step_by(N::LANES) {
+            let gradient = rest.gradient_of::<N>(first, &self.scratch.displacement);
+            let at = law.at(gradient, region.axes.as_ref(), Place::Tets(first));
+            let at = &*at;
+            require(at, region, relaxing, first)?;
+            let (share, bulk) = left_of_tets(region, relaxing, at, first);
+            let over = share.recip();
+            let bulk = Bulk {
+                stress: over * bulk.stress,
+                modulus: over * bulk.modulus,
+            };
+            let mut moduli = at.wave_moduli(bulk).scaled(share);
+            if ALL {
+                for axis in Tensor::<N>::identity().0 {
+                    let wanted = (Wanted::Stiffest, axis);
+                    let beside = block_beside(region, relaxing, first, at.deformation(), wanted);
+                    moduli = moduli + beside;
+                }
+            }
+            fastest = fastest.max(N::load(&speeds[first..]) * largest_eigenvalue(moduli));
+        }
+        for lane in 0..N::LANES {
+            self.fastest = self.fastest.max(fastest.lane(lane));
+        }
+        Ok(())
+    }
+}
+
+/// [`Waves`] with the type of the law.
+pub(super) struct OfLaw<'w, 'a> {
+    pub(super) waves: &'w mut Waves<'a>,
+    pub(super) untyped: &'w dyn Asked,
+}
+
+impl OnLaw for OfLaw<'_, '_> {
+    type Output = Result<(), EvaluationError>;
+
+    fn run<L: HyperelasticLaw>(self, law: L) -> Self::Output {
+        f64::with_vectors_or_numbers(self.waves.set, Sweep { of: self, law })
+    }
+}
+
+struct Sweep<'w, 'a, L> {
+    of: OfLaw<'w, 'a>,
+    law: L,
+}
+
+impl<L: HyperelasticLaw> WithReal<f64> for Sweep<'_, '_, L> {
+    type Output = Result<(), EvaluationError>;
+
+    #[inline(always)]
+    fn run<N: Number<Real = f64>>(self) -> Self::Output {
+        let OfLaw { waves, untyped } = self.of;
+        if N::LANES == 1 {
+            waves.with_numbers(untyped)
+        } else {
+            waves.tets::<false, N, _>(&mut Typed(&self.law))
+        }
+    }
+}
+
+/// A bound of the largest eigenvalue of a symmetric tensor, by its first two invariants: exact where two eigenvalues, the smaller ones, are equal.
+#[inline(always)]
+fn largest_eigenvalue<N: Number>(tensor: Tensor<N>) -> N {
+    let mean = N::of(1.0 / 3.0) * tensor.trace();
+    let spread = (tensor - Tensor::diagonal(mean)).squared();
+    (N::of(2.0 / 3.0) * spread).sqrt() + mean
+}
