@@ -118,9 +118,6 @@ const KEPT: f64 = 0.95;
 /// Growth of the fastest wave's square up to which the stable step is followed by it; with more a look tells.
 const MOST_FOLLOWED: f64 = 1.5;
 
-/// Growth of the fastest wave's square that is not expected within two steps.
-const MUCH_ROOM: f64 = 2.0;
-
 /// Parts after which a look tells again, where the wave alone, by what it was at rest, would allow longer ones than are taken.
 const PARTS_BETWEEN_DOUBTS: u32 = 24;
 
@@ -401,11 +398,6 @@ impl Substepped {
         (batch, state): (&mut Batch<'_>, &mut State),
     ) -> Result<u32, StepError> {
         let part = batch.dt() * f64::from(self.finer);
-        // With much room every other step tells enough.
-        let is_second = cut.taken / parts % 2 == 1;
-        if is_second && Known::of(cut).allows(MUCH_ROOM * cut.seen, part) {
-            return Ok(parts);
-        }
         let wave = self.wave(batch, state)?;
         if let Some(wave) = wave
             && self.is_followed(cut, wave, part)
