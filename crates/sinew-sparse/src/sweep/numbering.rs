@@ -71,6 +71,12 @@ impl Numbering {
         self.position[cell as usize] as usize
     }
 
+    /// The position of each cell.
+    #[must_use]
+    pub fn all(&self) -> &[u32] {
+        &self.position
+    }
+
     /// The cell at a position, where there is one.
     #[must_use]
     pub fn cell(&self, position: usize) -> Option<u32> {
