@@ -4,9 +4,11 @@ use std::collections::HashMap;
 
 use sinew_mesh::{CutBody, CutMesh, TetMesh};
 
+use crate::around::Around;
 use crate::error::CutError;
 use crate::incidence::Incidence;
 use crate::marks::Marks;
+use crate::near::NearNodes;
 use crate::passed::Passed;
 use crate::properties::TetProperties;
 use crate::report::{Removal, Stroke};
@@ -51,6 +53,8 @@ pub struct CuttableBody {
     pub(crate) stroke: Stroke,
     pub(crate) removal: Removal,
     pub(crate) room: Room,
+    pub(crate) near: NearNodes,
+    pub(crate) around: Around,
 }
 
 /// Lists that strokes use again.
@@ -86,7 +90,7 @@ impl Room {
         self.touched.clear();
         self.passed.clear();
         self.queue.clear();
-        self.nodes.resize(nodes);
+        self.nodes.start(nodes);
     }
 
     /// Queues a tetrahedron that this search has not seen yet.
@@ -182,6 +186,8 @@ impl CuttableBody {
                 is_listed: none(),
                 look: 0,
             },
+            near: NearNodes::with_room(nodes + spare),
+            around: Around::with_room(nodes + spare, tets),
         })
     }
 
@@ -286,9 +292,19 @@ impl CuttableBody {
     /// True if a blade, a segment between two ends (m), is inside the body when its nodes have these positions (m).
     #[must_use]
     pub fn holds(&self, [from, to]: [[f64; 3]; 2], positions: &[[f64; 3]]) -> bool {
+        self.has_among(0..positions.len() as u32, [from, to], positions)
+    }
+
+    /// True if a blade is inside the body, of whose nodes all that are near it are among these.
+    pub(crate) fn has_among(
+        &self,
+        nodes: impl Iterator<Item = u32>,
+        [from, to]: [Vector; 2],
+        positions: &[Vector],
+    ) -> bool {
         let is_near = self.is_near(bounds_of([from, to]));
-        let near = (0..).zip(positions).filter(|(_, place)| is_near(place));
-        let mut tets = near.flat_map(|(node, _)| self.incidence.of(node));
+        let near = nodes.filter(|node| is_near(&positions[*node as usize]));
+        let mut tets = near.flat_map(|node| self.incidence.of(node));
         tets.any(|tet| {
             let vertices = self.tets[*tet as usize].map(|node| positions[node as usize]);
             crate::tet::is_met(&vertices, [from, to])

@@ -7,8 +7,9 @@ use crate::report::Stroke;
 use crate::seen::Flat;
 use crate::sheet::Sheet;
 use crate::tet::{EDGES, FACES};
+use crate::touch::Seeing;
 use crate::uncut::Uncut;
-use sinew_mesh::vector::{Vector, cross, length, sub};
+use sinew_mesh::vector::{Vector, bounds_of, cross, length, sub};
 
 /// Passes over the tetrahedra that a sheet touches in which these may change sides.
 const SMOOTHING: usize = 2;
@@ -54,6 +55,12 @@ impl CuttableBody {
             }
             self.marks.start_anew();
         }
+        let [before, after] = poses;
+        let near = bounds_of([before[0], before[1], after[0], after[1]]);
+        let (edge, last) = (self.longest_edge, &self.marks.places);
+        if self.near.find(near, edge, positions, last) {
+            self.around.is_known = false;
+        }
         match self.swept(poses, positions) {
             Some(sheet) => {
                 let sheet = self.turned_as_before(&sheet);
@@ -62,13 +69,18 @@ impl CuttableBody {
             }
             None => self.room.start_look(positions.len()),
         }
+        if !self.stroke.moved.is_empty() {
+            self.near.forget();
+        }
         self.keep_course(poses, positions);
         self.marks.keep_places(positions);
+        self.near.end();
         Ok(&self.stroke)
     }
 
     fn cut_by(&mut self, sheet: &Sheet, positions: &mut Vec<Vector>, snap: f64) {
-        self.find_touched(sheet, positions);
+        let seeing = Seeing::new(sheet, self.marks.heading, self.longest_edge);
+        self.find_touched(&seeing, positions);
         if snap > 0.0 {
             self.snap(sheet, positions, snap);
             if !self.stroke.moved.is_empty() {
@@ -82,7 +94,7 @@ impl CuttableBody {
         for of_tet in &touched {
             self.mark(*of_tet);
         }
-        self.find_left(&touched, sheet, positions);
+        self.find_left(&touched, &seeing, positions);
         let left = std::mem::take(&mut self.room.left);
         let both = || touched.iter().map(|(tet, _)| tet).chain(&left);
         for tet in both() {

@@ -32,6 +32,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod around;
 mod body;
 mod course;
 mod cut;
@@ -39,6 +40,7 @@ mod drift;
 mod error;
 mod incidence;
 mod marks;
+mod near;
 mod passed;
 mod pieces;
 mod properties;

@@ -55,6 +55,7 @@ impl CuttableBody {
 
     /// Takes the tetrahedra of a removal away.
     fn take_away(&mut self, mut removal: Removal, positions: &mut Vec<[f64; 3]>) -> &Removal {
+        self.near.forget();
         for tet in removal.tets.iter().copied() {
             let nodes = self.tets[tet as usize];
             removal.mass += self.mass_of(tet);

@@ -51,6 +51,12 @@ impl Stroke {
         self.changed_tets.clear();
     }
 
+    /// True if nodes were moved or copied, so that the body is another one than before.
+    #[must_use]
+    pub fn changes_nodes(&self) -> bool {
+        !(self.moved.is_empty() && self.copied.is_empty())
+    }
+
     /// True if nothing changed.
     #[must_use]
     pub fn is_empty(&self) -> bool {

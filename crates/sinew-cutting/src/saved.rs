@@ -83,6 +83,7 @@ impl CuttableBody {
         self.tets.clone_from(tets);
         self.is_removed.clone_from(is_removed);
         self.marks = marks.with_space(spare);
+        self.near.forget();
         Ok(())
     }
 }

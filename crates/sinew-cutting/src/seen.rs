@@ -1,5 +1,7 @@
 //! The nodes of a body as a sheet sees them.
 
+use crate::sheet::Sheet;
+
 /// A point of tissue, brought to the plane of a sheet along its normal.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Flat {
@@ -34,6 +36,15 @@ impl Flat {
     }
 }
 
+/// Bounds of a sheet in its plane.
+pub(crate) struct Outlines([[f64; 2]; 2]);
+
+impl Outlines {
+    pub(crate) fn of(sheet: &Sheet) -> Self {
+        Self(sheet.flat_bounds())
+    }
+}
+
 /// Positions of the nodes relative to the current sheet: each is computed once, for all tetrahedra at the node.
 #[derive(Default)]
 pub(crate) struct SeenNodes {
@@ -41,6 +52,10 @@ pub(crate) struct SeenNodes {
     flats: Vec<Flat>,
     /// The search in which each was seen.
     looks: Vec<u32>,
+    /// Those that the current search has seen.
+    seen: Vec<u32>,
+    /// What each is wholly beyond, one bit each: four edges of the sheet's bounds, and its plane to either side.
+    beyond: Vec<u8>,
 }
 
 impl SeenNodes {
@@ -49,11 +64,15 @@ impl SeenNodes {
             distances: Vec::with_capacity(nodes),
             flats: Vec::with_capacity(nodes),
             looks: Vec::with_capacity(nodes),
+            seen: Vec::with_capacity(nodes),
+            beyond: Vec::with_capacity(nodes),
         }
     }
 
-    /// Resizes the lists to `nodes` nodes.
-    pub(crate) fn resize(&mut self, nodes: usize) {
+    /// Starts a search in a body of `nodes` nodes.
+    pub(crate) fn start(&mut self, nodes: usize) {
+        self.seen.clear();
+        self.beyond.resize(nodes, 0);
         self.distances.resize(nodes, 0.0);
         self.flats.resize(nodes, Flat::default());
         self.looks.resize(nodes, 0);
@@ -75,7 +94,46 @@ impl SeenNodes {
 
     /// True if a node is seen for the first time in search number `look`.
     pub(crate) fn is_new(&mut self, node: u32, look: u32) -> bool {
-        std::mem::replace(&mut self.looks[node as usize], look) != look
+        let is_new = std::mem::replace(&mut self.looks[node as usize], look) != look;
+        if is_new {
+            self.seen.push(node);
+        }
+        is_new
+    }
+
+    /// Finds for each node that the search has seen what it is wholly beyond.
+    pub(crate) fn outline(&mut self, Outlines([mut low, mut high]): Outlines) {
+        // As far as any of them has moved.
+        for axis in 0..2 {
+            let (mut back, mut ahead) = (0.0_f64, 0.0_f64);
+            for node in &self.seen {
+                let shift = self.flats[*node as usize].shift[axis];
+                (back, ahead) = (back.min(shift), ahead.max(shift));
+            }
+            low[axis] += back;
+            high[axis] += ahead;
+        }
+        for node in &self.seen {
+            let node = *node as usize;
+            let Flat { place: [x, y], .. } = self.flats[node];
+            let distance = self.distances[node];
+            let are = [
+                x < low[0],
+                y < low[1],
+                x > high[0],
+                y > high[1],
+                distance < 0.0,
+                distance > 0.0,
+            ];
+            let bits = are.into_iter().rev();
+            self.beyond[node] = bits.fold(0, |all, is| all << 1 | u8::from(is));
+        }
+    }
+
+    /// False only if the sheet passes nothing of a tetrahedron, whose nodes were outlined: all of them are beyond the same.
+    pub(crate) fn may_be_passed(&self, nodes: [u32; 4]) -> bool {
+        let [a, b, c, d] = nodes.map(|node| self.beyond[node as usize]);
+        a & b & c & d == 0
     }
 
     /// Takes a node as it is seen now: its distance from the plane and its place in it.

@@ -128,6 +128,11 @@ impl Sheet {
         }
     }
 
+    /// The box in its plane outside of which nothing is passed, unless it has moved in the plane: the least and greatest coordinates.
+    pub(crate) fn flat_bounds(&self) -> [[f64; 2]; 2] {
+        self.flat_bounds
+    }
+
     /// True if no point between these points is passed, by the bounding box of their positions in the plane alone.
     pub(crate) fn is_outside(&self, points: &[Flat]) -> bool {
         let [low, high] = self.flat_bounds;
@@ -144,11 +149,19 @@ impl Sheet {
 
     /// True if the blade passes a point. Relative to tissue that has moved, the blade began farther on by the same
     /// amount. Without that, tissue that moves towards a blade would slip through between two sheets.
+    #[inline]
     pub(crate) fn passes(&self, point: Flat) -> bool {
-        if self.is_outside(&[point]) {
-            return false;
-        }
         let Flat { place, shift } = point;
+        let [low, high] = self.flat_bounds;
+        let is_outside = |axis: usize| {
+            place[axis] < low[axis] + shift[axis].min(0.0)
+                || place[axis] > high[axis] + shift[axis].max(0.0)
+        };
+        !(is_outside(0) || is_outside(1)) && self.covers(point)
+    }
+
+    /// True if the blade passes a point within the bounds.
+    fn covers(&self, Flat { place, shift }: Flat) -> bool {
         let [dx, dy] = shift;
         let [a, b, c, d] = self.corners_flat;
         let [a, b] = [a, b].map(|[x, y]| [x + dx, y + dy]);

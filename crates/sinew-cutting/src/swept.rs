@@ -62,11 +62,14 @@ impl CuttableBody {
         }
         let along = scaled(blade, 1.0 / squared);
         let reach = self.longest_edge;
-        let [low, high] = bounds_of([before[0], before[1], after[0], after[1]]);
+        let bounds = bounds_of([before[0], before[1], after[0], after[1]]);
+        let [low, high] = bounds;
         let mut sums = Sums::default();
         let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
         let mut is_moved = false;
-        for (was, is) in self.marks.places.iter().zip(positions) {
+        for node in self.near.since_last(bounds, positions.len()) {
+            let of_node = |places: &[Vector]| places[node as usize];
+            let [was, is] = [of_node(&self.marks.places), of_node(positions)];
             let comes_near = (0..3).all(|axis| {
                 was[axis].min(is[axis]) <= high[axis] + reach
                     && low[axis] - reach <= was[axis].max(is[axis])
@@ -74,7 +77,7 @@ impl CuttableBody {
             if !comes_near {
                 continue;
             }
-            let (from, moved) = (sub(*was, before[0]), sub(*is, *was));
+            let (from, moved) = (sub(was, before[0]), sub(is, was));
             let share = dot(from, along);
             let apart = sub(from, scaled(blade, share));
             let near = dot(apart, apart) / (NEAR * reach).powi(2);

@@ -3,7 +3,7 @@
 use crate::body::{CuttableBody, NONE};
 use crate::marks::NodeSide;
 use crate::passed::Passed;
-use crate::seen::Flat;
+use crate::seen::{Flat, Outlines};
 use crate::sheet::Sheet;
 use crate::tet::{EDGES, FACES};
 use sinew_mesh::vector::{Vector, dot, sub};
@@ -40,6 +40,68 @@ impl Beside {
     }
 }
 
+/// A sheet as nodes are seen beside it, with what is the same for all of them.
+pub(crate) struct Seeing<'a> {
+    sheet: &'a Sheet,
+    turn: Option<Turn>,
+}
+
+/// The turn of a blade between two sheets, by which it may pass nodes that no sheet covers.
+struct Turn {
+    /// The directions in which it went and goes.
+    last: Vector,
+    now: Vector,
+    /// The first end of the blade.
+    first: Vector,
+    blade: Vector,
+    /// The blade's length squared.
+    squared: f64,
+    /// Distance (m) within which nodes are at its edge: sheets of different planes do not meet to the last digit.
+    room: f64,
+}
+
+impl<'a> Seeing<'a> {
+    /// As a blade sees that has gone in direction `last` before.
+    pub(crate) fn new(sheet: &'a Sheet, last: Option<Vector>, longest_edge: f64) -> Self {
+        let turn = |last: Vector| {
+            let (now, [[first, end], _]) = (sheet.heading(), sheet.poses());
+            let blade = sub(end, first);
+            (dot(last, now) > 0.0).then(|| Turn {
+                last,
+                now,
+                first,
+                blade,
+                squared: dot(blade, blade),
+                room: AT_EDGE * longest_edge,
+            })
+        };
+        Self {
+            sheet,
+            turn: last.and_then(turn),
+        }
+    }
+
+    /// True if a node that lay ahead of the blade, at a place before the sheet, now lies behind it because the blade's direction has turned. Nodes on
+    /// the outer side of the turn do.
+    fn passes_by_turn(&self, before: Vector) -> bool {
+        let Some(Turn {
+            last,
+            now,
+            first,
+            blade,
+            squared,
+            room,
+        }) = self.turn
+        else {
+            return false;
+        };
+        // Seen from the node, which has moved, the blade began here.
+        let from = sub(before, sub(first, self.sheet.drift_at(before)));
+        let share = dot(from, blade) / squared;
+        (0.0..=1.0).contains(&share) && dot(last, from) > -room && dot(now, from) < room
+    }
+}
+
 impl CuttableBody {
     /// A tetrahedron, whose nodes this search has seen, beside the sheet.
     pub(crate) fn beside(&self, tet: u32) -> Beside {
@@ -47,16 +109,23 @@ impl CuttableBody {
     }
 
     /// Sees the nodes of a tetrahedron that this search has not seen yet.
-    fn see_nodes(&mut self, tet: u32, sheet: &Sheet, positions: &[Vector]) {
+    fn see_nodes(&mut self, tet: u32, seeing: &Seeing<'_>, positions: &[Vector]) {
         for node in self.tets[tet as usize] {
-            if self.room.nodes.is_new(node, self.room.look) {
-                self.see_node(node, sheet, positions[node as usize]);
-                self.pass(node, sheet, positions[node as usize]);
-            }
+            self.see_anew(node, seeing, positions);
+        }
+    }
+
+    /// Sees a node that this search may not have seen yet.
+    #[inline]
+    fn see_anew(&mut self, node: u32, seeing: &Seeing<'_>, positions: &[Vector]) {
+        if self.room.nodes.is_new(node, self.room.look) {
+            self.see_node(node, seeing.sheet, positions[node as usize]);
+            self.pass(node, seeing, positions[node as usize]);
         }
     }
 
     /// Sees a node, which is here now.
+    #[inline]
     pub(crate) fn see_node(&mut self, node: u32, sheet: &Sheet, place: Vector) {
         let distance = sheet.distance(place);
         let least = ON_SHEET * self.edge_at(node);
@@ -72,33 +141,16 @@ impl CuttableBody {
     }
 
     /// Notes a node that this search has seen and is here now, where the blade passes it for the first time.
-    fn pass(&mut self, node: u32, sheet: &Sheet, place: Vector) {
+    fn pass(&mut self, node: u32, seeing: &Seeing<'_>, place: Vector) {
         let (distance, flat) = self.room.nodes.of(node);
         if self.marks.has_passed(node) {
             return;
         }
-        if sheet.passes(flat) || self.is_passed_by_turn(node, sheet, place) {
+        let before = || sub(place, self.marks.moved(node, place));
+        if seeing.sheet.passes(flat) || seeing.passes_by_turn(before()) {
             self.marks.pass_node(node, distance);
             self.room.passed.push(node);
         }
-    }
-
-    /// True if a node that lay ahead of the blade now lies behind it because the blade's direction has turned. Nodes on
-    /// the outer side of the turn do.
-    fn is_passed_by_turn(&self, node: u32, sheet: &Sheet, place: Vector) -> bool {
-        let Some(last) = self.marks.heading else {
-            return false;
-        };
-        let (now, [[first, end], _]) = (sheet.heading(), sheet.poses());
-        // Seen from the node, which has moved, the blade began here.
-        let before = sub(place, self.marks.moved(node, place));
-        let from = sub(before, sub(first, sheet.drift_at(before)));
-        let blade = sub(end, first);
-        let share = dot(from, blade) / dot(blade, blade);
-        let is_beside = (0.0..=1.0).contains(&share);
-        // Sheets of different planes do not meet to the last digit.
-        let room = AT_EDGE * self.longest_edge;
-        is_beside && dot(last, now) > 0.0 && dot(last, from) > -room && dot(now, from) < room
     }
 
     /// Edges, vertices and faces that a sheet passes, of a tetrahedron whose nodes this search has seen.
@@ -158,22 +210,38 @@ impl CuttableBody {
 
     /// Finds the tetrahedra that a sheet touches, increasing, into `room.touched`: from nodes near it, and on from neighbour to
     /// neighbour, so that tetrahedra stretched beyond all measure are found where another one leads to them.
-    pub(crate) fn find_touched(&mut self, sheet: &Sheet, positions: &[Vector]) {
+    pub(crate) fn find_touched(&mut self, seeing: &Seeing<'_>, positions: &[Vector]) {
         self.room.start_look(positions.len());
-        let is_near = self.is_near(sheet.bounds());
-        for (node, _) in (0..).zip(positions).filter(|(_, place)| is_near(place)) {
-            for tet in self.incidence.of(node) {
-                self.room.see(*tet);
-            }
+        let bounds = seeing.sheet.bounds();
+        let is_near = self.is_near(bounds);
+        let is_near = |node: u32| is_near(&positions[node as usize]);
+        let mut around = std::mem::take(&mut self.around);
+        // A sheet that reaches out of what is known is beside all nodes.
+        let is_known = self.near.knows(bounds, positions.len());
+        if !(is_known && around.is_known) {
+            let listed = self.near.of(bounds, positions.len());
+            around.take(listed, &self.incidence, &self.tets, positions.len());
         }
-        let is_out = self.room.queue.is_empty();
+        around.find(is_near);
+        let is_out = around.tets().is_empty();
         if std::mem::replace(&mut self.marks.course.is_out, is_out) && !is_out {
             // The blade comes in again, and to the sides of it is other tissue.
             self.marks.forget_passed();
         }
+        for node in around.nodes_beside() {
+            self.see_anew(*node, seeing, positions);
+        }
+        self.room.nodes.outline(Outlines::of(seeing.sheet));
+        for (tet, nodes) in around.tets() {
+            if self.room.nodes.may_be_passed(*nodes) {
+                self.room.see(*tet);
+            }
+        }
+        around.is_known = is_known;
+        self.around = around;
         while let Some(tet) = self.room.queue.pop() {
-            self.see_nodes(tet, sheet, positions);
-            let passed = self.passed(tet, sheet);
+            self.see_nodes(tet, seeing, positions);
+            let passed = self.passed(tet, seeing.sheet);
             if !passed.is_any() {
                 continue;
             }
@@ -192,7 +260,7 @@ impl CuttableBody {
     pub(crate) fn find_left(
         &mut self,
         touched: &[(u32, Passed)],
-        sheet: &Sheet,
+        seeing: &Seeing<'_>,
         positions: &[Vector],
     ) {
         let mut left = std::mem::take(&mut self.room.left);
@@ -207,13 +275,13 @@ impl CuttableBody {
                 if std::mem::replace(listed_in, self.room.look) == self.room.look {
                     continue;
                 }
-                self.see_nodes(tet, sheet, positions);
+                self.see_nodes(tet, seeing, positions);
                 let neighbours = self.neighbours[tet as usize];
                 let neighbours = neighbours.into_iter().filter(|other| *other != NONE);
                 let is_entered = |other: u32| self.marks.of(other).is_entered();
                 if self.beside(tet).is_at_plane() || neighbours.clone().any(is_entered) {
                     for other in neighbours {
-                        self.see_nodes(other, sheet, positions);
+                        self.see_nodes(other, seeing, positions);
                     }
                     left.push(tet);
                 }

@@ -147,12 +147,15 @@ impl CuttableBody {
 
     /// Follows how far a stroke goes through the body, by a blade that came from one pose to another.
     pub(crate) fn keep_course(&mut self, [before, after]: [[Vector; 2]; 2], positions: &[Vector]) {
-        let holds = |place: [Vector; 2]| self.holds(place, positions);
-        let begins_within = self.marks.course.blade.is_none() && holds(before);
-        let is_rimmed =
-            begins_within || self.is_touched() && after.into_iter().any(|end| holds([end, end]));
+        let holds = |blade: [Vector; 2]| {
+            let nodes = self.near.of(bounds_of(blade), positions.len());
+            self.has_among(nodes, blade, positions)
+        };
+        let is_rimmed = self.marks.course.is_rimmed
+            || self.marks.course.blade.is_none() && holds(before)
+            || self.is_touched() && after.into_iter().any(|end| holds([end, end]));
         let course = &mut self.marks.course;
-        course.is_rimmed |= is_rimmed;
+        course.is_rimmed = is_rimmed;
         course.blade = Some(after);
     }
 }

@@ -125,6 +125,16 @@ impl Cells {
         std::array::from_fn(|axis| if pinned[axis] { 0.0 } else { values[axis] })
     }
 
+    /// The node of each cell, and what [`Cells::at_cell`] is for it.
+    pub(crate) fn each_value(&self, values: &[f64]) -> impl Iterator<Item = (u32, [f64; 3])> {
+        let (values, pinned) = (values.as_chunks::<3>().0, self.pinned.as_chunks::<3>().0);
+        let cells = self.nodes.iter().zip(values.iter().zip(pinned));
+        cells.map(|(node, (values, pinned))| {
+            let value = |axis: usize| if pinned[axis] { 0.0 } else { values[axis] };
+            (*node, [value(0), value(1), value(2)])
+        })
+    }
+
     /// True if some node is held in some directions only.
     pub(crate) fn partly_held(&self) -> bool {
         let wholly_held = self.cell_of_node.len() - self.nodes.len();

@@ -296,9 +296,26 @@ impl CutModel {
         state: &mut State,
         inputs: &Inputs,
     ) -> Result<CutReport, CutModelError> {
+        self.follow_telling(poses, state, inputs, |_| ())
+    }
+
+    /// As [`CutModel::follow`]; `tell` is called with the state before it is changed, where it is.
+    ///
+    /// # Errors
+    /// Same as [`CutModel::stroke`].
+    pub fn follow_telling(
+        &mut self,
+        poses: [[[f64; 3]; 2]; 2],
+        state: &mut State,
+        inputs: &Inputs,
+        tell: impl FnOnce(&State),
+    ) -> Result<CutReport, CutModelError> {
         self.find_positions(state, inputs)?;
         let nodes = self.body.nodes();
-        self.body.follow(poses, &mut self.positions, self.snap)?;
+        let stroke = self.body.follow(poses, &mut self.positions, self.snap)?;
+        if stroke.changes_nodes() {
+            tell(state);
+        }
         self.split(nodes, state, inputs)
     }
 
@@ -530,7 +547,7 @@ impl CutModel {
     ) -> Result<CutReport, CutModelError> {
         let stroke = self.body.last_stroke();
         let mut report = CutReport::of_stroke(stroke);
-        if stroke.moved.is_empty() && stroke.copied.is_empty() {
+        if !stroke.changes_nodes() {
             return Ok(report);
         }
         match &mut self.in_place {

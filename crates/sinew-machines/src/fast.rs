@@ -7,7 +7,7 @@ use sinew_cnn::{
     self as program, FollowedLoad, LoadAt, Loads, Machine, Program, Register, StepTime, Sweep,
 };
 use sinew_core::{
-    Acceleration, Batch, Contact, ElementForces, ElementPrecision, ElementSweep, Equations,
+    Acceleration, Batch, Contact, ElementForces, ElementPrecision, ElementSweep, Equations, Inputs,
     LinearOperators, LoadTime, Meeting, Revision, ShowCells, Shown, State, Step, StepError,
     StepReport, Stepped, SweepShape, System, VelocityTime,
 };
@@ -405,7 +405,7 @@ impl<T: ElementPrecision> Running<'_, '_, T> {
             is_last: true,
             limit: T::of(most),
         };
-        write(self.loaded).begin(self.layout, state);
+        write(self.loaded).begin(self.layout, state, (self.operators, batch.inputs()));
         if has_contact {
             write(self.loaded).look_at_largest(&state.u);
         }
@@ -578,9 +578,14 @@ impl<T: ElementPrecision> Loaded<T> {
     }
 
     /// Begins a batch.
-    fn begin(&mut self, layout: &Layout<T>, state: &State) {
+    fn begin(
+        &mut self,
+        layout: &Layout<T>,
+        state: &State,
+        (operators, inputs): (&LinearOperators, &Inputs),
+    ) {
         self.followed.forget();
-        self.forces.forget();
+        self.forces.begin(operators, inputs);
         self.take(layout, state);
     }
 
@@ -677,9 +682,9 @@ impl<T: ElementPrecision> Loaded<T> {
             let layers = self.fields.layers();
             for layer in 0..layers {
                 let out = self.fields.layer(field, layer);
-                let cells = values.chunks_exact(layers);
-                for (cell, position) in cells.zip(layout.numbering.positions_of_cells()) {
-                    out[*position as usize] = T::of(cell[layer]);
+                let of_cells = values.chunks_exact(layers);
+                for (value, position) in of_cells.zip(layout.numbering.all()) {
+                    out[*position as usize] = T::of(value[layer]);
                 }
             }
         }
@@ -696,9 +701,9 @@ impl<T: ElementPrecision> Loaded<T> {
             let layers = self.fields.layers();
             for layer in 0..layers {
                 let from = self.fields.layer(field, layer);
-                let cells = values.chunks_exact_mut(layers);
-                for (cell, position) in cells.zip(layout.numbering.positions_of_cells()) {
-                    cell[layer] = from[*position as usize].to_f64();
+                let of_cells = values.chunks_exact_mut(layers);
+                for (value, position) in of_cells.zip(layout.numbering.all()) {
+                    value[layer] = from[*position as usize].to_f64();
                 }
             }
         }

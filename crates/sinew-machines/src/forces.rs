@@ -1,7 +1,7 @@
 //! Loads in the order of a machine.
 
 use sinew_cnn::{Loads, StepTime};
-use sinew_core::{LinearOperators, Load};
+use sinew_core::{Inputs, LinearOperators, Load, Revision};
 use sinew_sparse::sweep::{CHUNK, Fields, Numbering, Precision};
 
 /// The forces of a sweep: written again only when a load's factor changes.
@@ -9,6 +9,8 @@ use sinew_sparse::sweep::{CHUNK, Fields, Numbering, Precision};
 pub(crate) struct Forces {
     /// Address of each load that is in the field, and its factor. Loads stay where they are during a batch.
     present: Vec<(usize, f64)>,
+    /// Identity of the loads in the field; `None` if some are no system's own.
+    of: Option<[Revision; 2]>,
     wanted: Vec<(usize, f64)>,
     /// Positions and layers that are not 0.
     touched: Vec<(u32, u32)>,
@@ -23,15 +25,22 @@ impl Forces {
         let entries = loads.iter().map(|load| load.entries.len()).sum();
         Self {
             present: Vec::with_capacity(loads.len() + 1),
+            of: None,
             wanted: Vec::with_capacity(loads.len() + 1),
             touched: Vec::with_capacity(entries),
             loaded: vec![false; positions.div_ceil(CHUNK * T::LANES)],
         }
     }
 
-    /// Forgets which loads are in the field, so that the next ones are written.
-    pub(crate) fn forget(&mut self) {
-        self.present.clear();
+    /// Begins a batch. Forgets which loads are in the field, so that the next ones are written, unless they are the system's own and the same as in the
+    /// batch before.
+    pub(crate) fn begin(&mut self, operators: &LinearOperators, inputs: &Inputs) {
+        let revisions = [operators.revision(), operators.loads_revision()];
+        let of = (inputs.forces().len() == 0).then_some(revisions);
+        if of.is_none() || self.of != of {
+            self.present.clear();
+        }
+        self.of = of;
     }
 
     /// Writes the loads of a sweep.

@@ -1,6 +1,7 @@
 //! Settings of machines.
 
 use std::num::NonZero;
+use std::sync::OnceLock;
 
 use sinew_sparse::simd::InstructionSet;
 
@@ -81,7 +82,10 @@ impl Threads {
     /// Their largest number on this machine.
     #[must_use]
     pub fn most(self) -> usize {
-        let all = || std::thread::available_parallelism().map_or(1, NonZero::get);
+        // It is asked for once: the system reads several files for it.
+        static ALL: OnceLock<usize> = OnceLock::new();
+        let all =
+            || *ALL.get_or_init(|| std::thread::available_parallelism().map_or(1, NonZero::get));
         match self {
             Self::One => 1,
             Self::UpTo(most) => all().min(most.get() as usize),

@@ -5,6 +5,7 @@
 
 mod allocation;
 mod common;
+mod kept_nodes;
 mod moving;
 mod planes;
 mod random_strokes;

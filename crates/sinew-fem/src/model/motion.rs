@@ -202,8 +202,8 @@ impl Model {
     ) -> Result<(), FieldError> {
         self.require_dofs("the vector", values)?;
         require_inputs(self.motions.ramps(), when.inputs())?;
-        for (cell, node) in self.body.cells.nodes.iter().enumerate() {
-            take(*node, self.body.cells.at_cell(values, cell));
+        for (node, value) in self.body.cells.each_value(values) {
+            take(node, value);
         }
         let at = self.motions.at(when, field);
         for node in self.motions.moved() {

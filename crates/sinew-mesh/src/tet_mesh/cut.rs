@@ -1,7 +1,5 @@
 //! The mesh of a body that was cut.
 
-use std::collections::HashMap;
-
 use super::surface::OUTWARD_FACES;
 use super::{Group, GroupMembers, TetData, TetMesh};
 
@@ -112,8 +110,8 @@ impl TetMesh {
             tets: left().map(|tet| tet as u32).collect(),
         };
         let parts = |group: &Group| match &group.members {
-            GroupMembers::Triangles(parts) => parts.iter().map(|part| sorted(part)).collect(),
-            GroupMembers::Lines(parts) => parts.iter().map(|part| sorted(part)).collect(),
+            GroupMembers::Triangles(parts) => parts.iter().map(|part| part_key(part)).collect(),
+            GroupMembers::Lines(parts) => parts.iter().map(|part| part_key(part)).collect(),
             GroupMembers::Tets(_) | GroupMembers::Nodes(_) => Vec::new(),
         };
         let owners = Owners::new(self, self.groups.iter().flat_map(parts));
@@ -130,7 +128,7 @@ impl CutMesh {
     /// The triangles of the uncut mesh that are left, each following the first tetrahedron that has it.
     #[must_use]
     pub fn triangles(&self, uncut: &TetMesh, triangles: &[[u32; 3]]) -> Vec<[u32; 3]> {
-        let owners = Owners::new(uncut, triangles.iter().map(|part| sorted(part)));
+        let owners = Owners::new(uncut, triangles.iter().map(|part| part_key(part)));
         self.followed(uncut, &owners, triangles)
     }
 
@@ -211,22 +209,41 @@ impl TetData {
 }
 
 /// The first tetrahedron that has each of some triangles and lines.
-pub(super) struct Owners(HashMap<Vec<u32>, Option<u32>>);
+pub(super) struct Owners {
+    /// The parts by their nodes, increasing.
+    parts: Vec<PartKey>,
+    /// The tetrahedron that has each, or [`NONE`].
+    owners: Vec<u32>,
+}
+
+/// The nodes of a triangle or a line in ascending order; of a line the third one is [`NONE`].
+pub(super) type PartKey = [u32; 3];
 
 impl Owners {
-    /// `parts` have their nodes in ascending order.
-    pub(super) fn new(mesh: &TetMesh, parts: impl Iterator<Item = Vec<u32>>) -> Self {
-        let mut owners: HashMap<Vec<u32>, Option<u32>> = parts.map(|part| (part, None)).collect();
+    pub(super) fn new(mesh: &TetMesh, parts: impl Iterator<Item = PartKey>) -> Self {
+        let mut parts: Vec<PartKey> = parts.collect();
+        parts.sort_unstable();
+        parts.dedup();
+        let mut owners = Self {
+            owners: vec![NONE; parts.len()],
+            parts,
+        };
         let mut is_corner = vec![false; mesh.points.len()];
-        owners
-            .keys()
-            .flatten()
+        let corners = owners.parts.iter().flatten();
+        corners
+            .filter(|node| **node != NONE)
             .for_each(|node| is_corner[*node as usize] = true);
         for (tet, corners) in (0..).zip(&mesh.tets) {
+            let are_corners = corners.map(|node| is_corner[node as usize]);
+            if are_corners.iter().filter(|is_corner| **is_corner).count() < 2 {
+                continue;
+            }
             let mut own = |part: &[u32]| {
                 let is_known = part.iter().all(|node| is_corner[*node as usize]);
-                if let Some(owner) = is_known.then(|| owners.get_mut(&sorted(part))).flatten() {
-                    owner.get_or_insert(tet);
+                if let Some(place) = is_known.then(|| owners.place(part)).flatten()
+                    && owners.owners[place] == NONE
+                {
+                    owners.owners[place] = tet;
                 }
             };
             for face in OUTWARD_FACES {
@@ -236,18 +253,27 @@ impl Owners {
                 own(&[corners[i], corners[j]]);
             }
         }
-        Self(owners)
+        owners
     }
 
     pub(super) fn of(&self, part: &[u32]) -> Option<u32> {
-        self.0.get(&sorted(part)).copied().flatten()
+        let owner = self.owners[self.place(part)?];
+        (owner != NONE).then_some(owner)
+    }
+
+    fn place(&self, part: &[u32]) -> Option<usize> {
+        self.parts.binary_search(&part_key(part)).ok()
     }
 }
 
-pub(super) fn sorted(part: &[u32]) -> Vec<u32> {
-    let mut part = part.to_vec();
-    part.sort_unstable();
-    part
+/// The key of a triangle or a line.
+pub(super) fn part_key(part: &[u32]) -> PartKey {
+    let mut key = [NONE; 3];
+    key.iter_mut()
+        .zip(part)
+        .for_each(|(own, node)| *own = *node);
+    key.sort_unstable();
+    key
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! A mesh that follows splits of its body in its place.
 
-use super::cut::{Owners, sorted};
+use super::cut::{Owners, part_key};
 use super::{CutBody, CutMesh, Group, GroupMembers, MovedNode, TetMesh};
 
 /// The parts of a mesh's groups by the tetrahedra that they follow, for [`CutMesh::follow_split`]. Made of the uncut mesh.
@@ -40,8 +40,8 @@ impl SplitFollower {
     #[must_use]
     pub fn new(uncut: &TetMesh) -> Self {
         let parts = |group: &Group| match &group.members {
-            GroupMembers::Triangles(parts) => parts.iter().map(|part| sorted(part)).collect(),
-            GroupMembers::Lines(parts) => parts.iter().map(|part| sorted(part)).collect(),
+            GroupMembers::Triangles(parts) => parts.iter().map(|part| part_key(part)).collect(),
+            GroupMembers::Lines(parts) => parts.iter().map(|part| part_key(part)).collect(),
             GroupMembers::Tets(_) | GroupMembers::Nodes(_) => Vec::new(),
         };
         let owners = Owners::new(uncut, uncut.groups.iter().flat_map(parts));
@@ -153,7 +153,7 @@ impl TetMesh {
     /// The first tetrahedron that has each of some triangles; `None` where one has none.
     #[must_use]
     pub fn first_tets_of(&self, triangles: &[[u32; 3]]) -> Option<Vec<u32>> {
-        let owners = Owners::new(self, triangles.iter().map(|part| sorted(part)));
+        let owners = Owners::new(self, triangles.iter().map(|part| part_key(part)));
         let first = triangles.iter().map(|part| owners.of(part));
         first.collect()
     }

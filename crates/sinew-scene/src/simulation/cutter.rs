@@ -101,7 +101,7 @@ pub struct Cutter {
     swept: f64,
     /// True if the tool that is the blade was in the tissue when it was followed last.
     is_in: bool,
-    /// Contacts of tools before the current cut.
+    /// The body before the current cut.
     before: Before,
     pub(super) totals: CutTotals,
 }
@@ -238,6 +238,7 @@ impl Cutter {
         {
             let pose = tool.motion.at(end, inputs);
             let is_inside = |middle: [f64; 3]| tool.shape.distance(&pose, middle) < 0.0;
+            self.before.take(state);
             let report = self.cut.remove(is_inside, state, inputs)?;
             self.totals.report.add(&report);
         }
@@ -259,6 +260,12 @@ impl Cutter {
         let epoch = self.begin(body, state);
         self.sweep(poses, state, inputs)?;
         self.changed_since(epoch, body, state, inputs)
+    }
+
+    /// The state before the last [`Cutter::follow`] or [`Cutter::cut`], where that may have changed it; `None` where it has not.
+    #[must_use]
+    pub fn state_before(&self) -> Option<&State> {
+        self.before.is_taken.then_some(&self.before.state)
     }
 
     /// Lifts a blade that does not belong to the scene: its next sheet does not continue in tetrahedra that it left
@@ -334,7 +341,9 @@ impl Cutter {
         state: &mut State,
         inputs: &Inputs,
     ) -> Result<(), CuttingError> {
-        let report = self.cut.follow(poses, state, inputs)?;
+        let before = &mut self.before;
+        let changes = |state: &State| before.take(state);
+        let report = self.cut.follow_telling(poses, state, inputs, changes)?;
         if self.cut.body().is_touched() {
             self.swept = state.t();
         }
@@ -343,12 +352,12 @@ impl Cutter {
         Ok(())
     }
 
-    /// Saves the contacts of tools before a cut, and keeps the rest positions of the nodes that they hold, which are
+    /// Begins a cut, and keeps the rest positions of the nodes that they hold, which are
     /// not snapped onto the cut; returns the epoch of the body.
     fn begin(&mut self, body: &SceneBody, state: &State) -> u64 {
         let before = &mut self.before;
         before.nodes = self.cut.body().nodes();
-        before.contact.clone_from(&state.contact);
+        before.is_taken = false;
         before.held = held_by_tools(body, state);
         self.cut.hold(before.held.iter().copied());
         self.cut.epoch()
@@ -381,7 +390,8 @@ impl Cutter {
         let cut = self.body_after(body)?;
         if let (Some(theirs), Some(own)) = (body.model().contact(), cut.model().contact()) {
             let place_of = self.places_before(body, &cut);
-            state.contact = own.carried(theirs, &self.before.contact, |place| place_of[place]);
+            state.contact =
+                own.carried(theirs, &self.before.state.contact, |place| place_of[place]);
         }
         Ok(Some(cut))
     }
@@ -484,14 +494,36 @@ fn edge(tools: &Tools, blade: usize, t: f64, inputs: &Inputs) -> Option<[[f64; 3
     Some([-0.5, 0.5].map(|share| pose.to_world([0.0, 0.0, share * length])))
 }
 
-/// Contacts of tools before a cut.
-#[derive(Default)]
+/// A body before a cut.
 struct Before {
     /// Number of nodes of the body, removed ones included.
     nodes: usize,
-    contact: Vec<f64>,
+    /// Its state, where that may have been changed.
+    state: State,
+    /// True if it may.
+    is_taken: bool,
     /// Nodes of the body that tools held.
     held: Vec<u32>,
+}
+
+impl Before {
+    /// Keeps the state before its first change.
+    fn take(&mut self, state: &State) {
+        if !std::mem::replace(&mut self.is_taken, true) {
+            self.state.clone_from(state);
+        }
+    }
+}
+
+impl Default for Before {
+    fn default() -> Self {
+        Self {
+            nodes: 0,
+            state: State::at_rest(0),
+            is_taken: false,
+            held: Vec::new(),
+        }
+    }
 }
 
 /// The nodes in the body of the cells that tools hold in a state.

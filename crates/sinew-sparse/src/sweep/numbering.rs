@@ -73,7 +73,7 @@ impl Numbering {
 
     /// The position of each cell.
     #[must_use]
-    pub fn positions_of_cells(&self) -> &[u32] {
+    pub fn all(&self) -> &[u32] {
         &self.position
     }
 

@@ -28,6 +28,11 @@ impl Units {
         Self(cells.map(|cell| unit::<T>(matrix, cell)).collect())
     }
 
+    /// True if digits are fine, so that entries stay what they are.
+    pub(super) fn are_fine(&self) -> bool {
+        self.0.is_empty()
+    }
+
     /// The unit of the block between two cells, the larger of theirs; 0 where there are none.
     pub(super) fn between(&self, cell: usize, other: usize) -> f64 {
         let of = |cell: usize| self.0.get(cell).copied().unwrap_or(0.0);

@@ -80,6 +80,15 @@ impl<T: Real> Sell<T> {
         for (block, neighbour) in (first..).zip(neighbours) {
             self.columns[block * lanes + lane] = numbering.position(*neighbour) as u32;
         }
+        if self.units.are_fine() {
+            let to = self.values[first * entries * lanes..].chunks_exact_mut(entries * lanes);
+            for (to, (_, block)) in to.zip(matrix.row_blocks(cell as usize)) {
+                for (to, value) in to.chunks_exact_mut(lanes).zip(block) {
+                    to[lane] = T::of(*value);
+                }
+            }
+            return;
+        }
         let own = neighbours.partition_point(|neighbour| *neighbour < cell);
         let cell = cell as usize;
         let row = matrix.row_blocks(cell);

@@ -2,7 +2,7 @@
 
 use super::body_step::BodyStep;
 use super::lips::{LipLink, Lips};
-use super::node::{CONVERGED, Compliance, Constraint, MOST_SWEEPS};
+use super::node::{CONVERGED, Compliance, Constraint, MOST_SWEEPS, Stiffness};
 use super::tool_step::{ToolStep, Way};
 use super::twist::Twist;
 use crate::vector::{Vector, add, dot, length, scaled, sub};
@@ -52,8 +52,9 @@ pub(super) struct Link {
     constraint: Constraint,
     /// From the tool's origin to the contact (m).
     arm: Vector,
-    /// The displacement of tissue against tool by a force on the contact.
+    /// The displacement of tissue against tool by a force on the contact, and its inverse.
     response: Compliance,
+    stiffness: Stiffness,
     /// The force (N) on the tissue.
     pub(super) force: Vector,
     /// The previous contact of each node; `before_on` is that of the triangle. They form linked lists.
@@ -338,6 +339,7 @@ impl Link {
             },
             arm: [0.0; 3],
             response: compliance,
+            stiffness: Stiffness::default(),
             force: [0.0; 3],
             before: [None; NODES],
             before_on: None,
@@ -411,6 +413,7 @@ impl Link {
             response = response.plus(&Compliance::yielding(block), 1.0);
         }
         self.response = response;
+        self.stiffness = response.factor();
     }
 
     /// The displacement (m) of tissue against tool by all forces.
@@ -429,8 +432,11 @@ impl Link {
         let by_others = sub(all, self.response.displacement(self.force));
         let seen = self.constraint.behind(by_others);
         let force = match self.rule {
-            Rule::Outside(_) => self.response.of_one(&seen),
-            Rule::Held => self.response.force(seen.stick),
+            Rule::Outside(_) => {
+                let force = |displacement| self.stiffness.force(displacement);
+                self.response.of_one_by(force, &seen)
+            }
+            Rule::Held => self.stiffness.force(seen.stick),
         };
         let change = sub(force, self.force);
         self.force = force;

@@ -100,19 +100,34 @@ impl Compliance {
 
     /// The force (N) that causes a displacement (m) in the directions that are free, and none in the others.
     pub(super) fn force(&self, displacement: Vector) -> Vector {
+        self.factor().force(displacement)
+    }
+
+    /// Its factor, for many forces.
+    pub(super) fn factor(&self) -> Stiffness {
         let mut block = self.block;
-        let mut wanted = displacement;
-        for axis in 0..3 {
+        for (axis, row) in block.iter_mut().enumerate() {
             if !self.free[axis] {
-                block[axis][axis] = 1.0;
-                wanted[axis] = 0.0;
+                row[axis] = 1.0;
             }
         }
-        solved(block, wanted).unwrap_or_default()
+        Stiffness {
+            factor: Factor::of(block),
+            free: self.free,
+        }
     }
 
     /// The force (N) of one constraint: the cone of friction in closed form.
-    pub(super) fn of_one(&self, constraint: &Constraint) -> Vector {
+    fn of_one(&self, constraint: &Constraint) -> Vector {
+        self.of_one_by(|displacement| self.force(displacement), constraint)
+    }
+
+    /// The same, by what gives [`Compliance::force`].
+    pub(super) fn of_one_by(
+        &self,
+        force: impl Fn(Vector) -> Vector,
+        constraint: &Constraint,
+    ) -> Vector {
         let Constraint {
             normal,
             gap,
@@ -124,7 +139,7 @@ impl Compliance {
             return [0.0; 3];
         }
         if friction > 0.0 {
-            let sticking = self.force(stick);
+            let sticking = force(stick);
             let pressing = dot(sticking, normal);
             let along = sub(sticking, scaled(normal, pressing));
             let size = length(along);
@@ -205,12 +220,14 @@ impl Compliance {
     /// displacement in the last sweep as a share of the largest by a force. Surfaces that wedge a node have no such forces within bounds: it then gets those without friction.
     fn rub(&self, constraints: &[Constraint], forces: &mut [Vector; MOST]) -> f64 {
         let (mut left, without) = (0.0, *forces);
+        let stiffness = self.factor();
         for _ in 0..MOST_SWEEPS {
             let mut sum = forces.iter().copied().fold([0.0; 3], add);
             let (mut change, mut largest): (f64, f64) = (0.0, 0.0);
             for (constraint, own) in constraints.iter().zip(forces.iter_mut()) {
                 let others = sub(sum, *own);
-                let force = self.of_one(&constraint.behind(self.displacement(others)));
+                let behind = constraint.behind(self.displacement(others));
+                let force = self.of_one_by(|displacement| stiffness.force(displacement), &behind);
                 change = change.max(length(self.displacement(sub(force, *own))));
                 largest = largest.max(length(self.displacement(force)));
                 (sum, *own) = (add(others, force), force);
@@ -302,22 +319,68 @@ fn sum_of(constraints: &[Constraint], active: [usize; 3], lambda: Vector) -> Vec
 
 /// `A^-1 b` of a symmetric positive definite matrix by its Cholesky factor; `None` where it is singular.
 fn solved(a: [Vector; 3], b: Vector) -> Option<Vector> {
-    let positive = |pivot: f64, of: f64| (pivot > 1e-13 * of).then(|| pivot.sqrt());
-    if [a[1][0], a[2][0], a[2][1]] == [0.0; 3] {
-        let is_sound = (0..3).all(|axis| a[axis][axis] > 0.0);
-        return is_sound.then(|| [0, 1, 2].map(|axis| b[axis] / a[axis][axis]));
+    Some(Factor::of(a)?.solve(b))
+}
+
+/// Forces by displacements: the inverse of a compliance.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Stiffness {
+    /// `None` where it is singular.
+    factor: Option<Factor>,
+    free: [bool; 3],
+}
+
+impl Stiffness {
+    /// The force (N) that causes a displacement (m) in the directions that are free, and none in the others.
+    pub(super) fn force(&self, displacement: Vector) -> Vector {
+        let mut wanted = displacement;
+        for (wanted, free) in wanted.iter_mut().zip(self.free) {
+            if !free {
+                *wanted = 0.0;
+            }
+        }
+        self.factor.map_or([0.0; 3], |factor| factor.solve(wanted))
     }
-    let l00 = positive(a[0][0], 0.0)?;
-    let (l10, l20) = (a[1][0] / l00, a[2][0] / l00);
-    let l11 = positive(a[1][1] - l10 * l10, a[1][1])?;
-    let l21 = (a[2][1] - l20 * l10) / l11;
-    let l22 = positive(a[2][2] - l20 * l20 - l21 * l21, a[2][2])?;
-    let y0 = b[0] / l00;
-    let y1 = (b[1] - l10 * y0) / l11;
-    let y2 = (b[2] - l20 * y0 - l21 * y1) / l22;
-    let x2 = y2 / l22;
-    let x1 = (y1 - l21 * x2) / l11;
-    Some([(y0 - l10 * x1 - l20 * x2) / l00, x1, x2])
+}
+
+/// Cholesky's factor of a symmetric positive definite matrix.
+#[derive(Clone, Copy, Debug)]
+enum Factor {
+    /// The diagonal of a matrix that has nothing else.
+    Diagonal(Vector),
+    /// The lower triangle, row by row.
+    Lower([f64; 6]),
+}
+
+impl Factor {
+    /// `None` where the matrix is singular.
+    fn of(a: [Vector; 3]) -> Option<Self> {
+        let positive = |pivot: f64, of: f64| (pivot > 1e-13 * of).then(|| pivot.sqrt());
+        if [a[1][0], a[2][0], a[2][1]] == [0.0; 3] {
+            let diagonal = [a[0][0], a[1][1], a[2][2]];
+            let is_sound = diagonal.iter().all(|entry| *entry > 0.0);
+            return is_sound.then_some(Self::Diagonal(diagonal));
+        }
+        let l00 = positive(a[0][0], 0.0)?;
+        let (l10, l20) = (a[1][0] / l00, a[2][0] / l00);
+        let l11 = positive(a[1][1] - l10 * l10, a[1][1])?;
+        let l21 = (a[2][1] - l20 * l10) / l11;
+        let l22 = positive(a[2][2] - l20 * l20 - l21 * l21, a[2][2])?;
+        Some(Self::Lower([l00, l10, l11, l20, l21, l22]))
+    }
+
+    fn solve(self, b: Vector) -> Vector {
+        let [l00, l10, l11, l20, l21, l22] = match self {
+            Self::Diagonal(diagonal) => return [0, 1, 2].map(|axis| b[axis] / diagonal[axis]),
+            Self::Lower(lower) => lower,
+        };
+        let y0 = b[0] / l00;
+        let y1 = (b[1] - l10 * y0) / l11;
+        let y2 = (b[2] - l20 * y0 - l21 * y1) / l22;
+        let x2 = y2 / l22;
+        let x1 = (y1 - l21 * x2) / l11;
+        [(y0 - l10 * x1 - l20 * x2) / l00, x1, x2]
+    }
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@ use std::cell::OnceCell;
 use std::sync::Arc;
 
 use sinew_core::{Batch, Clock, Outcome, RecordedSteps, Run, SimulateError, StepReport};
-use sinew_scene::SceneBody;
+use sinew_scene::{Cutter, SceneBody};
 use sinew_tools::Pose;
 
 use super::{Advanced, Ended, World};
@@ -264,8 +264,15 @@ impl World {
             return Ok(());
         }
         let energy = cutter.totals().energy();
-        self.trial.clone_from(&self.state);
         let (state, inputs) = (&mut self.state, &self.inputs);
+        let (trial, mut is_kept) = (&mut self.trial, false);
+        // Keeps the state before the first act that changes it: few do.
+        let mut keep = |cutter: &Cutter| {
+            if let Some(before) = cutter.state_before().filter(|_| !is_kept) {
+                trial.clone_from(before);
+                is_kept = true;
+            }
+        };
         let mut all_acts = || {
             let mut changed: Option<SceneBody> = None;
             for sheet in self.sheets.drain(..) {
@@ -273,17 +280,24 @@ impl World {
                     cutter.lift();
                 }
                 let now = changed.as_ref().unwrap_or(&self.undriven);
-                changed = cutter.cut(sheet, now, state, inputs)?.or(changed);
+                let cut = cutter.cut(sheet, now, state, inputs);
+                keep(cutter);
+                changed = cut?.or(changed);
             }
             let now = changed.as_ref().unwrap_or(&self.undriven);
-            Ok(cutter.follow(now, state, inputs, end)?.or(changed))
+            let cut = cutter.follow(now, state, inputs, end);
+            keep(cutter);
+            Ok(cut?.or(changed))
         };
-        let changed = match all_acts() {
+        let acted = all_acts();
+        let changed = match acted {
             Ok(Some(changed)) => changed,
             Ok(None) => return Ok(()),
             Err(error) => {
                 // What is shown of a session that failed is one body with its own state.
-                self.state.clone_from(&self.trial);
+                if is_kept {
+                    self.state.clone_from(&self.trial);
+                }
                 return Err(WorldStepError::Cutting(error));
             }
         };
