@@ -103,6 +103,9 @@ pub trait ElasticLaw: Send + Sync {
         Ok(())
     }
 
+    /// `out -= factor dF/du w` (N), the symmetric part: what [`ElasticLaw::add_load_stiffness`] adds to a matrix, without one.
+    fn add_load_product(&self, _trial: &Trial<'_>, _factor: f64, _w: &[f64], _out: &mut [f64]) {}
+
     /// `out = -factor dF/du w` (N), the part of the derivative without symmetry: what [`ElasticLaw::add_load_stiffness`] leaves out.
     fn load_skew_product(&self, _trial: &Trial<'_>, _factor: f64, _w: &[f64], out: &mut [f64]) {
         out.fill(0.0);

@@ -12,6 +12,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod cell_factors;
 pub mod cnn;
 mod contact;
 pub mod explicit;
@@ -38,8 +39,8 @@ pub use explicit_method::Explicit;
 pub use frame::Frame;
 #[cfg(feature = "implicit")]
 pub use implicit::{
-    Combination, Factor, FactorError, Matrices, Memory, NewtonError, NewtonSettings, Solver,
-    StaticError, static_estimate, static_solution, static_solution_under, symmetric_eigen,
+    Combination, Factor, FactorError, FactorUse, Matrices, Memory, NewtonError, NewtonSettings,
+    Solver, StaticError, static_estimate, static_solution, static_solution_under, symmetric_eigen,
 };
 pub use machine_options::MACHINE_OPTIONS;
 pub use method::{ConservedEnergy, Method};

@@ -38,7 +38,7 @@ impl Model {
     }
 
     /// Adds a part of the derivative of the loads times `-factor` and a change of the displacement.
-    fn add_load_product(
+    fn add_product_of_loads(
         &self,
         trial: &Trial<'_>,
         (part, factor): (Part, f64),
@@ -280,7 +280,7 @@ impl ForceLaw for Model {
         };
         let eigenvalue = largest(&mut |x, out| {
             product(Wanted::Stiffest, x, out);
-            self.add_load_product(&trial, (Part::Symmetric, 1.0), x, out);
+            self.add_product_of_loads(&trial, (Part::Symmetric, 1.0), x, out);
         });
         let eigenvalue = eigenvalue.max(0.0);
         // Only at rest viscosity is the tangent.
@@ -360,7 +360,7 @@ impl ElasticLaw for Model {
         out: &mut [f64],
     ) -> Result<(), EvaluationError> {
         self.product(trial, Wanted::Stiffest, w, out)?;
-        self.add_load_product(trial, (Part::Symmetric, 1.0), w, out);
+        self.add_product_of_loads(trial, (Part::Symmetric, 1.0), w, out);
         Ok(())
     }
 
@@ -396,9 +396,13 @@ impl ElasticLaw for Model {
         })
     }
 
+    fn add_load_product(&self, trial: &Trial<'_>, factor: f64, w: &[f64], out: &mut [f64]) {
+        self.add_product_of_loads(trial, (Part::Symmetric, factor), w, out);
+    }
+
     fn load_skew_product(&self, trial: &Trial<'_>, factor: f64, w: &[f64], out: &mut [f64]) {
         out.fill(0.0);
-        self.add_load_product(trial, (Part::Skew, factor), w, out);
+        self.add_product_of_loads(trial, (Part::Skew, factor), w, out);
     }
 
     fn damping(&self) -> &Damping {

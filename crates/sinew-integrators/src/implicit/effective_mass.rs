@@ -52,14 +52,19 @@ impl<M: OneAcceleration> ImplicitSteps<M> {
         before: Option<Self>,
     ) -> Result<SetUp<Self>, SetupError> {
         let known = before.and_then(|steps| steps.effective.solver.into_factor());
-        let (solver, factorizations) = match system.as_linear() {
+        let coefficients = method.coefficients(dt);
+        let (solver, work) = match system.as_linear() {
             Some(linear) => {
-                let [d, k] = method.coefficients(dt);
-                (Solver::once(M::ID, linear, [d, k], known)?, 1)
+                let work = StepReport {
+                    factorizations: 1,
+                    ..StepReport::default()
+                };
+                (Solver::once(M::ID, linear, coefficients, known)?, work)
             }
             None => {
-                let steps = NewtonSteps::set_up(M::ID, system, method.newton(), known)?;
-                (Solver::Newton(Box::new(steps)), 0)
+                let of = (dt, coefficients);
+                let (steps, work) = NewtonSteps::set_up(M::ID, system, of, method.newton(), known)?;
+                (Solver::Newton(Box::new(steps)), work)
             }
         };
         let zeros = || vec![0.0; system.dofs()];
@@ -69,10 +74,6 @@ impl<M: OneAcceleration> ImplicitSteps<M> {
             u: zeros(),
             v: zeros(),
             a: zeros(),
-        };
-        let work = StepReport {
-            factorizations,
-            ..StepReport::default()
         };
         let method = method.clone();
         Ok(SetUp::by_hand(Self { method, effective }, work))
@@ -134,7 +135,7 @@ impl Solver {
     fn into_factor(self) -> Option<Factor> {
         match self {
             Self::Once(solver) => solver.into_factor(),
-            Self::Newton(steps) => Some(steps.into_factor()),
+            Self::Newton(steps) => steps.into_factor(),
         }
     }
 }

@@ -107,6 +107,14 @@ impl Factor {
     }
 }
 
+/// Products of blocks that factorising a matrix on a pattern takes, but for a factor that all patterns share.
+///
+/// # Errors
+/// [`FactorError`] when there is no memory for the order of its cells.
+pub(super) fn products_of_factor(pattern: &Pattern) -> Result<u64, FactorError> {
+    Ok(cell_order(pattern)?.products())
+}
+
 /// Memory (bytes) of a factor whose cells are eliminated like this.
 fn bytes(elimination: &Elimination, layers: Layers) -> u64 {
     let numbers = elimination.blocks() as f64 * layers.block_len() as f64;

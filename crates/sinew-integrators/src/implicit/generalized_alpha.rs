@@ -8,7 +8,7 @@ use sinew_core::{
 };
 
 use super::effective_mass::{EffectiveMass, ImplicitSteps, OneAcceleration, Sought};
-use super::newton::{ITERATIONS, NewtonSettings, TOLERANCE, ViscousPlace};
+use super::newton::{FACTOR, ITERATIONS, NewtonSettings, TOLERANCE, ViscousPlace};
 use crate::{Method, NumericalDissipation, OptionDefault, OptionHelp, OptionKind, Scheme, SetUp};
 
 /// The generalised-alpha method (Chung and Hulbert, J. Appl. Mech. 60, 1993): the equation of motion
@@ -85,7 +85,7 @@ const HHT: OptionHelp = OptionHelp {
 
 impl Method for GeneralizedAlpha {
     const SUMMARY: &'static str = "implicit, order 2, one sparse solve a step or Newton iteration, damps what the step does not resolve";
-    const OPTIONS: &'static [OptionHelp] = &[RHO, HHT, TOLERANCE, ITERATIONS];
+    const OPTIONS: &'static [OptionHelp] = &[RHO, HHT, TOLERANCE, ITERATIONS, FACTOR];
 
     const FACTORISES: bool = true;
 

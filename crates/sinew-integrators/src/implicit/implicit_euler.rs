@@ -6,7 +6,7 @@ use sinew_core::{
 };
 
 use super::effective_mass::{EffectiveMass, ImplicitSteps, OneAcceleration, Sought};
-use super::newton::{ITERATIONS, NewtonSettings, TOLERANCE, ViscousPlace};
+use super::newton::{FACTOR, ITERATIONS, NewtonSettings, TOLERANCE, ViscousPlace};
 use crate::{Method, NumericalDissipation, OptionHelp, Scheme, SetUp};
 
 /// `v+ = v + dt a+`, `u+ = u + dt v+` with `(M + dt D + dt^2 K) a+ = F(t + dt) - K (u + dt v) - D v`
@@ -28,7 +28,7 @@ impl ImplicitEuler {
 impl Method for ImplicitEuler {
     const SUMMARY: &'static str =
         "implicit, order 1, one sparse solve a step or Newton iteration; damps what it moves";
-    const OPTIONS: &'static [OptionHelp] = &[TOLERANCE, ITERATIONS];
+    const OPTIONS: &'static [OptionHelp] = &[TOLERANCE, ITERATIONS, FACTOR];
 
     const FACTORISES: bool = true;
 

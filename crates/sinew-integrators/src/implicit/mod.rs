@@ -16,5 +16,5 @@ pub use generalized_alpha::GeneralizedAlpha;
 pub use implicit_euler::ImplicitEuler;
 pub use modal::{Modal, ModalSteps, Vectors};
 pub use newmark::Newmark;
-pub use newton::{NewtonError, NewtonSettings};
+pub use newton::{FactorUse, NewtonError, NewtonSettings};
 pub use static_solution::{StaticError, static_estimate, static_solution, static_solution_under};

@@ -6,7 +6,7 @@ use sinew_core::{
 };
 
 use super::effective_mass::{EffectiveMass, ImplicitSteps, OneAcceleration, Sought};
-use super::newton::{ITERATIONS, NewtonSettings, TOLERANCE};
+use super::newton::{FACTOR, ITERATIONS, NewtonSettings, TOLERANCE};
 use crate::{Method, NumericalDissipation, OptionDefault, OptionHelp, OptionKind, Scheme, SetUp};
 
 /// Newmark's method (J. Eng. Mech. Div. ASCE 85, 1959) in its acceleration form (Hughes, The
@@ -73,7 +73,7 @@ const GAMMA: OptionHelp = OptionHelp {
 impl Method for Newmark {
     const SUMMARY: &'static str =
         "implicit, order 2, one sparse solve a step or Newton iteration, stable at any step";
-    const OPTIONS: &'static [OptionHelp] = &[BETA, GAMMA, TOLERANCE, ITERATIONS];
+    const OPTIONS: &'static [OptionHelp] = &[BETA, GAMMA, TOLERANCE, ITERATIONS, FACTOR];
 
     const FACTORISES: bool = true;
 

@@ -11,7 +11,11 @@ use sinew_core::{
     Between, Fact, Inputs, Layers, LinearSystem, Load, LoadTime, OptionValue, Options, Ramp, State,
     System, worst_beyond,
 };
+#[cfg(feature = "implicit")]
+use sinew_fem::hyperelastic::Parameters;
 use sinew_fem::{Course, LoadKind, LoadSpec, Model, Moving, NodalForces, On};
+#[cfg(feature = "implicit")]
+use sinew_fem::{Element, Law, Rayleigh};
 use sinew_integrators::explicit::{GuardOption, Guarded};
 use sinew_mesh::structured::{self, Split};
 
@@ -143,16 +147,45 @@ fn neither_do_loads_that_change_nor_other_damping() {
 /// Newton's method factorises in each iteration, by the workspace of set-up.
 #[cfg(feature = "implicit")]
 #[test]
-fn neither_does_newtons_method() {
+fn neither_does_newtons_method_with_a_factor() {
     let links = Chain {
         stiffness: 10.0,
         cubic: 4000.0,
         longest: f64::INFINITY,
     };
     let model = chain_of(links, &[0.1; 40], Layers::One, vec![1.0; 40]);
+    let always = plain().with_text("factor", "always");
     for id in ["newmark", "generalized-alpha", "implicit-euler"] {
-        let count = allocations_of_steps(&model, id, &plain(), 0.01);
+        let count = allocations_of_steps(&model, id, &always, 0.01);
         assert_eq!(count, 0, "`{id}`");
+    }
+}
+
+#[cfg(feature = "implicit")]
+#[test]
+fn neither_does_newtons_method_without_a_factor() {
+    let mesh = structured::cube(3, 0.1, Split::Kuhn).unwrap();
+    for element in [
+        Element::P1,
+        Element::FbarEdge {
+            edge_share: 0.9,
+            patch: None,
+        },
+    ] {
+        let law = Law::hyperelastic("neo-hookean", Parameters::new(3500.0, 0.45));
+        let mut problem = body(law);
+        problem.regions[0].element = element;
+        problem.fixed = vec![held("bottom", [true; 3])];
+        problem.damping = Rayleigh::new(1.0, 1e-3);
+        problem.loads = vec![LoadSpec::new("top", LoadKind::FollowingPressure(300.0))];
+        let model = Model::build(&mesh, &problem).unwrap();
+        for id in ["newmark", "generalized-alpha", "implicit-euler"] {
+            for factor in ["auto", "never"] {
+                let options = plain().with_text("factor", factor);
+                let count = allocations_of_steps(&model, id, &options, 0.01);
+                assert_eq!(count, 0, "`{id}`, {factor}, {element}");
+            }
+        }
     }
 }
 

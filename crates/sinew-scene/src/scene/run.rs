@@ -90,7 +90,7 @@ const DT: Key<Step> = Key::required(
 const MEMORY: Key<Number, Optional> = Key::optional(
     "memory",
     "The most memory that the factors of implicit methods, states at rest and modes may take. Where a factor takes more, it is refused before it is taken, or, on tissue \
-     of a linear law, conjugate gradients take its place.",
+     of a linear law and in implicit steps on any, conjugate gradients take its place.",
     Number::above_zero("a finite number of MB above 0"),
     "nine tenths of what the computer has left",
 )

@@ -3,10 +3,10 @@
 use sinew_core::vectors::{add_scaled, dot, dot_of_difference, norm, weighted_dot};
 use sinew_core::{ElasticLaw, EvaluationError, StepReport, System, TangentKind};
 
-use super::cell_factors::CellFactors;
 use super::point::{Law, Point};
 use super::quadratic::Quadratic;
 use super::rigid::Rigid;
+use crate::cell_factors::CellFactors;
 
 /// Share of the first slope by which a sweep lowers the potential at least (Armijo, Pacific J. Math. 16, 1966).
 const ARMIJO: f64 = 1e-4;

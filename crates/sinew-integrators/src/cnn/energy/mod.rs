@@ -1,6 +1,5 @@
 //! `cnn-energy`: sweeps of cells that never raise the energy.
 
-mod cell_factors;
 mod certificate;
 mod descent;
 mod kind;

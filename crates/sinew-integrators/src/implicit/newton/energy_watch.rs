@@ -55,7 +55,7 @@ impl EnergyWatch {
         }
     }
 
-    /// Checks the state before a step.
+    /// Checks the state before a step; its elastic energy (J), with the forces (N) of that, where they were computed.
     pub(super) fn look(
         &mut self,
         step: &Step<'_>,
@@ -63,10 +63,10 @@ impl EnergyWatch {
         law: &dyn ElasticLaw,
         force: &mut [f64],
         report: &mut StepReport,
-    ) {
+    ) -> Option<f64> {
         if !state.internal.is_empty() {
             // What memory stores and what it dissipates are not distinguished.
-            return;
+            return None;
         }
         let t = state.t();
         let ends = LoadTime::at_both_ends(t, step.dt, 0.5).map(|when| when.under(step.inputs));
@@ -74,7 +74,7 @@ impl EnergyWatch {
         report.sweeps += 1;
         let Ok(deformed) = law.elastic_force(&trial, force) else {
             self.expected = None;
-            return;
+            return None;
         };
         self.elastic = deformed.energy;
         step.system
@@ -108,6 +108,7 @@ impl EnergyWatch {
         let mut end = state.clock;
         end.advance(step.dt);
         self.expected = Some(end.time());
+        Some(deformed.energy)
     }
 
     /// Takes up the work of supports that move in the step: the elastic energy (J) of the displacement before it with

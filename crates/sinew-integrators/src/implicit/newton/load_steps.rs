@@ -6,6 +6,7 @@ use sinew_core::{
     TangentKind, Trial,
 };
 
+use super::factor_use::FactorUse;
 use super::newton_error::NewtonError;
 use super::settings::NewtonSettings;
 use super::solver::{Equations, Newton, Point};
@@ -24,6 +25,7 @@ const EASY: u64 = 3;
 const SETTINGS: NewtonSettings = NewtonSettings {
     tolerance: 1e-8,
     most_iterations: 25,
+    factor: FactorUse::Always,
 };
 
 /// Change of positions, as a share of body and displacement, that makes no difference.
@@ -118,7 +120,9 @@ pub(in crate::implicit) fn follow_load(
 ) -> Result<Vec<f64>, Unreached> {
     let at_start = |error| Unreached { share: 0.0, error };
     let dofs = system.dofs();
-    let mut newton = Newton::set_up(law, system.layers(), vec![1.0; dofs], SETTINGS, None)
+    let (of, weights) = ((law, system.layers()), vec![1.0; dofs]);
+    let mut work = StepReport::default();
+    let mut newton = Newton::set_up(of, weights, SETTINGS, None, None, &mut work)
         .map_err(|error| at_start(NewtonError::Singular(error)))?;
     let mut equations = StaticEquations {
         system,

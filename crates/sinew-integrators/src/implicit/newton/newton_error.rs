@@ -27,3 +27,11 @@ pub enum NewtonError {
     #[error("the projected tangent could not be factorised: {0}")]
     Singular(#[source] FactorError),
 }
+
+/// Reasons for which a tangent gives no direction.
+pub(super) enum NoDirection {
+    /// The law has none at the point.
+    Refused(EvaluationError),
+    /// It has no inverse, or none that can be had.
+    Singular(FactorError),
+}

@@ -2,12 +2,13 @@
 
 use sinew_core::{OptionError, OptionValue, Options};
 
+use super::factor_use::FactorUse;
 use crate::{OptionDefault, OptionHelp, OptionKind};
 
 /// Most iterations that can be asked for.
 const MOST: u32 = 1000;
 
-/// Tolerance and iteration limit of Newton's method on nonlinear systems; linear ones take one solution.
+/// Tolerance, iteration limit and solver of Newton's method on nonlinear systems; linear ones take one solution with a factor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NewtonSettings {
     /// The acceleration that what is left unbalanced would cause, over the largest of those that balance each other: elastic
@@ -15,6 +16,8 @@ pub struct NewtonSettings {
     pub tolerance: f64,
     /// Iterations of a step after which it counts as not converged.
     pub most_iterations: u32,
+    /// Solver of the linear equations of an iteration.
+    pub factor: FactorUse,
 }
 
 impl Default for NewtonSettings {
@@ -22,6 +25,7 @@ impl Default for NewtonSettings {
         Self {
             tolerance: 1e-6,
             most_iterations: 50,
+            factor: FactorUse::Auto,
         }
     }
 }
@@ -64,6 +68,7 @@ impl NewtonSettings {
                 .number(options, integrator)?
                 .unwrap_or(default.tolerance),
             most_iterations: most.unwrap_or(default.most_iterations),
+            factor: FactorUse::from_options(options, integrator)?,
         })
     }
 }

@@ -3,14 +3,19 @@
 use sinew_core::vectors::{add_scaled, dot, weighted_dot};
 use sinew_core::{BlockMatrix, ElasticLaw, EvaluationError, Layers, StepReport, TangentKind};
 
-use super::newton_error::NewtonError;
+use super::by_products::Products;
+use super::counts::Reason;
+use super::linear::{Direction, Linear};
+use super::newton_error::{NewtonError, NoDirection};
 use super::settings::NewtonSettings;
-use super::unsymmetric::Unsymmetric;
-use crate::implicit::factor::{Combination, Factor, Matrices};
+use crate::implicit::factor::{Combination, Factor};
 use crate::implicit::factor_error::FactorError;
 
 /// Halvings of a step along the exact tangent's direction before the projected one is tried.
 const HALVINGS_OF_EXACT: u32 = 4;
+
+/// Halvings of a step along the beginning of a direction, which a tangent that is hardly positive makes long, before the same.
+const HALVINGS_OF_BEGINNING: u32 = 12;
 
 /// Halvings of a step along the projected tangent's direction before the search is given up.
 const MOST_HALVINGS: u32 = 30;
@@ -59,6 +64,11 @@ pub(super) trait Equations {
     /// Sweeps that a tangent and a product of the part without symmetry take for stiffness damping.
     fn viscous_sweeps(&self) -> u64 {
         0
+    }
+
+    /// The derivative at `x` by its products, where they are to be had.
+    fn products_at(&mut self, _x: &[f64]) -> Option<&mut dyn Products> {
+        None
     }
 
     /// Size of the forces that balance each other at a point, in the norm by these weights.
@@ -120,13 +130,10 @@ enum Iterated {
 }
 
 /// Newton's method with a line search, and projection where the exact tangent leads nowhere (Longva et al.,
-/// arXiv 2311.14526, 2023). The tangent is factorised in each iteration, so that a solution is a function of where it began.
+/// arXiv 2311.14526, 2023).
 pub(super) struct Newton {
     settings: NewtonSettings,
-    factor: Factor,
-    tangent: BlockMatrix,
-    /// Damping that is proportional to neither masses nor tangent, on the tangent's pattern.
-    extra: Option<BlockMatrix>,
+    pub(super) linear: Linear,
     /// Weights of squares in the norm of forces.
     weights: Vec<f64>,
     direction: Vec<f64>,
@@ -139,44 +146,23 @@ pub(super) struct Newton {
     /// Iterations taken.
     iterations: u64,
     singular: Option<FactorError>,
-    unsymmetric: Unsymmetric,
 }
 
 impl Newton {
-    /// Analyses the pattern of a law, or takes the analysis of a factor that fits; allocates all that iterations need.
+    /// Allocates all that iterations need, but for a factor that may not be needed; `at_rest` is the derivative at rest, for conjugate gradients.
     pub(super) fn set_up(
-        law: &dyn ElasticLaw,
-        layers: Layers,
+        (law, layers): (&dyn ElasticLaw, Layers),
         weights: Vec<f64>,
         settings: NewtonSettings,
         known: Option<Factor>,
+        at_rest: Option<&mut dyn Products>,
+        work: &mut StepReport,
     ) -> Result<Self, FactorError> {
-        let zeros = || BlockMatrix::zeros(law.pattern().clone(), layers);
-        let tangent = zeros();
-        let extra = law.damping().extra.as_deref().map(|extra| {
-            let mut own = zeros();
-            own.set_to(extra).map(|()| own)
-        });
-        let extra = extra.transpose().map_err(|_| FactorError::Pattern)?;
-        let matrices = Matrices {
-            mass: &[],
-            stiffness: &tangent,
-            extra: None,
-        };
-        let factor = match known.filter(|factor| factor.fits(matrices)) {
-            Some(factor) => factor,
-            None => Factor::analyse(matrices)?,
-        };
+        let linear = Linear::set_up((law, layers), &weights, settings, known, at_rest, work)?;
         let dofs = weights.len();
-        let mut unsymmetric = Unsymmetric::default();
-        if law.damping().stiffness != 0.0 || law.loads_follow() {
-            unsymmetric.reserve(dofs);
-        }
         Ok(Self {
             settings,
-            factor,
-            tangent,
-            extra,
+            linear,
             weights,
             direction: vec![0.0; dofs],
             point: Point::new(dofs),
@@ -184,12 +170,7 @@ impl Newton {
             refusal: None,
             iterations: 0,
             singular: None,
-            unsymmetric,
         })
-    }
-
-    pub(super) fn into_factor(self) -> Factor {
-        self.factor
     }
 
     /// Takes the trial for the point if its potential is the lower one.
@@ -214,6 +195,7 @@ impl Newton {
         work: &mut StepReport,
     ) -> Result<(), NewtonError> {
         (self.refusal, self.singular, self.iterations) = (None, None, 0);
+        self.linear.begin();
         loop {
             let residual = self.residual(equations);
             if residual <= self.settings.tolerance {
@@ -236,7 +218,12 @@ impl Newton {
                 });
             }
             work.newton_iterations += 1;
-            match self.iterate(equations, work) {
+            self.linear.begin_iteration(iterations, residual);
+            let mut iterated = self.iterate(equations, work);
+            if matches!(iterated, Iterated::Stuck) && self.linear.take_factor(Reason::Stuck) {
+                iterated = self.iterate(equations, work);
+            }
+            match iterated {
                 Iterated::Moved => self.iterations += 1,
                 Iterated::AtRounding => return Ok(()),
                 Iterated::Stuck => {
@@ -267,16 +254,23 @@ impl Newton {
             (TangentKind::Exact, HALVINGS_OF_EXACT),
             (TangentKind::Frozen, MOST_HALVINGS),
         ] {
-            let Some(slope) = self.direct(equations, kind, work) else {
+            let Some(direction) = self.direct(equations, kind, work) else {
                 continue;
             };
             if equations.is_rounding(&self.point, &self.direction) {
                 return Iterated::AtRounding;
             }
+            let slope = dot(&self.point.residual, &self.direction);
+            let halvings = match direction {
+                Direction::Solution => halvings,
+                Direction::Beginning => halvings.max(HALVINGS_OF_BEGINNING),
+            };
             if slope < 0.0
                 && let Some(share) = self.search(equations, slope, halvings, work)
             {
-                if kind != TangentKind::Exact && share == 1.0 {
+                self.linear.gone(share);
+                let is_whole = kind == TangentKind::Exact && direction == Direction::Solution;
+                if !is_whole && share == 1.0 {
                     self.lengthen(equations, slope, work);
                 }
                 return Iterated::Moved;
@@ -285,45 +279,27 @@ impl Newton {
         Iterated::Stuck
     }
 
-    /// Sets the direction by a kind of tangent; the slope along it, where there is a factor.
+    /// Sets the direction by a kind of tangent, where that has one.
     fn direct(
         &mut self,
         equations: &mut impl Equations,
         kind: TangentKind,
         work: &mut StepReport,
-    ) -> Option<f64> {
-        if let Err(refusal) = equations.tangent(&self.point.x, kind, &mut self.tangent) {
-            self.refusal = Some((self.iterations, refusal));
-            return None;
-        }
-        work.sweeps += 1 + 2 * equations.viscous_sweeps();
-        work.factorizations += 1;
-        let (mass, combination) = equations.derivative();
-        let matrices = Matrices {
-            mass,
-            stiffness: &self.tangent,
-            extra: self.extra.as_ref(),
-        };
-        if let Err(error) = self.factor.factorise(matrices, combination) {
-            self.singular = Some(error);
-            return None;
-        }
+    ) -> Option<Direction> {
+        let at = (&self.point, &*self.weights);
+        let found = self
+            .linear
+            .direct(equations, kind, at, &mut self.direction, work);
         self.singular = None;
-        for (direction, residual) in self.direction.iter_mut().zip(&self.point.residual) {
-            *direction = -residual;
+        match found {
+            Ok(direction) => {
+                work.projected_solves += u64::from(kind != TangentKind::Exact);
+                return Some(direction);
+            }
+            Err(NoDirection::Refused(refusal)) => self.refusal = Some((self.iterations, refusal)),
+            Err(NoDirection::Singular(error)) => self.singular = Some(error),
         }
-        self.factor.solve(&mut self.direction);
-        work.solves += 1;
-        if kind == TangentKind::Exact {
-            let x = &self.point.x;
-            let skew = |change: &[f64], out: &mut [f64]| equations.skew_product(x, change, out);
-            let direction = &mut self.direction;
-            let solves = self.unsymmetric.solve(&mut self.factor, skew, direction);
-            work.solves += solves;
-            work.sweeps += (solves + 1) * equations.viscous_sweeps();
-        }
-        work.projected_solves += u64::from(kind != TangentKind::Exact);
-        Some(dot(&self.point.residual, &self.direction))
+        None
     }
 
     /// Halves the step until it leads down as far as its slope promises; the share of it that was taken.

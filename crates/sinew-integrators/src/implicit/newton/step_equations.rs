@@ -1,22 +1,18 @@
-//! The equations of a step, and the acceleration that solves them.
+//! The equations of a step.
 
-use sinew_core::vectors::{add_scaled, dot, largest, scale, weighted_dot};
+use sinew_core::vectors::{add_scaled, dot, largest, weighted_dot};
 use sinew_core::{
-    BlockMatrix, ElasticLaw, EvaluationError, Fact, LoadTime, Needs, SetupError, State, Step,
-    StepError, StepReport, System, TangentKind, Trial, Velocities,
+    BlockMatrix, ElasticLaw, EvaluationError, LoadTime, State, Step, StepReport, TangentKind,
+    Trial, Velocities,
 };
 
-use super::energy_watch::EnergyWatch;
-use super::newton_error::NewtonError;
-use super::settings::NewtonSettings;
-use super::solver::{Equations, Newton, Point};
-use crate::implicit::factor::{Combination, Factor};
+use super::by_products::Products;
+use super::derivative::Derivative;
+use super::solver::{Equations, Point};
+use crate::implicit::factor::Combination;
 
 /// Distance over which the change of stiffness damping is measured, as a share of the smallest cell.
 const PROBE: f64 = 1e-6;
-
-/// Share of the size of body and motion by which rounding moves positions.
-const ROUNDING: f64 = 1e-14;
 
 /// The acceleration x that a step seeks: `M x + m M a = c net(u* + c_u x, v* + c_v x) + c_old net(u, v)`, with the state's
 /// u, v and a.
@@ -57,41 +53,41 @@ impl<'e> ViscousPlace<'e> {
 
 impl Unknown<'_> {
     /// `c_u`.
-    fn reach(&self) -> f64 {
+    pub(super) fn reach(&self) -> f64 {
         self.coefficients[1] / self.of_forces
     }
 }
 
-struct StepEquations<'s> {
-    step: &'s Step<'s>,
-    law: &'s dyn ElasticLaw,
-    state: &'s State,
-    unknown: Unknown<'s>,
+pub(super) struct StepEquations<'s> {
+    pub(super) step: &'s Step<'s>,
+    pub(super) law: &'s dyn ElasticLaw,
+    pub(super) state: &'s State,
+    pub(super) unknown: Unknown<'s>,
     /// `c_old net(u, v)` (N), where `c_old` is not 0.
-    old_forces: &'s [f64],
+    pub(super) old_forces: &'s [f64],
     /// Displacement and velocity of the point evaluated.
-    u: &'s mut [f64],
-    v: &'s mut [f64],
+    pub(super) u: &'s mut [f64],
+    pub(super) v: &'s mut [f64],
     /// Change of positions (m) that is lost in rounding.
-    rounding: f64,
-    viscous: &'s mut Viscous,
+    pub(super) rounding: f64,
+    pub(super) viscous: &'s mut Viscous,
 }
 
 /// Scratch space for stiffness damping.
 #[derive(Default)]
-struct Viscous {
+pub(super) struct Viscous {
     /// Its force (N) where the last tangent was made, and beside it.
-    force: Vec<f64>,
-    beside: Vec<f64>,
+    pub(super) force: Vec<f64>,
+    pub(super) beside: Vec<f64>,
     /// Displacement (m) at which it acts, and beside that.
-    at: Vec<f64>,
-    u: Vec<f64>,
+    pub(super) at: Vec<f64>,
+    pub(super) u: Vec<f64>,
     /// Size of the smallest cell (m), or what there is in its place.
-    cell: f64,
+    pub(super) cell: f64,
 }
 
 impl StepEquations<'_> {
-    fn place(&mut self, x: &[f64]) {
+    pub(super) fn place(&mut self, x: &[f64]) {
         let [of_v, of_u] = self
             .unknown
             .coefficients
@@ -129,8 +125,49 @@ impl StepEquations<'_> {
         }
     }
 
+    /// The derivative at the point that was placed last, by its products.
+    fn derivative_there(&self) -> Derivative<'_> {
+        Derivative {
+            law: self.law,
+            mass: self.step.system.mass(),
+            coefficients: self.unknown.coefficients,
+            at: self.trial(),
+            viscous_at: self.viscous_trial(),
+        }
+    }
+
     fn is_viscous(&self) -> bool {
         self.law.damping().stiffness != 0.0
+    }
+
+    /// Completes a point that was placed last, from its elastic energy (J) and forces (N).
+    pub(super) fn complete(
+        &mut self,
+        energy: f64,
+        point: &mut Point,
+        work: &mut StepReport,
+    ) -> Result<(), EvaluationError> {
+        self.net_force(point, work)?;
+        let Unknown {
+            of_forces: c,
+            of_last_inertia: m,
+            of_old_forces,
+            ..
+        } = self.unknown;
+        let mass = self.step.system.mass();
+        for (i, residual) in point.residual.iter_mut().enumerate() {
+            let before = if m == 0.0 { 0.0 } else { m * self.state.a[i] };
+            *residual = mass[i] * (point.x[i] + before) - c * *residual;
+            point.elastic[i] *= c;
+        }
+        if of_old_forces != 0.0 {
+            add_scaled(-1.0, self.old_forces, &mut point.residual);
+        }
+        point.energy = match self.unknown.reach() {
+            0.0 => dot(&point.elastic, &point.x),
+            reach => c * energy / reach,
+        };
+        Ok(())
     }
 
     /// Writes the net force (N) into the residual, from the elastic one, which is known; only stiffness damping takes another sweep.
@@ -199,7 +236,7 @@ impl StepEquations<'_> {
     }
 
     /// Sets x so that the displacement is the state's moved on by its velocity for a time (s), as far as x moves it.
-    fn begin_at(&self, after: f64, x: &mut [f64]) {
+    pub(super) fn begin_at(&self, after: f64, x: &mut [f64]) {
         let reach = self.unknown.reach();
         let [predicted, _] = self.unknown.predicted;
         for (i, x) in x.iter_mut().enumerate() {
@@ -221,27 +258,7 @@ impl Equations for StepEquations<'_> {
         self.place(&point.x);
         *work += StepReport::ONE_FORCE;
         let deformed = self.law.elastic_force(&self.trial(), &mut point.elastic)?;
-        self.net_force(point, work)?;
-        let Unknown {
-            of_forces: c,
-            of_last_inertia: m,
-            of_old_forces,
-            ..
-        } = self.unknown;
-        let mass = self.step.system.mass();
-        for (i, residual) in point.residual.iter_mut().enumerate() {
-            let before = if m == 0.0 { 0.0 } else { m * self.state.a[i] };
-            *residual = mass[i] * (point.x[i] + before) - c * *residual;
-            point.elastic[i] *= c;
-        }
-        if of_old_forces != 0.0 {
-            add_scaled(-1.0, self.old_forces, &mut point.residual);
-        }
-        point.energy = match self.unknown.reach() {
-            0.0 => dot(&point.elastic, &point.x),
-            reach => c * deformed.energy / reach,
-        };
-        Ok(())
+        self.complete(deformed.energy, point, work)
     }
 
     fn tangent(
@@ -298,6 +315,11 @@ impl Equations for StepEquations<'_> {
         (self.step.system.mass(), combination)
     }
 
+    fn products_at(&mut self, x: &[f64]) -> Option<&mut dyn Products> {
+        self.place(x);
+        Some(self)
+    }
+
     fn forces(&self, point: &Point, weights: &[f64]) -> f64 {
         let inertia = weighted_dot(self.step.system.mass(), &point.x, &point.x);
         let elastic = weighted_dot(weights, &point.elastic, &point.elastic);
@@ -310,205 +332,31 @@ impl Equations for StepEquations<'_> {
     }
 }
 
-/// Newton's method in steps, with all its memory.
-pub(in crate::implicit) struct NewtonSteps {
-    integrator: &'static str,
-    newton: Newton,
-    u: Vec<f64>,
-    v: Vec<f64>,
-    old_forces: Vec<f64>,
-    viscous: Viscous,
-    /// Size of the body (m), 0 where it has none.
-    extent: f64,
-    watch: EnergyWatch,
-    steps: u64,
-    work: StepReport,
-    most: u64,
-}
-
-impl NewtonSteps {
-    /// Analyses the pattern of a system's elastic law, or takes that of a factor that fits.
-    pub(in crate::implicit) fn set_up(
-        integrator: &'static str,
-        system: &dyn System,
-        settings: NewtonSettings,
-        known: Option<Factor>,
-    ) -> Result<Self, SetupError> {
-        let law = system
-            .as_elastic()
-            .ok_or_else(|| Needs::Tangents.lacking(integrator))?;
-        let per_mass = system.mass().iter().map(|mass| mass.recip()).collect();
-        let newton = Newton::set_up(law, system.layers(), per_mass, settings, known)
-            .map_err(|error| error.at_set_up(integrator))?;
-        let zeros = || vec![0.0; system.dofs()];
-        let smallest = |sizes: &[f64]| sizes.iter().copied().fold(f64::INFINITY, f64::min);
-        let cell = system.scales().map(|scales| smallest(scales.cell_size));
-        let mut viscous = Viscous {
-            cell: cell.filter(|cell| cell.is_finite()).unwrap_or(0.0),
-            ..Viscous::default()
-        };
-        if law.damping().stiffness != 0.0 {
-            (viscous.force, viscous.beside) = (zeros(), zeros());
-            (viscous.at, viscous.u) = (zeros(), zeros());
-        }
-        Ok(Self {
-            integrator,
-            newton,
-            viscous,
-            u: zeros(),
-            v: zeros(),
-            old_forces: zeros(),
-            extent: system.extent().unwrap_or(0.0),
-            watch: EnergyWatch::new(integrator, system.dofs()),
-            steps: 0,
-            work: StepReport::default(),
-            most: 0,
-        })
-    }
-
-    pub(in crate::implicit) fn into_factor(self) -> Factor {
-        self.newton.into_factor()
-    }
-
-    /// Solves the equations of a step for the acceleration.
-    pub(in crate::implicit) fn solve(
+/// At the point that was placed last.
+impl Products for StepEquations<'_> {
+    fn product(
         &mut self,
-        step: &Step<'_>,
-        state: &State,
-        unknown: Unknown<'_>,
-        acceleration: &mut [f64],
-    ) -> Result<StepReport, StepError> {
-        let law = step
-            .system
-            .as_elastic()
-            .ok_or_else(|| Needs::Tangents.lacking(self.integrator))?;
-        let mut work = StepReport::default();
-        let Newton { point, trial, .. } = &mut self.newton;
-        self.watch
-            .look(step, state, law, &mut trial.elastic, &mut work);
-        let size = self.extent.max(largest(&state.u));
-        if unknown.of_old_forces != 0.0 {
-            let point = [&state.u[..], &state.v, &state.internal];
-            step.net_force(unknown.loads[0], 0.0, point, &mut self.old_forces)?;
-            work += StepReport::ONE_FORCE;
-            scale(&mut self.old_forces, unknown.of_old_forces);
-        }
-        let mut equations = StepEquations {
-            step,
-            law,
-            state,
-            unknown: Unknown {
-                loads: unknown.loads.map(|load| load.under(step.inputs)),
-                viscosity: ViscousPlace {
-                    load: unknown.viscosity.load.under(step.inputs),
-                    ..unknown.viscosity
-                },
-                ..unknown
-            },
-            old_forces: &self.old_forces,
-            u: &mut self.u,
-            v: &mut self.v,
-            rounding: ROUNDING * size,
-            viscous: &mut self.viscous,
-        };
-        equations.begin_at(0.0, &mut point.x);
-        equations.begin_at(step.dt, &mut trial.x);
-        let stayed = equations.evaluate(point, &mut work);
-        let moved = equations.evaluate(trial, &mut work);
-        let refused = |source| StepError::Refused {
-            t: unknown.loads[1].t(),
-            source,
-        };
-        match (stayed, moved) {
-            (Ok(()), moved) => {
-                if unknown.reach() > 0.0 {
-                    let energy = point.energy * unknown.reach() / unknown.of_forces;
-                    self.watch.supports(energy);
-                }
-                if moved.is_ok() {
-                    self.newton.take_lower();
-                }
-            }
-            (Err(_), Ok(())) => self.newton.take_trial(),
-            (Err(refusal), Err(_)) => return Err(refused(refusal)),
-        }
-        let before = work.newton_iterations;
-        let solved = self.newton.solve(&mut equations, &mut work);
-        solved.map_err(|failure| match failure {
-            NewtonError::Refused(refusal) => refused(refusal),
-            NewtonError::Unbalanced {
-                iterations,
-                residual,
-                reason,
-            } => self.not_converged(state, iterations, residual, reason),
-            NewtonError::Singular(_) => self.not_converged(
-                state,
-                work.newton_iterations - before,
-                f64::INFINITY,
-                "not even the projected tangent is positive definite".to_owned(),
-            ),
-        })?;
-        acceleration.copy_from_slice(&self.newton.point.x);
-        self.steps += 1;
-        self.work += work;
-        self.most = self.most.max(work.newton_iterations);
-        Ok(work)
+        kind: TangentKind,
+        change: &[f64],
+        out: &mut [f64],
+    ) -> Result<(), EvaluationError> {
+        let mut beside = std::mem::take(&mut self.viscous.beside);
+        let found = self
+            .derivative_there()
+            .product(kind, change, &mut beside, out);
+        self.viscous.beside = beside;
+        found
     }
 
-    fn not_converged(
-        &self,
-        state: &State,
-        iterations: u64,
-        residual: f64,
-        reason: String,
-    ) -> StepError {
-        StepError::NotConverged {
-            integrator: self.integrator,
-            t: state.t(),
-            iterations,
-            residual,
-            reason,
-        }
+    fn sweeps(&self) -> u64 {
+        Derivative::sweeps(self.law)
     }
 
-    /// Iterations of a step, in the mean.
-    fn mean(&self) -> f64 {
-        self.work.newton_iterations as f64 / self.steps as f64
+    fn blocks(&mut self, out: &mut [f64]) -> Result<(), EvaluationError> {
+        self.derivative_there().blocks(out)
     }
 
-    /// Iterations a step, once a step was taken.
-    pub(in crate::implicit) fn facts(&self) -> Vec<Fact> {
-        if self.steps == 0 {
-            return Vec::new();
-        }
-        vec![
-            Fact {
-                name: "newton_iterations_a_step",
-                value: self.mean(),
-            },
-            Fact {
-                name: "most_newton_iterations",
-                value: self.most as f64,
-            },
-        ]
-    }
-
-    /// Iterations a step, and growth of the energy.
-    pub(in crate::implicit) fn remarks(&self) -> Vec<String> {
-        if self.steps == 0 {
-            return Vec::new();
-        }
-        let projected = match self.work.projected_solves {
-            0 => String::new(),
-            solves => format!("; {solves} solutions with a projected tangent"),
-        };
-        let iterations = format!(
-            "Newton's method took {:.2} iterations a step, {} at most{projected}",
-            self.mean(),
-            self.most
-        );
-        std::iter::once(iterations)
-            .chain(self.watch.remark())
-            .collect()
+    fn inertia(&self, dof: usize) -> f64 {
+        self.derivative_there().inertia(dof)
     }
 }

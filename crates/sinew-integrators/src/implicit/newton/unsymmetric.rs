@@ -11,7 +11,7 @@ const MOST: usize = 30;
 const NEAR: f64 = 1e-3;
 
 /// Scratch space for solutions.
-#[derive(Default)]
+#[derive(Debug, Default)]
 pub(super) struct Unsymmetric {
     basis: Vec<Vec<f64>>,
     product: Vec<f64>,

@@ -129,8 +129,14 @@ impl<P: Potential> ElasticLaw for Law<P> {
         Ok(())
     }
 
-    fn node_blocks(&self, _trial: &Trial<'_>, _out: &mut [f64]) -> Result<(), EvaluationError> {
-        unreachable!("no method here asks for blocks")
+    fn node_blocks(&self, trial: &Trial<'_>, out: &mut [f64]) -> Result<(), EvaluationError> {
+        let mut tangent = BlockMatrix::zeros(Arc::clone(&self.pattern), self.layers());
+        self.tangent(trial, TangentKind::Projected, &mut tangent)?;
+        let entries = self.layers().count().pow(2);
+        for (cell, out) in out.chunks_exact_mut(entries).enumerate() {
+            out.copy_from_slice(tangent.block(cell, cell).unwrap());
+        }
+        Ok(())
     }
 
     fn damping(&self) -> &Damping {

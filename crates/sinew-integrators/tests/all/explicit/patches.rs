@@ -285,7 +285,7 @@ fn what_has_no_patches_says_so() {
     };
     assert_eq!(
         refusal("newmark", OptionValue::Text("auto".into())).unwrap(),
-        "`newmark` has no option `patches`; it takes `beta`, `gamma`, `newton_tolerance`, `newton_iterations`"
+        "`newmark` has no option `patches`; it takes `beta`, `gamma`, `newton_tolerance`, `newton_iterations`, `factor`"
     );
     assert_eq!(
         refusal("central-difference", OptionValue::Number(3.0)).unwrap(),

@@ -152,7 +152,7 @@ fn methods_without_a_largest_step_take_no_parts() {
     assert_eq!(
         refusal.map(|error| error.to_string()).as_deref(),
         Some(
-            "`newmark` has no option `substeps`; it takes `beta`, `gamma`, `newton_tolerance`, `newton_iterations`"
+            "`newmark` has no option `substeps`; it takes `beta`, `gamma`, `newton_tolerance`, `newton_iterations`, `factor`"
         )
     );
 }

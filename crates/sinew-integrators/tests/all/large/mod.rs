@@ -8,3 +8,5 @@ mod large_motion;
 mod relaxing_tissue;
 #[cfg(feature = "implicit")]
 mod stiffness_damping;
+#[cfg(feature = "implicit")]
+mod without_a_factor;

@@ -105,9 +105,17 @@ fn an_option_of_another_integrator() {
     insta::assert_snapshot!(
         refusal(BODY, "dt = 0.02", "dt = 0.02\npatches = \"auto\""),
         @r"
-    scene.toml:24: [run]: `newmark` has no option `patches`; it takes `beta`, `gamma`, `newton_tolerance`, `newton_iterations`
+    scene.toml:24: [run]: `newmark` has no option `patches`; it takes `beta`, `gamma`, `newton_tolerance`, `newton_iterations`, `factor`
     help: `patches` is an option of `central-difference`
     "
+    );
+}
+
+#[test]
+fn a_factor_in_between() {
+    insta::assert_snapshot!(
+        refusal(BODY, "dt = 0.02", "dt = 0.02\nfactor = \"sometimes\""),
+        @r#"scene.toml:24: [run]: `newmark`: option `factor` = "sometimes": expected "auto", "always" or "never""#
     );
 }
 
@@ -115,7 +123,7 @@ fn an_option_of_another_integrator() {
 fn a_misspelt_step_is_not_called_missing() {
     insta::assert_snapshot!(
         refusal(BODY, "dt = 0.02", "dtt = 0.02"),
-        @r#"scene.toml:23: [run]: `newmark` has no option `dtt`; it takes `beta`, `gamma`, `newton_tolerance`, `newton_iterations`"#
+        @r#"scene.toml:23: [run]: `newmark` has no option `dtt`; it takes `beta`, `gamma`, `newton_tolerance`, `newton_iterations`, `factor`"#
     );
 }
 

@@ -73,7 +73,7 @@ impl Cost {
             match (factor_fits(bytes), self.is_law) {
                 (true, _) => format!("factor: about {megabytes} MB"),
                 (false, true) => format!(
-                    "factor: about {megabytes} MB, more than there is: a run is refused; an explicit method needs none, and memory in [run] sets another limit"
+                    "factor: about {megabytes} MB, more than there is: steps do without it, a state at rest is refused; memory in [run] sets another limit"
                 ),
                 (false, false) => format!(
                     "factor: about {megabytes} MB, more than there is: conjugate gradients take its place; memory in [run] sets another limit"

@@ -72,23 +72,25 @@ fn modes_are_found_without_a_factor() {
 }
 
 #[test]
-fn a_factor_that_a_force_law_needs_is_refused_before_it_is_taken() {
+fn a_force_law_goes_on_without_a_factor_unless_it_is_asked_for() {
     let law = [
         "--set",
         "region.1.model=neo-hookean",
         "--set",
         "run.memory=0.1",
     ];
-    let said = says(&[&["run"][..], &law].concat());
+    let said = says(&[&["run", "--set", "run.factor=always"][..], &law].concat());
     assert_ne!(said.code, Some(0), "{}", said.err);
     assert!(
         said.err.contains("MB of memory are left") && said.err.contains("memory = "),
         "{}",
         said.err
     );
+    let said = says(&[&["run"][..], &law].concat());
+    assert_eq!(said.code, Some(0), "{}", said.err);
     let said = says(&[&["plan"][..], &law].concat());
     assert!(
-        said.out.contains("more than there is: a run is refused"),
+        said.out.contains("more than there is: steps do without it"),
         "{}{}",
         said.out,
         said.err

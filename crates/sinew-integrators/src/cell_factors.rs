@@ -6,14 +6,14 @@
 /// the diagonal (a Schur complement is monotone in the matrix). Where rounding of a stiff part makes one smaller, that entry
 /// takes its place: a light node on stiff springs still moves in every direction.
 #[derive(Debug)]
-pub(super) struct CellFactors {
+pub(crate) struct CellFactors {
     layers: usize,
     entries: Vec<f64>,
 }
 
 impl CellFactors {
     /// Storage for the blocks of `dofs` degrees of freedom.
-    pub(super) fn new(layers: usize, dofs: usize) -> Self {
+    pub(crate) fn new(layers: usize, dofs: usize) -> Self {
         Self {
             layers,
             entries: vec![0.0; dofs * layers],
@@ -21,12 +21,12 @@ impl CellFactors {
     }
 
     /// The entries of the positive semidefinite parts, to be written before [`CellFactors::factorise`].
-    pub(super) fn entries_mut(&mut self) -> &mut [f64] {
+    pub(crate) fn entries_mut(&mut self) -> &mut [f64] {
         &mut self.entries
     }
 
     /// Adds `diagonal` and factorises.
-    pub(super) fn factorise(&mut self, diagonal: impl Fn(usize) -> f64) {
+    pub(crate) fn factorise(&mut self, diagonal: impl Fn(usize) -> f64) {
         let n = self.layers;
         for (cell, block) in self.entries.chunks_exact_mut(n * n).enumerate() {
             for k in 0..n {
@@ -49,7 +49,7 @@ impl CellFactors {
     }
 
     /// `x'B y` for the blocks B.
-    pub(super) fn product(&self, x: &[f64], y: &[f64]) -> f64 {
+    pub(crate) fn product(&self, x: &[f64], y: &[f64]) -> f64 {
         let n = self.layers;
         let cells = x.chunks_exact(n).zip(y.chunks_exact(n));
         let of_cell = |(block, (x, y)): (&[f64], (&[f64], &[f64]))| {
@@ -70,7 +70,7 @@ impl CellFactors {
     }
 
     /// Writes the inverse blocks, `factor` times, row by row.
-    pub(super) fn write_inverse(&self, factor: f64, out: &mut [f64]) {
+    pub(crate) fn write_inverse(&self, factor: f64, out: &mut [f64]) {
         let n = self.layers;
         out.fill(0.0);
         let blocks = self.entries.chunks_exact(n * n);
@@ -84,7 +84,7 @@ impl CellFactors {
     }
 
     /// Replaces `x` by the solution with each cell's block.
-    pub(super) fn solve(&self, x: &mut [f64]) {
+    pub(crate) fn solve(&self, x: &mut [f64]) {
         let n = self.layers;
         for (block, x) in self.entries.chunks_exact(n * n).zip(x.chunks_exact_mut(n)) {
             solve_by(block, x);

@@ -1,0 +1,67 @@
+//! Choice between a factor and conjugate gradients, by counts of work.
+
+use sinew_core::Pattern;
+
+use crate::implicit::factor::products_of_factor;
+
+/// Work of an iteration with a factor, in products of the tangent without a matrix: to assemble and to solve, whatever the mesh, ...
+const ASSEMBLY: f64 = 45.0;
+
+/// ... and to factorise, for each product of blocks over each block of the tangent.
+const OF_BLOCKS: f64 = 0.06;
+
+/// Newton iterations of a step with a factor that is hard enough for the question to arise, those of projected tangents and searches included, about.
+const ITERATIONS: f64 = 6.0;
+
+/// Cells below which a step takes a factor: less than any count tells apart.
+const FEW: usize = 8;
+
+/// Iterations of conjugate gradients that take as long as a step with a factor, and the two bounds by it.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Choice {
+    /// Once counted.
+    even: Option<u64>,
+}
+
+/// Use of the number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Bound {
+    /// Iterations at rest beyond which steps take a factor from their beginning: a step takes a third more to twice as many, in several solutions.
+    AtRest,
+    /// Iterations in a step beyond which it goes on with a factor: some steps take more than others.
+    InStep,
+}
+
+impl Bound {
+    fn of(self, even: u64) -> u64 {
+        match self {
+            Self::AtRest => even / 2,
+            Self::InStep => 2 * even,
+        }
+    }
+
+    /// The least that it can be, whatever the mesh.
+    pub(super) fn least(self) -> u64 {
+        self.of((ITERATIONS * ASSEMBLY) as u64)
+    }
+}
+
+impl Choice {
+    /// True if a factor is taken without a count.
+    pub(super) fn is_clear(pattern: &Pattern) -> bool {
+        pattern.cells() < FEW
+    }
+
+    /// The bound, for a factor on this pattern; counts how it fills in.
+    pub(super) fn bound(&mut self, bound: Bound, pattern: &Pattern) -> u64 {
+        let even = *self.even.get_or_insert_with(|| {
+            // A factor that cannot even be ordered is none to wait for.
+            let Ok(products) = products_of_factor(pattern) else {
+                return u64::MAX / 4;
+            };
+            let each = ASSEMBLY + OF_BLOCKS * products as f64 / pattern.blocks() as f64;
+            (ITERATIONS * each) as u64
+        });
+        bound.of(even)
+    }
+}

@@ -1,0 +1,65 @@
+//! Nearness to which equations are solved in an iteration.
+
+/// The share of the residual that the first solution may leave.
+const FIRST: f64 = 0.01;
+
+/// The most that a solution may leave.
+const MOST: f64 = 0.3;
+
+/// Share of the tolerance up to which a solution goes that is to be the last.
+const LAST: f64 = 0.5;
+
+/// Shares of residuals that solutions may leave: about what the equations' nonlinearity leaves (Eisenstat and Walker, SIAM J. Sci. Comput. 17, 1996).
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Forcing {
+    tolerance: f64,
+    /// True if what linear equations lack falls with the square of the residual.
+    is_quadratic: bool,
+    /// Residual over the size of the forces.
+    residual: f64,
+    /// The share of it that linear equations would have left.
+    expected: Option<f64>,
+    next: f64,
+}
+
+impl Forcing {
+    pub(super) fn new(tolerance: f64, is_quadratic: bool) -> Self {
+        Self {
+            tolerance,
+            is_quadratic,
+            residual: 0.0,
+            expected: None,
+            next: FIRST,
+        }
+    }
+
+    /// Takes the residual, over the size of the forces, at which an iteration begins.
+    pub(super) fn at(&mut self, residual: f64) {
+        let before = std::mem::replace(&mut self.residual, residual);
+        if let Some(left) = self.expected.take() {
+            let reached = residual / before;
+            let lacking = (reached - left).abs();
+            self.next = match self.is_quadratic {
+                true => lacking * reached,
+                false => lacking,
+            };
+        }
+    }
+
+    /// The share of the residual that the next solution may leave.
+    pub(super) fn share(&self) -> f64 {
+        // A residual that is not a number asks for the most.
+        let last = LAST * self.tolerance / self.residual;
+        self.next.min(MOST).max(last)
+    }
+
+    /// Takes the share that a solution left.
+    pub(super) fn left(&mut self, share: f64) {
+        self.expected = Some(share);
+    }
+
+    /// Takes the share of the direction that was gone.
+    pub(super) fn gone(&mut self, share: f64) {
+        self.expected = self.expected.map(|left| 1.0 - share * (1.0 - left));
+    }
+}
