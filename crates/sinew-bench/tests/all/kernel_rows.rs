@@ -48,7 +48,17 @@ fn every_machine_takes_the_same_steps_and_allocates_nothing() {
         let ratios = [row.ns_per_tet, row.ratio_to_p1, row.gain_over_scalar];
         assert!(ratios.iter().all(|ratio| *ratio > 0.0), "{row:?}");
     }
-    assert_eq!(results.marks.len(), 8);
+    // Three elements in both precisions.
+    assert_eq!(results.pulled.len(), 6);
+    for row in &results.pulled {
+        let rounding = if row.precision == "f64" { 1e-10 } else { 1e-3 };
+        assert!(row.off_plain.is_none_or(|off| off < rounding), "{row:?}");
+        assert_eq!(row.off_plain.is_some(), row.element == "p1");
+        assert!(row.error < 0.1 && row.error_of_automatic < 0.1, "{row:?}");
+        let ratios = [row.times_plain, row.over_fixed, row.share_of_roof];
+        assert!(ratios.iter().all(|ratio| *ratio > 0.0), "{row:?}");
+    }
+    assert_eq!(results.marks.len(), 16);
     assert!(results.guards.len() > 4);
     assert!(results.guards.iter().all(|guard| guard.ratio > 0.0));
     let page = results.html();

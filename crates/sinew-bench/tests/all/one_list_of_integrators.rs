@@ -4,9 +4,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Lists of runs, which are about certain methods.
-const LISTS: [&str; 15] = [
+const LISTS: [&str; 16] = [
     "sinew-bench/src/verify/pressed.rs",
     "sinew-bench/src/kernels/laps.rs",
+    "sinew-bench/src/kernels/pulled.rs",
     "sinew-bench/src/scale/methods.rs",
     "sinew-bench/src/scale/newmark.rs",
     "sinew-bench/src/hard/cases.rs",

@@ -91,6 +91,8 @@ pub fn check<L: HyperelasticLaw>(law: L) {
     projection_changes_nothing_that_is_semidefinite(law);
     node_blocks_are_semidefinite(law);
     node_blocks_belong_to_their_tangent(law);
+    wave_moduli_are_sums_of_node_blocks(law);
+    stress_of_shares_is_their_sum(law);
     single_precision_is_double_precision_rounded(law);
     what_is_refused_is_where_the_law_is_not_defined(law);
     the_dilation_is_that_of_the_viscosity(law);
@@ -485,6 +487,45 @@ pub fn node_blocks_belong_to_their_tangent<L: HyperelasticLaw>(law: L) {
                 near(block, expected, 1e-13 * size, said);
             }
         }
+    }
+}
+
+/// Moduli of waves are the sum of node blocks over the axes, to 1e-13 of their size.
+pub fn wave_moduli_are_sums_of_node_blocks<L: HyperelasticLaw>(law: L) {
+    for (mut random, h) in deformations(law) {
+        let at = law.at(h);
+        for bulk in bulks(law, &at, &mut random) {
+            let [x, y, z] = Tensor::identity().0;
+            let [x, y, z] = [x, y, z].map(|axis| law.node_block(&at, bulk, axis));
+            let expected = x + y + z;
+            let said = || format!("{}: moduli of waves at H = {h:?} with {bulk:?}", L::ID);
+            let found = law.wave_moduli(&at, bulk);
+            near(found, expected, 1e-13 * expected.largest(), said);
+        }
+    }
+}
+
+/// The stress that forces go by is the local one and that of the dilation, to 1e-13 of what cancels.
+pub fn stress_of_shares_is_their_sum<L: HyperelasticLaw>(law: L) {
+    for (mut random, h) in deformations(law) {
+        let at = law.at(h);
+        let (share, bulk) = (random.number().abs(), law.lame().0 * random.number());
+        let (local, volume) = (law.stress(&at), law.dilation_gradient(&at));
+        let size =
+            local.largest() + law.lame().1 * at.gradient.largest() + bulk.abs() * volume.largest();
+        let said = || {
+            format!(
+                "{}: share {share} of the stress and {bulk} at H = {h:?}",
+                L::ID
+            )
+        };
+        let expected = local.scaled(share).plus(bulk, volume);
+        near(
+            law.stress_of(&at, share, bulk),
+            expected,
+            1e-13 * size,
+            said,
+        );
     }
 }
 

@@ -47,6 +47,9 @@ pub trait HyperelasticLaw: Copy + Debug + Send + Sync {
     const HAS_ISOCHORIC_PART: bool = false;
     /// The tangent that its node blocks belong to.
     const NODE_BLOCK: NodeBlock = NodeBlock::Majorant;
+    /// True to compile forces once more, for regions that have nothing but the law: some hundredths faster, and a good deal of time to compile, which only laws pay
+    /// back that most scenes have.
+    const IS_COMMON: bool = false;
     /// True if the material has axes: a region then states them, and loops give the law those of each tetrahedron
     /// ([`Self::own_in`]).
     const HAS_AXES: bool = false;

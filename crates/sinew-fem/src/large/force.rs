@@ -78,7 +78,7 @@ impl<'a, T: Vectors> Forces<'a, T> {
         let region = self.piece.region;
         let has_shares = numbers[region].stiffness.is_some();
         let is_plain = regions[region].is_plain() && !has_shares;
-        if is_plain && remembered.is_none() && !with_energy {
+        if L::IS_COMMON && is_plain && remembered.is_none() && !with_energy {
             self.sweep::<true, L>(law)
         } else {
             self.sweep::<false, L>(law)

@@ -69,7 +69,10 @@ impl Waves<'_> {
                     moduli = moduli + beside;
                 }
             }
-            fastest = fastest.max(N::load(&speeds[first..]) * largest_eigenvalue(moduli));
+            // Motions that are no plane waves gain where the volume grows.
+            let volume = at.deformation().volume_ratio.max(N::of(1.0));
+            let squares = N::load(&speeds[first..]) * volume * largest_eigenvalue(moduli);
+            fastest = fastest.max(squares);
         }
         for lane in 0..N::LANES {
             self.fastest = self.fastest.max(fastest.lane(lane));

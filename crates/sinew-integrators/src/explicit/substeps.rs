@@ -592,9 +592,10 @@ impl Known {
         }
     }
 
-    /// The stable step (s) with another wave; that of slower ones does not count as longer.
+    /// The stable step (s) with another wave; that of slower ones does not count as longer. It is taken to fall with the power 3/4 of the square, in place of the
+    /// root: motions that are no plane waves may become faster than these.
     fn limit_at(self, wave: f64) -> f64 {
-        self.limit / (wave / self.wave).max(1.0).sqrt()
+        self.limit / (wave / self.wave).max(1.0).powf(0.75)
     }
 
     /// True if parts of this length (s) are surely stable with this wave.

@@ -45,6 +45,8 @@ pub(super) struct Linear {
     by_factor: Option<Box<ByFactor>>,
     by_gradients: Option<Box<ByGradients>>,
     way: Way,
+    /// True if the next step begins with a factor.
+    insists: bool,
     /// True once there was no memory for a factor.
     lacks_memory: bool,
     forcing: Forcing,
@@ -97,6 +99,7 @@ impl Linear {
             by_factor,
             by_gradients,
             way: Way::Factor,
+            insists: false,
             lacks_memory,
             counts: Counts::default(),
         })
@@ -113,12 +116,13 @@ impl Linear {
     pub(super) fn begin(&mut self) {
         self.forcing = Forcing::new(self.tolerance, self.plan.is_symmetric());
         self.counts.steps += 1;
+        let insists = std::mem::take(&mut self.insists);
         self.way = match &mut self.by_gradients {
-            None => Way::Factor,
-            Some(by_gradients) => {
+            Some(by_gradients) if !insists => {
                 by_gradients.begin();
                 Way::Products
             }
+            _ => Way::Factor,
         };
     }
 
@@ -148,6 +152,15 @@ impl Linear {
         self.way = Way::Factor;
         self.counts.went_on(reason);
         true
+    }
+
+    /// Takes nothing but a factor from the beginning of the step on, which is begun again; false if there is none, or was no other way.
+    pub(super) fn insist_on_factor(&mut self) -> bool {
+        if self.by_gradients.is_some() {
+            self.take_factor(Reason::Stuck);
+            self.insists = self.way == Way::Factor && self.by_factor.is_some();
+        }
+        self.insists
     }
 
     /// Sets the direction at a point by a kind of tangent.

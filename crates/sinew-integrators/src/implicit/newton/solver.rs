@@ -223,6 +223,14 @@ impl Newton {
             if matches!(iterated, Iterated::Stuck) && self.linear.take_factor(Reason::Stuck) {
                 iterated = self.iterate(equations, work);
             }
+            if self
+                .refusal
+                .as_ref()
+                .is_some_and(|(at, _)| *at == iterations)
+            {
+                // Near the end of a law directions have to be exact.
+                self.linear.take_factor(Reason::Stuck);
+            }
             match iterated {
                 Iterated::Moved => self.iterations += 1,
                 Iterated::AtRounding => return Ok(()),

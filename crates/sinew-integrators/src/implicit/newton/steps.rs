@@ -153,7 +153,25 @@ impl NewtonSteps {
             (Err(refusal), Err(_)) => return Err(refused(refusal)),
         }
         let before = work.newton_iterations;
-        let solved = self.newton.solve(&mut equations, &mut work);
+        let mut solved = self.newton.solve(&mut equations, &mut work);
+        let is_open = matches!(
+            solved,
+            Err(NewtonError::Unbalanced { .. } | NewtonError::Singular(_))
+        );
+        if is_open && self.newton.linear.insist_on_factor() {
+            let Newton { point, trial, .. } = &mut self.newton;
+            equations.begin_at(0.0, &mut point.x);
+            equations.begin_at(step.dt, &mut trial.x);
+            let stayed = equations.evaluate(point, &mut work);
+            let moved = equations.evaluate(trial, &mut work);
+            match (stayed, moved) {
+                (Ok(()), Ok(())) => self.newton.take_lower(),
+                (Ok(()), Err(_)) => {}
+                (Err(_), Ok(())) => self.newton.take_trial(),
+                (Err(refusal), Err(_)) => return Err(refused(refusal)),
+            }
+            solved = self.newton.solve(&mut equations, &mut work);
+        }
         solved.map_err(|failure| match failure {
             NewtonError::Refused(refusal) => refused(refusal),
             NewtonError::Unbalanced {
