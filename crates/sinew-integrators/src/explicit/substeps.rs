@@ -236,11 +236,11 @@ impl Substepped {
 }
 
 /// Parts by the current stiffness of a law, of what would take two at rest. They are a function of the state alone, in
-/// which they are stored: after each step, and after four parts of a longer one, a product of the tangent brings the
-/// estimate of the fastest motion up to date ([`follow_largest_eigenvalue`]), about two forces. Until the next one the
-/// stable step is taken to shrink as it did since the last one. A step that turns out to be too long for the stiffness
-/// at its end, or that the law refuses, is taken again in shorter parts, from the state before it: contact, memory and
-/// what it made of the energy are undone.
+/// which they are stored: after each step, and after four parts of a longer one, the fastest wave tells whether the stable
+/// step may have shrunk ([`ElasticLaw::fastest_wave`]); where it may, or for laws that do not tell it, products of the
+/// tangent bring the estimate of the fastest motion up to date ([`follow_largest_eigenvalue`]), about two forces each. A
+/// step that turns out to be too long for the stiffness at its end, or that the law refuses, is taken again in shorter
+/// parts, from the state before it: contact, memory and what it made of the energy are undone.
 impl Substepped {
     fn run_by_current_stiffness(
         &mut self,

@@ -242,7 +242,7 @@ impl<T: Real, V: Lanes<T>> Number for Vector<T, V> {
     #[inline(always)]
     unsafe fn gather_rows(from: &[[T; 4]], places: &[u32]) -> [Self; 3] {
         let places = &places[..T::LANES];
-        let is_row = |place: &u32| (*place as usize) < 4 * from.len() && place % 4 == 0;
+        let is_row = |place: &u32| (*place as usize) < 4 * from.len() && place.is_multiple_of(4);
         debug_assert!(places.iter().all(is_row));
         // SAFETY: see `Vector`; each row is one of the slice, by the caller's promise.
         let [x, y, z] = unsafe { V::gather_rows(from.as_ptr().cast(), places.as_ptr()) };

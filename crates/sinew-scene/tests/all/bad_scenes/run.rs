@@ -115,7 +115,7 @@ fn an_option_of_another_integrator() {
 fn a_factor_in_between() {
     insta::assert_snapshot!(
         refusal(BODY, "dt = 0.02", "dt = 0.02\nfactor = \"sometimes\""),
-        @r#"scene.toml:24: [run]: `newmark`: option `factor` = "sometimes": expected "auto", "always" or "never""#
+        @r#"scene.toml:24: [run]: `newmark`: factor = "sometimes": expected "auto", "always" or "never""#
     );
 }
 
