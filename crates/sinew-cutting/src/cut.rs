@@ -2,9 +2,9 @@
 
 use crate::body::{CuttableBody, NONE};
 use crate::error::CutError;
+use crate::flat::Flat;
 use crate::passed::Passed;
 use crate::report::Stroke;
-use crate::seen::Flat;
 use crate::sheet::Sheet;
 use crate::tet::{EDGES, FACES};
 use crate::touch::Seeing;

@@ -38,6 +38,7 @@ mod course;
 mod cut;
 mod drift;
 mod error;
+mod flat;
 mod incidence;
 mod marks;
 mod near;

@@ -1,7 +1,7 @@
 //! The surface that a blade sweeps.
 
 use crate::drift::Drift;
-use crate::seen::Flat;
+use crate::flat::Flat;
 use sinew_mesh::vector::{Vector, add, bounds_of, cross, dot, length, mean, scaled, sub};
 
 /// Share of its size by which the rim of a sheet reaches out, so that nothing is lost between two that follow each other.

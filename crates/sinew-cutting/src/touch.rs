@@ -1,9 +1,10 @@
 //! The tetrahedra that a sheet touches.
 
 use crate::body::{CuttableBody, NONE};
+use crate::flat::Flat;
 use crate::marks::NodeSide;
 use crate::passed::Passed;
-use crate::seen::{Flat, Outlines};
+use crate::seen::Outlines;
 use crate::sheet::Sheet;
 use crate::tet::{EDGES, FACES};
 use sinew_mesh::vector::{Vector, dot, sub};

@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use sinew_core::{BlockMatrix, ElasticLaw, Layers, Pattern, StepReport, TangentKind};
 
+use super::equations::Equations;
 use super::newton_error::NoDirection;
-use super::solver::Equations;
 use super::unsymmetric::Unsymmetric;
 use crate::implicit::factor::{Factor, Matrices};
 use crate::implicit::factor_error::FactorError;

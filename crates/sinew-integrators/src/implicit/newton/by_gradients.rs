@@ -5,7 +5,7 @@ use sinew_core::{EvaluationError, Layers, Pattern, StepReport, TangentKind};
 use super::at_rest::are_less_work;
 use super::by_products::{Gradients, Products, Solved};
 use super::choice::{Bound, Choice};
-use super::solver::Point;
+use super::equations::Point;
 
 /// Iterations in a step by the blocks at rest, from which on those at the state are worth the sweeps that they take.
 const BY_BLOCKS_AT_REST: u64 = 30;

@@ -7,11 +7,11 @@ use super::by_gradients::ByGradients;
 use super::by_products::{Products, Solved};
 use super::choice::{Bound, Choice};
 use super::counts::{Counts, Reason};
+use super::equations::{Equations, Point};
 use super::factor_use::FactorUse;
 use super::forcing::Forcing;
 use super::newton_error::NoDirection;
 use super::settings::NewtonSettings;
-use super::solver::{Equations, Point};
 use crate::implicit::factor::Factor;
 use crate::implicit::factor_error::FactorError;
 

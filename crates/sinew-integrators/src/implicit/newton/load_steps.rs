@@ -6,10 +6,11 @@ use sinew_core::{
     TangentKind, Trial,
 };
 
+use super::equations::{Equations, Point};
 use super::factor_use::FactorUse;
 use super::newton_error::NewtonError;
 use super::settings::NewtonSettings;
-use super::solver::{Equations, Newton, Point};
+use super::solver::Newton;
 use crate::implicit::factor::Combination;
 
 /// The first step, as a share of the load.

@@ -8,6 +8,7 @@ mod choice;
 mod counts;
 mod derivative;
 mod energy_watch;
+mod equations;
 mod factor_use;
 mod forcing;
 mod linear;

@@ -8,7 +8,7 @@ use sinew_core::{
 
 use super::by_products::Products;
 use super::derivative::Derivative;
-use super::solver::{Equations, Point};
+use super::equations::{Equations, Point};
 use crate::implicit::factor::Combination;
 
 /// Distance over which the change of stiffness damping is measured, as a share of the smallest cell.

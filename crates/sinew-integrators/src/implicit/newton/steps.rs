@@ -6,9 +6,10 @@ use sinew_core::{Fact, Needs, SetupError, State, Step, StepError, StepReport, Sy
 use super::by_products::Products;
 use super::derivative::AtRest;
 use super::energy_watch::EnergyWatch;
+use super::equations::Equations;
 use super::newton_error::NewtonError;
 use super::settings::NewtonSettings;
-use super::solver::{Equations, Newton};
+use super::solver::Newton;
 use super::step_equations::{StepEquations, Unknown, Viscous, ViscousPlace};
 use crate::implicit::factor::Factor;
 
