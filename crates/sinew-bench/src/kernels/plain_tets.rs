@@ -1,7 +1,7 @@
 //! A plain scalar loop over deformed tetrahedra: what forty lines reach.
 
 use sinew_core::LinearSystem;
-use sinew_fem::Model;
+use sinew_fem::{Model, tetra};
 use sinew_mesh::TetMesh;
 
 /// Central difference for plain neo-Hookean tetrahedra in f64: one after the other, each force added to its nodes.
@@ -53,15 +53,10 @@ impl PlainTets {
             v: vec![[0.0; 3]; count],
             force: vec![[0.0; 3]; count],
         };
-        for (nodes, volume) in plain.nodes.iter().zip(&plain.volumes) {
-            let [a, b, c, d] = nodes.map(|node| mesh.points[node]);
-            let edges = [b, c, d].map(|end| [0, 1, 2].map(|axis| end[axis] - a[axis]));
-            // Each gradient is the normal of the face of the two other edges.
-            let of = |first: [f64; 3], second: [f64; 3]| {
-                cross(first, second).map(|x| x / (6.0 * volume))
-            };
-            let [b, c, d] = edges;
-            plain.gradients.push([of(c, d), of(d, b), of(b, c)]);
+        for nodes in &plain.nodes {
+            let vertices = nodes.map(|node| mesh.points[node]);
+            let [_, others @ ..] = tetra::gradients(&vertices).unwrap_or_default();
+            plain.gradients.push(others);
         }
         plain
     }

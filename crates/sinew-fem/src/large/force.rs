@@ -7,7 +7,7 @@ use std::ops::Range;
 use sinew_core::{Deformed, EvaluationError};
 use sinew_sparse::simd::{InstructionSet, Number, Real, SharedSlice, Vectors, WithReal};
 
-use super::axes::{Place, at_place};
+use super::axes::{Place, RegionAxes, at_place};
 use super::beside::{StressBeside, carried_energy};
 use super::chunks::LANES;
 use super::defined::{require_law, require_memory};
@@ -19,6 +19,7 @@ use super::region::{HyperelasticRegion, Numbers};
 use super::rooms::{RegionRooms, Rooms};
 use super::schedule::{Piece, Task};
 use super::scratch::Places;
+use super::stiffness::Stiffness;
 use crate::hyperelastic::HyperelasticLaw;
 use crate::hyperelastic::prony::{deviatoric, first_piola};
 
@@ -196,11 +197,7 @@ impl<T: Vectors, L: HyperelasticLaw, const PLAIN: bool> Sweep<'_, T, L, PLAIN> {
         for first in chunk.slots.clone().step_by(N::LANES) {
             let own = first - chunk.slots.start;
             let gradient = rest.gradient_of::<N>(first, places.displacement);
-            let axes = if PLAIN {
-                None
-            } else {
-                self.numbers.axes.as_ref()
-            };
+            let axes = self.axes();
             let at = at_place(&self.law, gradient, axes, Place::Tets(first));
             require_law(&at, |lane| rest.tag(first + lane))?;
             let volume = rest.volumes::<N>(first);
@@ -247,12 +244,8 @@ impl<T: Vectors, L: HyperelasticLaw, const PLAIN: bool> Sweep<'_, T, L, PLAIN> {
         found: &mut Found<N>,
     ) -> Result<(), EvaluationError> {
         let (region, rest, places) = (self.region, &*self.numbers.rest, &self.places);
-        let stiffness = if PLAIN {
-            None
-        } else {
-            self.numbers.stiffness.as_deref()
-        };
-        let mut remembering = if PLAIN { None } else { self.remembering() };
+        let stiffness = self.stiffness();
+        let mut remembering = self.remembering();
         let mut sums = [no_rows(); LANES];
         for first in edges.step_by(N::LANES) {
             let starts = &self.rooms.starts_at[first..=first + N::LANES];
@@ -263,11 +256,7 @@ impl<T: Vectors, L: HyperelasticLaw, const PLAIN: bool> Sweep<'_, T, L, PLAIN> {
             let volume = N::load(&self.numbers.edge_volumes[first..]);
             let over = N::select_le(volume, N::of(0.0), N::of(0.0), volume.recip());
             let gradient = load::<N>(&sums).scaled(over);
-            let axes = if PLAIN {
-                None
-            } else {
-                self.numbers.axes.as_ref()
-            };
+            let axes = self.axes();
             let at = at_place(&self.law, gradient, axes, Place::Means);
             let tag = |lane: usize| {
                 let tets = region.edges.of(region.edge_at(first + lane));
@@ -320,8 +309,24 @@ impl<T: Vectors, L: HyperelasticLaw, const PLAIN: bool> Sweep<'_, T, L, PLAIN> {
         Ok(())
     }
 
+    /// The material's axes, where its law has some.
+    #[inline(always)]
+    fn axes(&self) -> Option<&RegionAxes<T>> {
+        self.numbers.axes.as_ref().filter(|_| !PLAIN)
+    }
+
+    /// Factors of the law's energies, where they differ.
+    #[inline(always)]
+    fn stiffness(&self) -> Option<&Stiffness<T>> {
+        self.numbers.stiffness.as_deref().filter(|_| !PLAIN)
+    }
+
     /// The memory that is brought up to date, where it is.
+    #[inline(always)]
     fn remembering(&self) -> Option<Remembering<'_, T>> {
+        if PLAIN {
+            return None;
+        }
         let (memory, remembered) = (self.region.memory.as_ref()?, self.remembered?);
         let variables = remembered.internal;
         // SAFETY: one thread updates the history variables (`Evaluation::remembered`), and no two tasks at a time do.
@@ -367,7 +372,7 @@ impl<T: Vectors, L: HyperelasticLaw, const PLAIN: bool> Sweep<'_, T, L, PLAIN> {
         }
         let own_share = 1.0 - region.edge_share;
         let lambda = self.relaxing.factor_of_dilation() * self.law.lame().0;
-        let mut remembering = if PLAIN { None } else { self.remembering() };
+        let mut remembering = self.remembering();
         // SAFETY: see `Sweep`.
         let (dilations, kept, corners) = unsafe {
             let dilations = from(region.kept.tets, &slots);
@@ -381,11 +386,7 @@ impl<T: Vectors, L: HyperelasticLaw, const PLAIN: bool> Sweep<'_, T, L, PLAIN> {
             )
         };
         let (kept, beside) = kept.split_at(places.gradients_of_chunk);
-        let stiffness = if PLAIN {
-            None
-        } else {
-            self.numbers.stiffness.as_deref()
-        };
+        let stiffness = self.stiffness();
         let mut sums = [no_rows(); LANES];
         for first in slots.clone().step_by(N::LANES) {
             let own = first - slots.start;
@@ -394,11 +395,7 @@ impl<T: Vectors, L: HyperelasticLaw, const PLAIN: bool> Sweep<'_, T, L, PLAIN> {
             } else {
                 rest.gradient_of::<N>(first, places.displacement)
             };
-            let axes = if PLAIN {
-                None
-            } else {
-                self.numbers.axes.as_ref()
-            };
+            let axes = self.axes();
             let at = at_place(&self.law, gradient, axes, Place::Tets(first));
             require_law(&at, |lane| rest.tag(first + lane))?;
             let dilation = if is_smoothed {

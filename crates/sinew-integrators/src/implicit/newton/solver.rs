@@ -95,6 +95,24 @@ impl Newton {
         })
     }
 
+    /// Takes the trial for the point where it alone is defined, or has the lower potential.
+    ///
+    /// # Errors
+    /// The refusal of the point where neither is defined.
+    pub(super) fn take_better(
+        &mut self,
+        point: Result<(), EvaluationError>,
+        trial: &Result<(), EvaluationError>,
+    ) -> Result<(), EvaluationError> {
+        match (point, trial) {
+            (Ok(()), Ok(())) => self.take_lower(),
+            (Ok(()), Err(_)) => {}
+            (Err(_), Ok(())) => self.take_trial(),
+            (Err(refusal), Err(_)) => return Err(refusal),
+        }
+        Ok(())
+    }
+
     /// Takes the trial for the point if its potential is the lower one.
     pub(super) fn take_lower(&mut self) {
         self.direction.copy_from_slice(&self.trial.x);

@@ -140,19 +140,11 @@ impl NewtonSteps {
             t: unknown.loads[1].t(),
             source,
         };
-        match (stayed, moved) {
-            (Ok(()), moved) => {
-                if unknown.reach() > 0.0 {
-                    let energy = point.energy * unknown.reach() / unknown.of_forces;
-                    self.watch.supports(energy);
-                }
-                if moved.is_ok() {
-                    self.newton.take_lower();
-                }
-            }
-            (Err(_), Ok(())) => self.newton.take_trial(),
-            (Err(refusal), Err(_)) => return Err(refused(refusal)),
+        if stayed.is_ok() && unknown.reach() > 0.0 {
+            let energy = point.energy * unknown.reach() / unknown.of_forces;
+            self.watch.supports(energy);
         }
+        self.newton.take_better(stayed, &moved).map_err(refused)?;
         let before = work.newton_iterations;
         let mut solved = self.newton.solve(&mut equations, &mut work);
         let is_open = matches!(
@@ -165,12 +157,7 @@ impl NewtonSteps {
             equations.begin_at(step.dt, &mut trial.x);
             let stayed = equations.evaluate(point, &mut work);
             let moved = equations.evaluate(trial, &mut work);
-            match (stayed, moved) {
-                (Ok(()), Ok(())) => self.newton.take_lower(),
-                (Ok(()), Err(_)) => {}
-                (Err(_), Ok(())) => self.newton.take_trial(),
-                (Err(refusal), Err(_)) => return Err(refused(refusal)),
-            }
+            self.newton.take_better(stayed, &moved).map_err(refused)?;
             solved = self.newton.solve(&mut equations, &mut work);
         }
         solved.map_err(|failure| match failure {
