@@ -210,9 +210,10 @@ impl<M: Scheme> Frame<M> {
             return Ok(StepReport::default());
         }
         self.prepared.forget();
-        let before = match std::mem::replace(&mut self.ready, Ready::Not) {
-            Ready::ByHand(steps) => Some(*steps),
-            Ready::Not | Ready::Program(_) => None,
+        let (before, machine) = match std::mem::replace(&mut self.ready, Ready::Not) {
+            Ready::ByHand(steps) => (Some(*steps), None),
+            Ready::Program(loaded) => (None, Some(loaded.machine)),
+            Ready::Not => (None, None),
         };
         self.check_needs(system)?;
         Prepared::check(M::ID, system, dt)?;
@@ -230,7 +231,7 @@ impl<M: Scheme> Frame<M> {
                 self.check_machine(system)?;
                 self.check_rounding()?;
                 let program = Arc::new(program.complete());
-                let mut machine = Chosen::new(self.machine);
+                let mut machine = machine.unwrap_or_else(|| Chosen::new(self.machine));
                 machine.load(Arc::clone(&program), system);
                 Ready::Program(Box::new(Loaded {
                     program,

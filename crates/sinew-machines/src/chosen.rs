@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use sinew_cnn::{Machine, Program};
-use sinew_core::{Batch, CostClock, Equations, State, StepError, System};
+use sinew_core::{Batch, CostClock, Equations, Revision, State, StepError, System};
 
 use crate::settings::{Kind, Settings};
 
@@ -12,6 +12,8 @@ use crate::settings::{Kind, Settings};
 pub struct Chosen {
     settings: Settings,
     machine: Option<Box<dyn Machine>>,
+    /// Identity of the system that it was built for; `None` once it ran another.
+    built_for: Option<Revision>,
     /// True if only the reference machine accepts the system, although the settings allow others.
     alone: bool,
 }
@@ -23,6 +25,7 @@ impl Chosen {
         Self {
             settings,
             machine: None,
+            built_for: None,
             alone: false,
         }
     }
@@ -58,7 +61,11 @@ impl Machine for Chosen {
     }
 
     fn load(&mut self, program: Arc<Program>, system: &dyn System) {
-        let mut machine = (self.settings.kind.known().build)(&self.settings, system);
+        let system_known = self.built_for.replace(system.revision()) == Some(system.revision());
+        let mut machine = match self.machine.take().filter(|_| system_known) {
+            Some(machine) => machine,
+            None => (self.settings.kind.known().build)(&self.settings, system),
+        };
         machine.load(program, system);
         self.alone = match system.equations() {
             Equations::Linear(_) => false,
@@ -70,6 +77,9 @@ impl Machine for Chosen {
     }
 
     fn run(&mut self, batch: &mut Batch<'_>, state: &mut State) -> Result<(), StepError> {
+        self.built_for = self
+            .built_for
+            .filter(|revision| *revision == batch.system().revision());
         match &mut self.machine {
             Some(machine) => machine.run(batch, state),
             None => Err(StepError::NotPrepared),

@@ -34,6 +34,8 @@ pub struct FastMachine<T> {
     set: InstructionSet,
     threads: usize,
     patience: Patience,
+    /// Identity of the system whose elements are loaded.
+    elements_of: Option<Revision>,
     /// Locked by the host while no other thread uses it, so that workers may read it during a sweep.
     loaded: Option<RwLock<Loaded<T>>>,
 }
@@ -106,6 +108,7 @@ impl<T: ElementPrecision> FastMachine<T> {
             set: InstructionSet::best(),
             threads: 1,
             patience: Patience::default(),
+            elements_of: None,
             loaded: None,
         }
     }
@@ -145,7 +148,7 @@ impl<T: ElementPrecision> FastMachine<T> {
         let Some(loaded) = self.loaded.take() else {
             return;
         };
-        let loaded = loaded.into_inner().unwrap_or_else(PoisonError::into_inner);
+        let loaded = released(loaded);
         if let Equations::Linear(linear) = system.equations() {
             self.layout = Layout::general(linear.operators());
         }
@@ -176,7 +179,8 @@ impl<T: ElementPrecision> Machine for FastMachine<T> {
     }
 
     fn load(&mut self, program: Arc<Program>, system: &dyn System) {
-        self.loaded = None;
+        let before = self.loaded.take();
+        let elements_of = self.elements_of.replace(system.revision());
         let loaded = match system.equations() {
             Equations::Linear(linear) => {
                 Loaded::new(program, &self.layout, linear.operators(), None)
@@ -185,13 +189,19 @@ impl<T: ElementPrecision> Machine for FastMachine<T> {
                 let Some(forces) = law.element_forces() else {
                     return;
                 };
-                self.layout = Layout::beside_elements(forces);
-                let shape = SweepShape {
-                    numbering: &self.layout.numbering,
-                    set: self.set,
-                    parts: self.threads,
+                let known = before.filter(|_| elements_of == self.elements_of);
+                let elements = match known.and_then(|loaded| released(loaded).elements) {
+                    Some((elements, _)) => elements,
+                    None => {
+                        self.layout = Layout::beside_elements(forces);
+                        let shape = SweepShape {
+                            numbering: &self.layout.numbering,
+                            set: self.set,
+                            parts: self.threads,
+                        };
+                        T::sweep_of(forces, shape)
+                    }
                 };
-                let elements = T::sweep_of(forces, shape);
                 Loaded::new(program, &self.layout, forces.operators(), Some(elements))
             }
         };
@@ -839,6 +849,10 @@ impl<T: ElementPrecision> ShowCells for TouchedCells<'_, T> {
 /// Value of a lock, even if another thread panicked while holding it.
 fn own<T>(lock: &mut RwLock<T>) -> &mut T {
     lock.get_mut().unwrap_or_else(PoisonError::into_inner)
+}
+
+fn released<T>(lock: RwLock<T>) -> T {
+    lock.into_inner().unwrap_or_else(PoisonError::into_inner)
 }
 
 fn read<T>(lock: &RwLock<T>) -> RwLockReadGuard<'_, T> {

@@ -12,6 +12,7 @@ mod force;
 mod found;
 mod gather;
 mod kept;
+mod last_evaluation;
 mod matrix;
 mod means;
 mod memory;
@@ -55,7 +56,7 @@ use node_blocks::Blocks;
 use product::Products;
 use region::{FirstPlaces, Numbers};
 use regions::{Regions, evaluate_alone};
-use stress::Cauchy;
+use stress::{Cauchy, SharedStress};
 use waves::Waves;
 
 /// Marks a tetrahedron that is in no hyperelastic region.
@@ -79,6 +80,10 @@ pub(crate) struct LargeDeformation {
     /// Scratch space for evaluations, one for each that runs at the same time.
     pool: Mutex<Vec<Scratch>>,
 }
+
+/// What stresses share, by region.
+#[derive(Debug)]
+pub(crate) struct SharedStresses(Vec<Option<SharedStress>>);
 
 impl LargeDeformation {
     /// The regions, each with its tetrahedra; `None` without any.
@@ -146,6 +151,15 @@ impl LargeDeformation {
         past: Past<'_>,
         with_energy: bool,
     ) -> Result<Deformed, EvaluationError> {
+        let has_memory = self.variables > 0;
+        if !has_memory {
+            let known = scratch.last.at(&scratch.displacement, with_energy);
+            if let Some(found) = known {
+                return Ok(found);
+            }
+        }
+        let with_energy = with_energy || scratch.last.expects_energy();
+        scratch.last.forget();
         let evaluation = Evaluation {
             past,
             remembered: None,
@@ -157,7 +171,12 @@ impl LargeDeformation {
             set: self.set,
             with_energy,
         };
-        evaluate_alone(self.all.alone(), &self.all.laws, &evaluation)
+        let found = evaluate_alone(self.all.alone(), &self.all.laws, &evaluation)?;
+        if !has_memory {
+            let found = (found, with_energy);
+            scratch.last.take(&scratch.displacement, found);
+        }
+        Ok(found)
     }
 
     /// Number of internal variables.
@@ -218,6 +237,7 @@ impl LargeDeformation {
         wanted: Wanted,
     ) -> Result<(), EvaluationError> {
         scratch.corners.resize(4 * self.slots, [0.0; 4]);
+        scratch.last.forget();
         for (region, law) in self.with_laws() {
             let mut products = Products {
                 region,
@@ -305,30 +325,40 @@ impl LargeDeformation {
     }
 
     /// The Cauchy stress (Pa) of a tetrahedron of the mesh, in the order of [`crate::stress`], with the displacement (m) of each node; `None`
-    /// where it is in no hyperelastic region, not a number where its law has no meaning.
+    /// where it is in no hyperelastic region, not a number where its law has no meaning. `shared` is filled with what other tetrahedra
+    /// take again at the same displacement.
     pub(crate) fn stress(
         &self,
         tet: usize,
         past: Past<'_>,
         displacement: impl Fn(u32) -> [f64; 3],
+        shared: Option<&mut SharedStresses>,
     ) -> Option<[f64; 6]> {
         let place = *self.place_of_tet.get(tet)?;
         let place = (place != NO_PLACE).then_some(place as usize)?;
-        let (region, law) = self
-            .with_laws()
-            .rev()
-            .find(|(region, _)| region.first <= place)?;
+        let regions = self.with_laws().enumerate().rev();
+        let mut regions = regions.skip_while(|(_, (region, _))| region.first > place);
+        let (number, (region, law)) = regions.next()?;
         let cauchy = Cauchy {
             region,
             tet: place - region.first,
             relaxing: Relaxing::of(region.memory.as_ref(), past),
             displacement: &displacement,
+            shared: shared.and_then(|shared| shared.0[number].as_mut()),
         };
         Some(cauchy.run(law))
     }
 
+    /// Space for what the stresses of all tetrahedra share at one displacement.
+    pub(crate) fn shared_stresses(&self) -> SharedStresses {
+        SharedStresses(self.all.regions.iter().map(SharedStress::of).collect())
+    }
+
     /// The regions with their laws.
-    fn with_laws(&self) -> impl DoubleEndedIterator<Item = (&HyperelasticRegion, &dyn Compiled)> {
+    fn with_laws(
+        &self,
+    ) -> impl DoubleEndedIterator<Item = (&HyperelasticRegion, &dyn Compiled)> + ExactSizeIterator
+    {
         let laws = self.all.laws.iter().map(|law| &**law);
         self.all.regions.iter().zip(laws)
     }

@@ -267,7 +267,7 @@ impl HyperelasticRegion {
     pub(super) fn mean_tensor(
         &self,
         tets: &[u32],
-        of: impl Fn(usize) -> Tensor<f64>,
+        mut of: impl FnMut(usize) -> Tensor<f64>,
     ) -> Tensor<f64> {
         let (mut sum, mut volumes) = (Tensor::zero(), 0.0);
         for tet in tets {

@@ -3,6 +3,7 @@
 use sinew_sparse::simd::{Aligned, Real, Shared, SharedSlice};
 
 use super::kept::{Rows, load, no_rows};
+use super::last_evaluation::LastEvaluation;
 use super::region::HyperelasticRegion;
 use super::rooms::Rooms;
 use crate::hyperelastic::Tensor;
@@ -18,6 +19,8 @@ pub(crate) struct Scratch {
     pub(super) corners: Vec<[f64; 4]>,
     /// Their sums (N) at each node that has corners, in the order of [`super::gather::Gather`].
     pub(super) sums: Vec<[f64; 4]>,
+    /// The evaluation that `sums` are of.
+    pub(super) last: LastEvaluation,
     /// Values that force loops keep.
     pub(super) kept: Kept<f64>,
     /// Gradient of the displacement in each tetrahedron of a region, where means are taken.
@@ -151,6 +154,7 @@ impl Scratch {
             change: vec![[0.0; 4]; nodes],
             corners: Vec::new(),
             sums: vec![[0.0; 4]; taken],
+            last: LastEvaluation::default(),
             kept: Kept::new(regions, rooms, 1),
             gradients: vec![no_rows(); smoothed],
             changes: vec![no_rows(); smoothed],

@@ -46,6 +46,7 @@ impl Model {
             tetra::displacement_gradient(&vertices, &tetra::vertices(displacement, nodes))
         };
         let means = self.mean_strains(|tet| small_strain(&gradient(tet)));
+        let mut shared = self.shared_stresses();
         Ok((0..self.mesh.tets.len()).map(move |tet| {
             let d = gradient(tet);
             let small = small_strain(&d);
@@ -63,7 +64,8 @@ impl Model {
                     small
                 },
                 stress: if is_hyperelastic {
-                    self.large_stress(tet, past, |node| displacement[node as usize])
+                    let at_node = |node| displacement[node as usize];
+                    self.large_stress(tet, past, at_node, shared.as_mut())
                 } else {
                     let strain = self.strain_among(&means, tet, small);
                     self.material_of(tet).stress(&strain)

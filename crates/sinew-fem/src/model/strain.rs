@@ -4,7 +4,7 @@ use sinew_core::LoadTime;
 
 use super::Model;
 use super::field_error::{FieldError, require_length};
-use crate::large::Past;
+use crate::large::{Past, SharedStresses};
 use crate::material::Material;
 use crate::motion::Field;
 use crate::smoothing::{MeanStrains, SmoothedStrain, scaled};
@@ -66,8 +66,9 @@ impl Model {
         self.strain(when, u, out)?;
         let means = self.mean_strains(|tet| out[tet]);
         let at_node = self.at_nodes(when, Field::Displacement, Some(u))?;
+        let mut shared = self.shared_stresses();
         for (tet, out) in out.iter_mut().enumerate() {
-            *out = match self.large_stress(tet, past, &at_node) {
+            *out = match self.large_stress(tet, past, &at_node, shared.as_mut()) {
                 Some(stress) => stress,
                 None => self.stress_at(tet, &self.strain_among(&means, tet, *out))?,
             };
@@ -102,7 +103,7 @@ impl Model {
             return Err(FieldError::TetOutOfRange { tet, tets });
         }
         let at_node = self.at_nodes(when, Field::Displacement, Some(u))?;
-        if let Some(stress) = self.large_stress(tet, past, &at_node) {
+        if let Some(stress) = self.large_stress(tet, past, &at_node, None) {
             return Ok(stress);
         }
         let strain = |tet| self.strain_of(&at_node, tet);
@@ -144,8 +145,14 @@ impl Model {
         tet: usize,
         past: Past<'_>,
         displacement: impl Fn(u32) -> [f64; 3],
+        shared: Option<&mut SharedStresses>,
     ) -> Option<[f64; 6]> {
-        self.large.as_ref()?.stress(tet, past, displacement)
+        self.large.as_ref()?.stress(tet, past, displacement, shared)
+    }
+
+    /// Space for what the stresses of all tetrahedra share at one displacement.
+    pub(super) fn shared_stresses(&self) -> Option<SharedStresses> {
+        self.large.as_ref().map(|large| large.shared_stresses())
     }
 
     fn stress_at(&self, tet: usize, strain: &SmoothedStrain) -> Result<[f64; 6], FieldError> {

@@ -242,6 +242,10 @@ impl Substepped {
 /// step that turns out to be too long for the stiffness at its end, or that the law refuses, is taken again in shorter
 /// parts, from the state before it: contact, memory and what it made of the energy are undone.
 impl Substepped {
+    fn goes_by_current_stiffness(&self, system: &dyn System) -> bool {
+        self.substeps == Substeps::Auto && system.as_linear().is_none()
+    }
+
     fn run_by_current_stiffness(
         &mut self,
         batch: &mut Batch<'_>,
@@ -691,8 +695,15 @@ impl Integrator for Substepped {
     fn prepare(&mut self, system: &dyn System, dt: f64) -> Result<StepReport, SetupError> {
         Prepared::check(self.id(), system, dt)?;
         let parts = self.parts(system, dt)?;
-        self.parts = Some((system.revision(), dt, parts));
-        self.inner.prepare(system, dt / f64::from(parts))
+        let set_up = Some((system.revision(), dt, parts));
+        let before = std::mem::replace(&mut self.parts, set_up);
+        if before == set_up && self.goes_by_current_stiffness(system) {
+            // Each step sets up for the parts that it takes.
+            return Ok(StepReport::default());
+        }
+        self.inner
+            .prepare(system, dt / f64::from(parts))
+            .inspect_err(|_| self.parts = None)
     }
 
     fn stable_step_about(
@@ -706,7 +717,7 @@ impl Integrator for Substepped {
     fn run(&mut self, batch: &mut Batch<'_>, state: &mut State) -> Result<(), StepError> {
         let parts = self.parts(batch.system(), batch.dt())?;
         batch.in_parts(parts, |batch| {
-            if self.substeps == Substeps::Auto && batch.system().as_linear().is_none() {
+            if self.goes_by_current_stiffness(batch.system()) {
                 self.run_by_current_stiffness(batch, state)
             } else {
                 self.inner.run(batch, state)
