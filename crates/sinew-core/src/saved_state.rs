@@ -220,6 +220,8 @@ mod tests {
             stable_step: 1e-3,
             wave: 0.0,
             seen: 0.0,
+            needed: 1,
+            steps: 0,
             damping: 0.0,
         });
         for (number, state) in [never, back, nowhere, whole].into_iter().enumerate() {

@@ -65,6 +65,10 @@ pub struct StepCut {
     pub seen: f64,
     /// The largest eigenvalue of `M^-1 D` over that of `M^-1 K` (s), D being the damping but for that by mass, as found then.
     pub damping: f64,
+    /// The most parts that one of the last steps needed.
+    pub needed: u32,
+    /// Number of these steps.
+    pub steps: u32,
 }
 
 impl StepCut {
@@ -78,8 +82,10 @@ impl StepCut {
             wave,
             seen,
             damping,
+            needed,
+            steps: _,
         } = self;
-        parts > 0 && stable_step > 0.0 && wave >= 0.0 && seen >= 0.0 && damping >= 0.0
+        parts > 0 && needed > 0 && stable_step > 0.0 && wave >= 0.0 && seen >= 0.0 && damping >= 0.0
     }
 }
 

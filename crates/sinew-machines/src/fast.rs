@@ -15,7 +15,7 @@ use sinew_sparse::simd::InstructionSet;
 use sinew_sparse::sweep::{self as kernel, Field, Fields, Outcome, Precision, Rows};
 
 use crate::compiled::{BesideElements, Compiled, Constant, ELEMENTS, Variant};
-use crate::crew::{Crew, Host, Patience};
+use crate::crew::{Chunks, Crew, Host};
 use crate::forces::Forces;
 use crate::layout::Layout;
 use crate::touched::Touched;
@@ -33,17 +33,19 @@ pub struct FastMachine<T> {
     layout: Arc<Layout<T>>,
     set: InstructionSet,
     threads: usize,
-    patience: Patience,
+    crew: Crew,
     /// Identity of the system whose elements are loaded.
     elements_of: Option<Revision>,
-    /// Locked by the host while no other thread uses it, so that workers may read it during a sweep.
-    loaded: Option<RwLock<Loaded<T>>>,
+    /// Locked by the host while no other thread uses it, so that the crew may read it during a sweep.
+    loaded: Option<Arc<RwLock<Loaded<T>>>>,
 }
 
 /// A program with the vectors that it works on.
 #[derive(Debug)]
 struct Loaded<T> {
     program: Arc<Program>,
+    layout: Arc<Layout<T>>,
+    set: InstructionSet,
     /// Identity of the matrices.
     matrices: Revision,
     sweeps: Compiled<T>,
@@ -107,7 +109,7 @@ impl<T: ElementPrecision> FastMachine<T> {
             layout,
             set: InstructionSet::best(),
             threads: 1,
-            patience: Patience::default(),
+            crew: Crew::default(),
             elements_of: None,
             loaded: None,
         }
@@ -145,14 +147,15 @@ impl<T: ElementPrecision> FastMachine<T> {
 
     /// Loads the program again for other matrices than those it was loaded for.
     fn reload(&mut self, system: &dyn System) {
-        let Some(loaded) = self.loaded.take() else {
+        let Some(loaded) = &self.loaded else {
             return;
         };
-        let loaded = released(loaded);
+        let program = Arc::clone(&read(loaded).program);
         if let Equations::Linear(linear) = system.equations() {
             self.layout = Layout::general(linear.operators());
         }
-        self.load(loaded.program, system);
+        self.elements_of = None;
+        self.load(program, system);
     }
 }
 
@@ -183,14 +186,14 @@ impl<T: ElementPrecision> Machine for FastMachine<T> {
         let elements_of = self.elements_of.replace(system.revision());
         let loaded = match system.equations() {
             Equations::Linear(linear) => {
-                Loaded::new(program, &self.layout, linear.operators(), None)
+                Loaded::new(program, (&self.layout, self.set), linear.operators(), None)
             }
             Equations::Forces(law) => {
                 let Some(forces) = law.element_forces() else {
                     return;
                 };
-                let known = before.filter(|_| elements_of == self.elements_of);
-                let elements = match known.and_then(|loaded| released(loaded).elements) {
+                let known = before.as_ref().filter(|_| elements_of == self.elements_of);
+                let elements = match known.and_then(|loaded| write(loaded).elements.take()) {
                     Some((elements, _)) => elements,
                     None => {
                         self.layout = Layout::beside_elements(forces);
@@ -202,10 +205,18 @@ impl<T: ElementPrecision> Machine for FastMachine<T> {
                         T::sweep_of(forces, shape)
                     }
                 };
-                Loaded::new(program, &self.layout, forces.operators(), Some(elements))
+                let operators = forces.operators();
+                Loaded::new(program, (&self.layout, self.set), operators, Some(elements))
             }
         };
-        self.loaded = Some(RwLock::new(loaded));
+        self.loaded = Some(match before {
+            // Its crew stays with it.
+            Some(before) => {
+                *write(&before) = loaded;
+                before
+            }
+            None => Arc::new(RwLock::new(loaded)),
+        });
     }
 
     fn run(&mut self, batch: &mut Batch<'_>, state: &mut State) -> Result<(), StepError> {
@@ -213,43 +224,41 @@ impl<T: ElementPrecision> Machine for FastMachine<T> {
         let Some((operators, elements)) = matrices(system) else {
             return Err(StepError::NotPrepared);
         };
-        let before = self.loaded.as_mut().map(|loaded| own(loaded).matrices);
+        let before = self.loaded.as_ref().map(|loaded| read(loaded).matrices);
         if before.is_some_and(|before| before != operators.revision()) {
             self.reload(system);
         }
-        let Some(loaded) = &mut self.loaded else {
+        let Some(loaded) = &self.loaded else {
             return Err(StepError::NotPrepared);
         };
-        let program = Arc::clone(&own(loaded).program);
+        let program = Arc::clone(&read(loaded).program);
         if program.acceleration != Acceleration::None {
             state.a.resize(state.u.len(), 0.0);
         }
         if let Some(contact) = batch.contact() {
-            own(loaded).touch(&self.layout, contact);
+            write(loaded).touch(&self.layout, contact);
         }
         let (layout, set) = (&*self.layout, self.set);
-        let chunks = own(loaded).chunks();
-        let (loaded, patience) = (&*loaded, &mut self.patience);
-        let work = |chunks| read(loaded).make(layout, set, chunks);
+        let chunks = read(loaded).chunks();
+        let work: Arc<dyn Chunks> = loaded.clone();
+        let crew = &mut self.crew;
         batch.in_parts(program.repeats, |batch| {
             let sweeps = batch.parts_left() * program.step.len();
-            let threads = match patience.is_alone_for(sweeps) {
+            let threads = match crew.patience.is_alone_for(sweeps) {
                 true => 1,
                 false => {
                     let pays = layout.threads_for(chunks, elements, sweeps);
                     pays.min(self.threads)
                 }
             };
-            Crew::gather((threads, patience), &work, |host| {
-                let running = Running {
-                    loaded,
-                    layout,
-                    set,
-                    operators,
-                    host,
-                };
-                running.steps(&program, batch, state)
-            })
+            let running = Running {
+                loaded,
+                layout,
+                set,
+                operators,
+                host: crew.gather(threads, &work),
+            };
+            running.steps(&program, batch, state)
         })
     }
 }
@@ -284,7 +293,7 @@ fn beside(operators: &LinearOperators) -> BesideElements {
 impl<T: ElementPrecision> Loaded<T> {
     fn new(
         program: Arc<Program>,
-        layout: &Layout<T>,
+        (layout, set): (&Arc<Layout<T>>, InstructionSet),
         operators: &LinearOperators,
         elements: Option<Box<dyn ElementSweep<T>>>,
     ) -> Self {
@@ -307,6 +316,8 @@ impl<T: ElementPrecision> Loaded<T> {
         table.extend(sweeps.constants.iter().map(|(_, used)| next(*used)));
         let positions = layout.numbering.positions();
         let mut loaded = Self {
+            layout: Arc::clone(layout),
+            set,
             matrices: operators.revision(),
             fields: Fields::new(count as usize, layers, positions, layout.reach),
             forces_field: table[registers] as usize,
@@ -376,12 +387,12 @@ impl<T: ElementPrecision> Loaded<T> {
 }
 
 /// A batch under way.
-struct Running<'a, 'c, T> {
+struct Running<'a, T> {
     loaded: &'a RwLock<Loaded<T>>,
     layout: &'a Layout<T>,
     set: InstructionSet,
     operators: &'a LinearOperators,
-    host: &'a mut Host<'c>,
+    host: Host<'a>,
 }
 
 /// Groups of sweeps of a program.
@@ -392,7 +403,7 @@ enum Part {
     Step,
 }
 
-impl<T: ElementPrecision> Running<'_, '_, T> {
+impl<T: ElementPrecision> Running<'_, T> {
     /// Takes all steps, or parts of them, of a batch.
     ///
     /// # Errors
@@ -625,7 +636,7 @@ impl<T: ElementPrecision> Loaded<T> {
     }
 
     /// Does the work that was prepared, on a range of chunks, or of parts, that no other thread makes.
-    fn make(&self, layout: &Layout<T>, set: InstructionSet, chunks: Range<usize>) -> Outcome {
+    fn make(&self, chunks: Range<usize>) -> Outcome {
         if let Some((elements, field)) = &self.elements {
             let (done, is_defined) = self.of_elements((&**elements, *field), chunks.clone());
             if done {
@@ -635,7 +646,7 @@ impl<T: ElementPrecision> Loaded<T> {
                 };
             }
         }
-        let (stiffness, dashpots) = (&layout.stiffness, layout.dashpots.as_ref());
+        let (stiffness, dashpots) = (&self.layout.stiffness, self.layout.dashpots.as_ref());
         let sweep = kernel::Sweep {
             map: self.current.variant(&self.sweeps).map(),
             matrices: &[stiffness, dashpots.unwrap_or(stiffness)],
@@ -643,7 +654,7 @@ impl<T: ElementPrecision> Loaded<T> {
             loaded: &self.forces.loaded,
             limit: self.current.limit,
         };
-        run(&sweep, set, chunks)
+        run(&sweep, self.set, chunks)
     }
 
     /// Does what is to be done for elements before the cells are swept; whether that was all, and whether the law is defined.
@@ -847,12 +858,10 @@ impl<T: ElementPrecision> ShowCells for TouchedCells<'_, T> {
 }
 
 /// Value of a lock, even if another thread panicked while holding it.
-fn own<T>(lock: &mut RwLock<T>) -> &mut T {
-    lock.get_mut().unwrap_or_else(PoisonError::into_inner)
-}
-
-fn released<T>(lock: RwLock<T>) -> T {
-    lock.into_inner().unwrap_or_else(PoisonError::into_inner)
+impl<T: ElementPrecision> Chunks for RwLock<Loaded<T>> {
+    fn make(&self, chunks: Range<usize>) -> Outcome {
+        read(self).make(chunks)
+    }
 }
 
 fn read<T>(lock: &RwLock<T>) -> RwLockReadGuard<'_, T> {

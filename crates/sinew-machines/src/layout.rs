@@ -28,8 +28,8 @@ struct BesideElements<T>(Arc<Layout<T>>);
 /// The layout of a lattice, where there is one.
 struct Repeated<T>(Option<Arc<Layout<T>>>);
 
-/// Work of a batch (microseconds, about) below which threads are not begun.
-const BEGIN: usize = 2_000;
+/// Work of a batch (microseconds, about) below which sleeping threads are not woken.
+const WAKE: usize = 400;
 
 /// Work of a sweep (microseconds, about) that is worth a thread.
 const SHARE: usize = 30;
@@ -174,7 +174,7 @@ impl<T: Precision> Layout<T> {
     }
 
     /// The number of threads that pays for sweeps over this number of chunks and elements: as many as each get work for
-    /// some tens of microseconds in a sweep, and one where a batch ends before others have begun.
+    /// some tens of microseconds in a sweep, and one where a batch ends before others are awake.
     pub(crate) fn threads_for(&self, chunks: usize, elements: usize, sweeps: usize) -> usize {
         // Microseconds, about: rows of blocks are read from memory, templates are not.
         let (work, vectors) = match self.stiffness {
@@ -182,7 +182,7 @@ impl<T: Precision> Layout<T> {
             Rows::Lattice(_) => (1, 8),
         };
         let of_sweep = chunks * work * vectors / 8 + elements / ELEMENTS;
-        if of_sweep.saturating_mul(sweeps) < BEGIN {
+        if of_sweep.saturating_mul(sweeps) < WAKE {
             return 1;
         }
         (of_sweep / SHARE).max(1)

@@ -161,8 +161,11 @@ impl Model {
         stress.ok_or(FieldError::NoStress { region })
     }
 
-    /// The mean strains of the sets over which regions average, with the strain of each tetrahedron.
+    /// The mean strains of the sets over which regions average, with the strain of each tetrahedron; none where no law takes strains.
     pub(super) fn mean_strains(&self, strain: impl Fn(usize) -> [f64; 6]) -> MeanStrains {
+        if self.materials.iter().all(Material::is_hyperelastic) {
+            return MeanStrains::default();
+        }
         let share = |tets: &[u32]| self.share_of(tets);
         self.body.smoothing.mean_strains(&self.mesh, strain, share)
     }

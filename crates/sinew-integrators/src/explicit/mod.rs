@@ -3,6 +3,7 @@
 mod central_difference;
 mod forward_euler;
 mod guard;
+mod known_step;
 mod modified_leapfrog;
 #[cfg(feature = "implicit")]
 mod patches;

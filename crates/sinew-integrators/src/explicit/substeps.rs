@@ -1,5 +1,6 @@
 //! `substeps`: a step cut into equal parts.
 
+use super::known_step::{KEPT, Known, followed, wave_at_rest};
 use sinew_cnn::Program;
 use sinew_core::spectrum::{PRODUCTS_OF_ESTIMATE, Spectrum, follow_largest_eigenvalue};
 use sinew_core::{
@@ -112,14 +113,14 @@ const PARTS_BETWEEN_LOOKS: u32 = 40;
 /// Parts after which the fastest motion tells at the latest whether the stable step has shrunk.
 const PARTS_BETWEEN_GLANCES: u32 = 4;
 
-/// Share of the stable step up to which parts stay as they are; of those that are longer more are made, so that they are within [`MARGIN`].
-const KEPT: f64 = 0.95;
-
 /// Growth of the fastest wave's square up to which the stable step is followed by it; with more a look tells.
 const MOST_FOLLOWED: f64 = 1.5;
 
 /// Parts after which a look tells again, where the wave alone, by what it was at rest, would allow longer ones than are taken.
 const PARTS_BETWEEN_DOUBTS: u32 = 24;
+
+/// Steps after which fewer parts are taken, as many as these needed at most: each change of the step excites the fastest motions a little.
+const STEPS_UNTIL_FEWER: u32 = 24;
 
 /// Products of a look after others, until their estimate settles.
 const PRODUCTS_OF_LOOK: u64 = 6;
@@ -275,6 +276,8 @@ impl Substepped {
             wave: 0.0,
             seen: 0.0,
             damping: 0.0,
+            needed: 1,
+            steps: 0,
         };
         state.fastest.clear();
         let stable = match (self.rest, self.wave(batch, state)?) {
@@ -284,9 +287,9 @@ impl Substepped {
                 rest.limit_at(wave)
             }
             (_, wave) => {
+                cut.wave = wave.unwrap_or(0.0);
                 self.look(&mut cut, batch, state)?;
-                (cut.wave, cut.taken) = (wave.unwrap_or(0.0), 0);
-                cut.seen = cut.wave;
+                (cut.seen, cut.taken) = (cut.wave, 0);
                 cut.stable_step
             }
         };
@@ -385,13 +388,31 @@ impl Substepped {
                 return Ok(needed);
             }
         }
-        let most = MOST_MOTION * f64::from(parts);
+        let fewest = self.fewest_parts(&cut, parts, batch.dt());
+        let most = MOST_MOTION * f64::from(fewest);
         let motion = self.motion(batch.system(), state, most);
-        if motion > most {
-            return Ok(whole(motion / MOST_MOTION));
+        let needed = match motion > most {
+            true => whole(motion / MOST_MOTION),
+            false => fewest,
+        };
+        if needed > parts {
+            return Ok(needed);
         }
+        note(&mut cut, parts, needed);
         state.cut = Some(cut);
         Ok(parts)
+    }
+
+    /// The fewest parts of a step, up to `parts` parts of this length (s), that are stable by what is known.
+    fn fewest_parts(&self, cut: &StepCut, parts: u32, part: f64) -> u32 {
+        let by_look = Known::of(cut).limit_at(cut.seen);
+        let by_rest = self.rest.map(|(_, rest)| rest.limit_at(cut.seen));
+        let limit = match cut.seen > 0.0 {
+            true => by_look.max(by_rest.unwrap_or(0.0)),
+            false => cut.stable_step,
+        };
+        let step = part * f64::from(self.finer) * f64::from(parts);
+        Substeps::parts_of(step, limit).min(parts)
     }
 
     /// Checks the stiffness after some of `parts` parts, and updates the cut; the parts that the step needed.
@@ -528,7 +549,7 @@ impl Substepped {
         }
         let spectrum = match elastic {
             Some(law) => {
-                let eigenvalue = self.fastest(law, batch, state)?;
+                let eigenvalue = self.fastest((law, cut.wave > 0.0), batch, state)?;
                 let damping = law.damping();
                 Some(Spectrum {
                     omega_max: eigenvalue.sqrt(),
@@ -552,7 +573,7 @@ impl Substepped {
     /// The largest eigenvalue (1/s^2) of a law's tangent in a state over the masses.
     fn fastest(
         &mut self,
-        law: &dyn ElasticLaw,
+        (law, waves): (&dyn ElasticLaw, bool),
         batch: &mut Batch<'_>,
         state: &mut State,
     ) -> Result<f64, StepError> {
@@ -560,10 +581,8 @@ impl Substepped {
         let mut fields = std::mem::take(&mut state.fastest);
         self.room.resize(mass.len(), 0.0);
         let trial = Trial::of(state, LoadTime::at(state.t()).under(batch.inputs()));
-        let most = match followed(batch.system()) {
-            Some(_) => PRODUCTS_OF_LOOK,
-            None => 1,
-        };
+        // A law whose waves tell is asked rarely.
+        let most = if waves { PRODUCTS_OF_LOOK } else { 1 };
         let mut products = 0;
         let found = follow_largest_eigenvalue(&mut fields, mass, &mut self.room, most, |x, out| {
             products += 1;
@@ -578,64 +597,24 @@ impl Substepped {
     }
 }
 
-/// A stable step with the fastest wave that goes with it.
-#[derive(Clone, Copy, Debug)]
-struct Known {
-    /// The stable step (s).
-    limit: f64,
-    /// The square (1/s^2) of the fastest wave; 0 where none tells.
-    wave: f64,
-}
-
-impl Known {
-    /// By the last look.
-    fn of(cut: &StepCut) -> Self {
-        Self {
-            limit: cut.stable_step,
-            wave: cut.wave,
-        }
-    }
-
-    /// The stable step (s) with another wave; that of slower ones does not count as longer. It is taken to fall with the power 3/4 of the square, in place of the
-    /// root: motions that are no plane waves may become faster than these.
-    fn limit_at(self, wave: f64) -> f64 {
-        self.limit / (wave / self.wave).max(1.0).powf(0.75)
-    }
-
-    /// True if parts of this length (s) are surely stable with this wave.
-    fn allows(self, wave: f64, part: f64) -> bool {
-        // Comparisons that are false for what is not a number.
-        wave > 0.0 && self.wave > 0.0 && part <= KEPT * self.limit_at(wave)
-    }
-}
-
-/// The law of a system whose fastest wave tells about stable steps: without damping that goes by the stiffness, and without loads that follow the surface.
-fn followed(system: &dyn System) -> Option<&dyn ElasticLaw> {
-    let law = system.as_elastic()?;
-    let Damping {
-        stiffness, extra, ..
-    } = law.damping();
-    (*stiffness == 0.0 && extra.is_none() && !law.loads_follow()).then_some(law)
-}
-
-fn wave_at_rest(system: &dyn System) -> f64 {
-    let rest = vec![0.0; system.dofs()];
-    let trial = Trial {
-        load: LoadTime::at(0.0),
-        dt: 0.0,
-        u: &rest,
-        v: &rest,
-        internal: &[],
-    };
-    let wave = followed(system).map(|law| law.fastest_wave(&trial));
-    wave.and_then(Result::ok).flatten().unwrap_or(0.0)
-}
-
 /// Copies a state but for the fields of the fastest motion, which only looks change: what a step that is taken again has seen of it is not lost.
 fn keep(to: &mut State, from: &mut State) {
     let fields = [&mut *to, &mut *from].map(|state| std::mem::take(&mut state.fastest));
     to.clone_from(from);
     [to.fastest, from.fastest] = fields;
+}
+
+/// Notes the parts that a step of `parts` parts needed, and takes as many as the last steps needed at most.
+fn note(cut: &mut StepCut, parts: u32, needed: u32) {
+    if cut.parts > parts {
+        (cut.needed, cut.steps) = (1, 0);
+        return;
+    }
+    (cut.needed, cut.steps) = (cut.needed.max(needed), cut.steps + 1);
+    if cut.steps >= STEPS_UNTIL_FEWER {
+        cut.parts = cut.needed;
+        (cut.needed, cut.steps) = (1, 0);
+    }
 }
 
 /// The work of this number of sweeps.

@@ -2,8 +2,13 @@
 
 mod patience;
 
+use std::any::Any;
+use std::fmt::{self, Debug};
 use std::ops::Range;
+use std::panic::{self, AssertUnwindSafe};
+use std::ptr;
 use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::{self, Thread};
 use std::time::Instant;
 
@@ -20,12 +25,28 @@ const SPINS: u32 = 4_000;
 /// Times that the host lets others run before it sleeps.
 const YIELDS: u32 = 20;
 
-/// Threads that take part in sweeps for as long as a batch lasts. Every chunk is computed by one thread, whichever;
-/// each begins with its own share, so that its rows stay in its cache, and then takes what others have left. So a
+/// The chunks of sweeps, each of which can be made by any thread.
+pub(crate) trait Chunks: Send + Sync {
+    /// Makes some chunks of the sweep under way.
+    fn make(&self, chunks: Range<usize>) -> Outcome;
+}
+
+/// Threads of a machine that take part in sweeps: they are started for the first batch that needs them, and sleep between batches, so that a step starts none.
+/// Every chunk is computed by one thread, whichever; each begins with its own share, so that its rows stay in its cache, and then takes what others have left. So a
 /// thread that gets no processor delays none but the chunks it is at. Where others cost more time than they save, the
 /// host continues alone ([`Patience`]).
-pub(crate) struct Crew<'a> {
-    work: &'a (dyn Fn(Range<usize>) -> Outcome + Sync),
+#[derive(Debug, Default)]
+pub(crate) struct Crew {
+    team: Option<Arc<Team>>,
+    workers: Vec<Thread>,
+    pub(crate) patience: Patience,
+}
+
+/// State that the threads of a crew share.
+struct Team {
+    work: Arc<dyn Chunks>,
+    /// Threads that take part, the host included.
+    threads: AtomicUsize,
     /// Chunks of the present sweep.
     chunks: AtomicUsize,
     /// Chunks that are taken at a time.
@@ -39,19 +60,28 @@ pub(crate) struct Crew<'a> {
     closed: AtomicBool,
     /// One flag per worker: true while it sleeps.
     asleep: Vec<AtomicBool>,
-    host: Thread,
+    host: Mutex<Thread>,
     /// True while the host sleeps until all chunks are done.
     host_asleep: AtomicBool,
     saturated: AtomicU64,
     exceeded: AtomicBool,
+    /// The panic of a worker, for the host.
+    panic: Mutex<Option<Box<dyn Any + Send>>>,
+}
+
+impl Debug for Team {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Team")
+            .field("threads", &self.threads)
+            .finish_non_exhaustive()
+    }
 }
 
 /// The thread that hands out sweeps.
 pub(crate) struct Host<'a> {
-    work: &'a (dyn Fn(Range<usize>) -> Outcome + Sync),
+    work: &'a dyn Chunks,
     /// `None` where the host is alone.
-    crew: Option<&'a Crew<'a>>,
-    workers: Vec<Thread>,
+    team: Option<(&'a Team, &'a [Thread])>,
     patience: &'a mut Patience,
 }
 
@@ -60,24 +90,38 @@ fn since(moment: Instant) -> f64 {
     moment.elapsed().as_secs_f64()
 }
 
-impl<'a> Crew<'a> {
-    /// Runs `body` with `threads` threads, the host included, for sweeps whose chunks are made by `work`.
-    pub(crate) fn gather<R>(
-        (threads, patience): (usize, &mut Patience),
-        work: &'a (dyn Fn(Range<usize>) -> Outcome + Sync),
-        body: impl FnOnce(&mut Host<'_>) -> R,
-    ) -> R {
-        if threads <= 1 {
-            return body(&mut Host {
-                work,
-                crew: None,
-                workers: Vec::new(),
-                patience,
-            });
-        }
+impl Crew {
+    /// A host with `threads` threads, itself included, for sweeps of `work`; fewer where no more can be started.
+    pub(crate) fn gather<'a>(&'a mut self, threads: usize, work: &'a Arc<dyn Chunks>) -> Host<'a> {
         let begun = Instant::now();
-        let crew = Crew {
-            work,
+        if threads > 1 && !self.is_ready(threads, work) {
+            self.dismiss();
+            self.start(threads, work);
+        }
+        let team = self.team.as_deref().filter(|_| threads > 1);
+        if let Some(team) = team {
+            team.threads
+                .store(threads.min(1 + self.workers.len()), Ordering::Relaxed);
+            *lock(&team.host) = thread::current();
+            self.patience.note_gathering(since(begun));
+        }
+        Host {
+            work: &**work,
+            team: team.map(|team| (team, &*self.workers)),
+            patience: &mut self.patience,
+        }
+    }
+
+    fn is_ready(&self, threads: usize, work: &Arc<dyn Chunks>) -> bool {
+        self.team.as_ref().is_some_and(|team| {
+            ptr::addr_eq(Arc::as_ptr(&team.work), Arc::as_ptr(work)) && threads <= team.left.len()
+        })
+    }
+
+    fn start(&mut self, threads: usize, work: &Arc<dyn Chunks>) {
+        let team = Arc::new(Team {
+            work: Arc::clone(work),
+            threads: AtomicUsize::new(threads),
             chunks: AtomicUsize::new(0),
             block: AtomicUsize::new(BLOCK),
             left: (0..threads).map(|_| Left::none()).collect(),
@@ -85,50 +129,54 @@ impl<'a> Crew<'a> {
             turn: AtomicUsize::new(0),
             closed: AtomicBool::new(false),
             asleep: (1..threads).map(|_| AtomicBool::new(false)).collect(),
-            host: thread::current(),
+            host: Mutex::new(thread::current()),
             host_asleep: AtomicBool::new(false),
             saturated: AtomicU64::new(0),
             exceeded: AtomicBool::new(false),
-        };
-        let (result, ended) = thread::scope(|scope| {
-            let workers = (1..threads).map_while(|worker| {
-                let crew = &crew;
-                let spawned =
-                    thread::Builder::new().spawn_scoped(scope, move || crew.serve(worker));
-                // Fewer threads do the same.
-                Some(spawned.ok()?.thread().clone())
-            });
-            let mut host = Host {
-                work,
-                crew: Some(&crew),
-                workers: workers.collect(),
-                patience: &mut *patience,
-            };
-            host.patience.note_gathering(since(begun));
-            // Also where `body` panics, so that no worker waits for ever.
-            struct Close<'c>(&'c Crew<'c>, Vec<Thread>);
-            impl Drop for Close<'_> {
-                fn drop(&mut self) {
-                    self.0.closed.store(true, Ordering::Release);
-                    self.0.turn.fetch_add(1, Ordering::Release);
-                    self.1.iter().for_each(Thread::unpark);
-                }
-            }
-            let _close = Close(&crew, host.workers.clone());
-            (body(&mut host), Instant::now())
+            panic: Mutex::new(None),
         });
-        patience.note_gathering(since(ended));
-        result
+        let workers = (1..threads).map_while(|worker| {
+            let team = Arc::clone(&team);
+            let started = thread::Builder::new().spawn(move || team.serve(worker));
+            // Fewer threads do the same.
+            Some(started.ok()?.thread().clone())
+        });
+        self.workers = workers.collect();
+        self.team = Some(team);
     }
 
+    /// Ends the threads. None is waited for: in a forked process there is none.
+    fn dismiss(&mut self) {
+        if let Some(team) = self.team.take() {
+            team.closed.store(true, Ordering::Release);
+            team.turn.fetch_add(1, Ordering::Release);
+            self.workers.drain(..).for_each(|worker| worker.unpark());
+        }
+    }
+}
+
+impl Drop for Crew {
+    fn drop(&mut self) {
+        self.dismiss();
+    }
+}
+
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+impl Team {
     /// Makes chunks of the present sweep until none is left.
     fn take_part(&self, thread: usize) {
-        let threads = self.left.len();
+        let threads = self.threads.load(Ordering::Relaxed);
+        if thread >= threads {
+            return;
+        }
         for other in (0..threads).map(|step| (thread + step) % threads) {
             while let Some(chunks) = self.left[other].take(self.block.load(Ordering::Relaxed)) {
                 // Also where the work panics, so that the host does not wait for ever.
                 let _done = Done(self, chunks.len());
-                let outcome = (self.work)(chunks);
+                let outcome = self.work.make(chunks);
                 self.saturated
                     .fetch_add(outcome.saturated, Ordering::Relaxed);
                 self.exceeded.fetch_or(outcome.exceeded, Ordering::Relaxed);
@@ -136,7 +184,7 @@ impl<'a> Crew<'a> {
         }
     }
 
-    /// Takes part in sweeps until the crew is closed.
+    /// Takes part in sweeps until the crew is dismissed.
     fn serve(&self, worker: usize) {
         let mut seen = 0;
         let mut spins = 0;
@@ -144,7 +192,10 @@ impl<'a> Crew<'a> {
             let turn = self.turn.load(Ordering::Acquire);
             if turn != seen {
                 (seen, spins) = (turn, 0);
-                self.take_part(worker);
+                let made = panic::catch_unwind(AssertUnwindSafe(|| self.take_part(worker)));
+                if let Err(reason) = made {
+                    lock(&self.panic).get_or_insert(reason);
+                }
             } else if spins < SPINS {
                 spins += 1;
                 std::hint::spin_loop();
@@ -197,14 +248,14 @@ impl Left {
 }
 
 /// A number of chunks that are done as soon as this is dropped.
-struct Done<'a>(&'a Crew<'a>, usize);
+struct Done<'a>(&'a Team, usize);
 
 impl Drop for Done<'_> {
     fn drop(&mut self) {
-        let crew = self.0;
-        let done = crew.done.fetch_add(self.1, Ordering::SeqCst) + self.1;
-        if done == crew.chunks.load(Ordering::SeqCst) && crew.host_asleep.load(Ordering::SeqCst) {
-            crew.host.unpark();
+        let team = self.0;
+        let done = team.done.fetch_add(self.1, Ordering::SeqCst) + self.1;
+        if done == team.chunks.load(Ordering::SeqCst) && team.host_asleep.load(Ordering::SeqCst) {
+            lock(&team.host).unpark();
         }
     }
 }
@@ -212,64 +263,73 @@ impl Drop for Done<'_> {
 impl Host<'_> {
     /// Makes a prepared sweep over `chunks` chunks. Sweeps of a kind take about the same time a chunk.
     pub(crate) fn sweep(&mut self, kind: usize, chunks: usize) -> Outcome {
-        let crew = self.crew.filter(|_| !self.patience.is_alone(kind));
-        if crew.is_none() && !self.patience.is_alone(kind) {
-            return (self.work)(0..chunks);
+        let team = self.team.filter(|_| !self.patience.is_alone(kind));
+        if team.is_none() && !self.patience.is_alone(kind) {
+            return self.work.make(0..chunks);
         }
         let begun = Instant::now();
-        let outcome = match crew {
-            Some(crew) => self.share(crew, chunks),
-            None => (self.work)(0..chunks),
-        };
-        match crew {
-            Some(_) => self.patience.note_shared(kind, chunks, since(begun)),
-            None => self.patience.note_alone(kind, chunks, since(begun)),
-        }
-        outcome
-    }
-
-    fn share(&self, crew: &Crew<'_>, chunks: usize) -> Outcome {
-        crew.saturated.store(0, Ordering::Relaxed);
-        crew.exceeded.store(false, Ordering::Relaxed);
-        crew.done.store(0, Ordering::Relaxed);
-        crew.chunks.store(chunks, Ordering::SeqCst);
-        let threads = crew.left.len();
-        // Where there are few, each is worth a thread of its own.
-        let block = if chunks > threads * BLOCK { BLOCK } else { 1 };
-        crew.block.store(block, Ordering::Relaxed);
-        for (thread, left) in crew.left.iter().enumerate() {
-            left.set(chunks * thread / threads..chunks * (thread + 1) / threads);
-        }
-        crew.turn.fetch_add(1, Ordering::SeqCst);
-        for (asleep, worker) in crew.asleep.iter().zip(&self.workers) {
-            if asleep.load(Ordering::SeqCst) {
-                worker.unpark();
+        match team {
+            Some((team, workers)) => {
+                let outcome = team.share(workers, chunks);
+                self.patience.note_shared(kind, chunks, since(begun));
+                outcome
             }
-        }
-        crew.take_part(0);
-        wait(crew, chunks);
-        Outcome {
-            saturated: crew.saturated.load(Ordering::Relaxed),
-            exceeded: crew.exceeded.load(Ordering::Relaxed),
+            None => {
+                let outcome = self.work.make(0..chunks);
+                self.patience.note_alone(kind, chunks, since(begun));
+                outcome
+            }
         }
     }
 }
 
-/// Waits for the chunks that others are at.
-fn wait(crew: &Crew<'_>, chunks: usize) {
-    let mut looks = 0;
-    while crew.done.load(Ordering::Acquire) < chunks {
-        looks += 1;
-        if looks <= SPINS {
-            std::hint::spin_loop();
-        } else if looks <= SPINS + YIELDS {
-            thread::yield_now();
-        } else {
-            crew.host_asleep.store(true, Ordering::SeqCst);
-            if crew.done.load(Ordering::SeqCst) < chunks {
-                thread::park();
+impl Team {
+    /// Makes a sweep with the workers. Goes on with a worker's panic.
+    fn share(&self, workers: &[Thread], chunks: usize) -> Outcome {
+        self.saturated.store(0, Ordering::Relaxed);
+        self.exceeded.store(false, Ordering::Relaxed);
+        self.done.store(0, Ordering::Relaxed);
+        self.chunks.store(chunks, Ordering::SeqCst);
+        let threads = self.threads.load(Ordering::Relaxed);
+        // Where there are few, each is worth a thread of its own.
+        let block = if chunks > threads * BLOCK { BLOCK } else { 1 };
+        self.block.store(block, Ordering::Relaxed);
+        for (thread, left) in self.left[..threads].iter().enumerate() {
+            left.set(chunks * thread / threads..chunks * (thread + 1) / threads);
+        }
+        self.turn.fetch_add(1, Ordering::SeqCst);
+        for (asleep, worker) in self.asleep.iter().zip(workers).take(threads - 1) {
+            if asleep.load(Ordering::SeqCst) {
+                worker.unpark();
             }
-            crew.host_asleep.store(false, Ordering::SeqCst);
+        }
+        self.take_part(0);
+        self.wait(chunks);
+        if let Some(reason) = lock(&self.panic).take() {
+            panic::resume_unwind(reason);
+        }
+        Outcome {
+            saturated: self.saturated.load(Ordering::Relaxed),
+            exceeded: self.exceeded.load(Ordering::Relaxed),
+        }
+    }
+
+    /// Waits for the chunks that others are at.
+    fn wait(&self, chunks: usize) {
+        let mut looks = 0;
+        while self.done.load(Ordering::Acquire) < chunks {
+            looks += 1;
+            if looks <= SPINS {
+                std::hint::spin_loop();
+            } else if looks <= SPINS + YIELDS {
+                thread::yield_now();
+            } else {
+                self.host_asleep.store(true, Ordering::SeqCst);
+                if self.done.load(Ordering::SeqCst) < chunks {
+                    thread::park();
+                }
+                self.host_asleep.store(false, Ordering::SeqCst);
+            }
         }
     }
 }
@@ -281,25 +341,42 @@ mod tests {
 
     use super::*;
 
-    /// Sweeps of different lengths, since a worker may come late from the one before.
+    /// Work of a test.
+    struct Work<F>(F);
+
+    impl<F: Fn(Range<usize>) -> Outcome + Send + Sync> Chunks for Work<F> {
+        fn make(&self, chunks: Range<usize>) -> Outcome {
+            (self.0)(chunks)
+        }
+    }
+
+    fn work(of: impl Fn(Range<usize>) -> Outcome + Send + Sync + 'static) -> Arc<dyn Chunks> {
+        Arc::new(Work(of))
+    }
+
+    /// Sweeps of different lengths, since a worker may come late from the one before, in batches of one and more, whose threads differ.
     #[test]
     fn every_chunk_of_every_sweep_is_made_once_whatever_the_number_of_threads() {
-        for threads in [1, 2, 3, 8] {
-            let made: Vec<AtomicU32> = (0..37).map(|_| AtomicU32::new(0)).collect();
-            let work = |range: Range<usize>| {
+        for most in [1, 2, 3, 8] {
+            let made: Arc<Vec<AtomicU32>> = Arc::new((0..37).map(|_| AtomicU32::new(0)).collect());
+            let counted = Arc::clone(&made);
+            let work = work(move |range| {
                 let mut outcome = Outcome::default();
                 for chunk in range {
-                    made[chunk].fetch_add(1, Ordering::Relaxed);
+                    counted[chunk].fetch_add(1, Ordering::Relaxed);
                     outcome += Outcome {
                         saturated: chunk as u64,
                         exceeded: chunk == 5,
                     };
                 }
                 outcome
-            };
-            Crew::gather((threads, &mut Patience::default()), &work, |host| {
-                let mut expected = [0; 37];
-                for sweep in 1..=3000 {
+            });
+            let mut expected = [0; 37];
+            let mut crew = Crew::default();
+            for batch in 1..=1000 {
+                let threads = 1 + (batch + most - 1) % most;
+                let mut host = crew.gather(threads, &work);
+                for sweep in 0..batch % 7 {
                     let chunks = [37, 2, 13][sweep % 3];
                     *host.patience = Patience::trusting();
                     let outcome = host.sweep(0, chunks);
@@ -308,35 +385,75 @@ mod tests {
                     expected[..chunks].iter_mut().for_each(|count| *count += 1);
                     for (made, expected) in made.iter().zip(expected) {
                         let made = made.load(Ordering::Relaxed);
-                        assert_eq!(made, expected, "{threads} threads, sweep {sweep}");
+                        assert_eq!(made, expected, "{threads} threads, batch {batch}");
                     }
                 }
-            });
+            }
         }
+    }
+
+    /// Other work takes other threads, which nobody tells of this work any more.
+    #[test]
+    fn a_crew_is_started_again_for_other_work() {
+        let mut crew = Crew::default();
+        for made in 1..20 {
+            let work = work(move |range| Outcome {
+                saturated: (made * range.len()) as u64,
+                exceeded: false,
+            });
+            let mut host = crew.gather(2, &work);
+            *host.patience = Patience::trusting();
+            assert_eq!(host.sweep(0, 30).saturated, 30 * made as u64);
+        }
+    }
+
+    #[test]
+    fn a_panic_of_a_worker_reaches_the_host_and_later_sweeps_are_made() {
+        let host = thread::current().id();
+        let panics = Arc::new(AtomicBool::new(true));
+        let fails = Arc::clone(&panics);
+        let work = work(move |_| {
+            if thread::current().id() == host {
+                thread::sleep(Duration::from_millis(1));
+            } else if fails.load(Ordering::Relaxed) {
+                panic::resume_unwind(Box::new("a worker's"));
+            }
+            Outcome::default()
+        });
+        let mut crew = Crew::default();
+        let mut host = crew.gather(2, &work);
+        *host.patience = Patience::trusting();
+        let made = panic::catch_unwind(AssertUnwindSafe(|| {
+            (0..100).for_each(|_| _ = host.sweep(0, 8));
+        }));
+        let reason = made.expect_err("a worker panics");
+        assert_eq!(reason.downcast_ref(), Some(&"a worker's"));
+        panics.store(false, Ordering::Relaxed);
+        host.sweep(0, 8);
     }
 
     /// Chunks of which each takes a while that a worker sleeps through: the host finds out, and makes the rest itself.
     #[test]
     fn sleeping_workers_are_not_waited_for_in_every_sweep() {
         let host = thread::current().id();
-        let by_others = AtomicUsize::new(0);
-        let work = |range: Range<usize>| {
+        let by_others = Arc::new(AtomicUsize::new(0));
+        let counted = Arc::clone(&by_others);
+        let work = work(move |range| {
             if thread::current().id() != host {
-                by_others.fetch_add(range.len(), Ordering::Relaxed);
+                counted.fetch_add(range.len(), Ordering::Relaxed);
                 thread::sleep(Duration::from_millis(5));
             } else {
                 thread::sleep(Duration::from_micros(20));
             }
             Outcome::default()
-        };
-        let mut patience = Patience::default();
+        });
+        let mut crew = Crew::default();
         let sweeps = 300;
         for _ in 0..10 {
-            Crew::gather((2, &mut patience), &work, |host| {
-                for _ in 0..sweeps / 10 {
-                    host.sweep(0, 8);
-                }
-            });
+            let mut host = crew.gather(2, &work);
+            for _ in 0..sweeps / 10 {
+                host.sweep(0, 8);
+            }
         }
         // One sweep shows it: what it lost is fifty times as long as all others.
         assert!(by_others.load(Ordering::Relaxed) <= 8, "{by_others:?}");

@@ -189,6 +189,60 @@ fn steps_allocate_nothing() {
     }
 }
 
+/// The first batch may start threads; short ones after it find them.
+#[test]
+fn short_batches_with_threads_allocate_nothing() {
+    let mesh = cube(14, 0.1, Split::Kuhn).unwrap();
+    let model = Model::build(&mesh, &problem(law("neo-hookean"), Element::P1)).unwrap();
+    let (program, dt) = leapfrog(&model, 0.5);
+    let mut state = start(&model);
+    let mut machine = machine::<f64>(&model, 2);
+    machine.load(program, &model);
+    let mut steps = |steps, state: &mut State| {
+        let mut batch = Batch::new(&model, Inputs::none(), dt, steps);
+        CountingAllocator::count(|| machine.run(&mut batch, state).unwrap())
+    };
+    steps(100, &mut state);
+    for _ in 0..20 {
+        assert_eq!(steps(4, &mut state), 0);
+    }
+}
+
+/// Another step keeps what the elements need, whatever the machine ran in between, and changes no bit.
+#[test]
+fn a_machine_loaded_for_other_steps_gives_the_bits_of_a_new_one() {
+    let mesh = cube(4, 0.1, Split::Kuhn).unwrap();
+    for (name, model) in models(&mesh) {
+        let (program, dt) = leapfrog(&model, 0.5);
+        let (shorter, short) = leapfrog(&model, 0.3);
+        let start = start(&model);
+        let expected = run(
+            &mut machine::<f64>(&model, 2),
+            (&model, &start),
+            (&program, dt),
+            20,
+        );
+        let mut machine = machine::<f64>(&model, 2);
+        for _ in 0..2 {
+            run(&mut machine, (&model, &start), (&shorter, short), 5);
+            let found = run(&mut machine, (&model, &start), (&program, dt), 20);
+            assert!(found == expected, "{name}");
+        }
+        // Elements of another body are another's.
+        let mesh = cube(3, 0.1, Split::Kuhn).unwrap();
+        let other = Model::build(&mesh, &problem(law("neo-hookean"), EDGES)).unwrap();
+        let (small, step) = leapfrog(&other, 0.5);
+        run(
+            &mut machine,
+            (&other, &self::start(&other)),
+            (&small, step),
+            5,
+        );
+        let found = run(&mut machine, (&model, &start), (&program, dt), 20);
+        assert!(found == expected, "{name}: after another body");
+    }
+}
+
 /// The error text, the time and the motion until then are the same for every number of threads.
 #[test]
 fn a_motion_that_the_law_refuses_ends_there() {
