@@ -12,7 +12,7 @@ use super::beside::{StressBeside, carried_energy};
 use super::chunks::LANES;
 use super::defined::{require_law, require_memory};
 use super::found::Found;
-use super::gather::Gather;
+use super::gather::{CornerPlaces, Gather};
 use super::kept::{Rows, load, load_entries, no_rows, store, store_entries};
 use super::memory::{Past, Points, Relaxing, Remembered, Remembering};
 use super::region::{HyperelasticRegion, Numbers};
@@ -139,8 +139,7 @@ struct Sweep<'a, T, L, const PLAIN: bool> {
     numbers: &'a Numbers<T>,
     gather: &'a Gather,
     rooms: &'a RegionRooms,
-    /// The place of each corner at nodes.
-    corners: &'a [u32],
+    corners: &'a CornerPlaces,
     law: L,
     relaxing: Relaxing<'a, T>,
     remembered: Option<Remembered<'a, T>>,

@@ -6,7 +6,7 @@ use std::ops::{Add, Range};
 
 use sinew_sparse::simd::{Real, SharedSlice};
 
-use super::chunks::{LANES, corner, tet_at};
+use super::chunks::{corner, tet_at};
 
 /// The corners of tetrahedra at each node. Sums are taken by node, in the order of the tetrahedra, so that no two
 /// threads write to one place and the bits do not depend on their number.
@@ -18,8 +18,26 @@ pub(super) struct Gather {
     starts: Vec<u32>,
     /// Corners by their places ([`corner`]).
     corners: Vec<u32>,
-    /// Places of corners; all `corners` are below.
-    room: usize,
+}
+
+/// The place of each corner at nodes, in the order of [`Gather::corners`].
+#[derive(Clone, Debug)]
+pub(super) struct CornerPlaces {
+    places: Vec<u32>,
+    /// All places are below.
+    count: usize,
+}
+
+impl CornerPlaces {
+    pub(super) fn new(places: Vec<u32>) -> Self {
+        let count = places.iter().max().map_or(0, |last| *last as usize + 1);
+        Self { places, count }
+    }
+
+    /// Number of places that an array of corners has at least.
+    pub(super) fn count(&self) -> usize {
+        self.count
+    }
 }
 
 impl Gather {
@@ -35,7 +53,6 @@ impl Gather {
         let mut free = ends.clone();
         let mut of_nodes = vec![0; ends[count] as usize];
         let mut last_places = vec![0; count];
-        let places = tets.clone().count();
         for (tet, nodes) in (0..).zip(tets) {
             for (vertex, node) in (0..).zip(nodes.into_iter().flatten()) {
                 let place = &mut free[node as usize];
@@ -58,7 +75,6 @@ impl Gather {
             nodes,
             starts,
             corners,
-            room: 4 * places.next_multiple_of(LANES),
         }
     }
 
@@ -88,7 +104,7 @@ impl Gather {
     pub(super) unsafe fn sum<T: Real>(
         &self,
         which: Range<usize>,
-        places: &[u32],
+        places: &CornerPlaces,
         at_corners: SharedSlice<'_, [T; 4]>,
         out: SharedSlice<'_, [T; 4]>,
     ) {
@@ -96,7 +112,7 @@ impl Gather {
         // SAFETY: the caller's promise.
         let out = unsafe { out.write(which) };
         for (out, range) in out.iter_mut().zip(starts) {
-            let corners = &places[range[0] as usize..range[1] as usize];
+            let corners = &places.places[range[0] as usize..range[1] as usize];
             // Two sums, since each addition waits for the one before.
             let (mut even, mut odd) = ([T::default(); 4], [T::default(); 4]);
             let (pairs, last) = corners.as_chunks::<2>();
@@ -114,12 +130,18 @@ impl Gather {
         }
     }
 
-    /// [`Gather::sum`] for all nodes, with the corners of all tetrahedra at their places.
-    pub(super) fn sum_all(&self, at_corners: &mut [[f64; 4]], out: &mut [[f64; 4]]) {
-        assert!(self.room <= at_corners.len());
+    /// [`Gather::sum`] with arrays that nobody shares.
+    pub(super) fn sum_part(
+        &self,
+        which: Range<usize>,
+        places: &CornerPlaces,
+        at_corners: &mut [[f64; 4]],
+        out: &mut [[f64; 4]],
+    ) {
+        assert!(places.count <= at_corners.len());
         let (at_corners, out) = (SharedSlice::of(at_corners), SharedSlice::of(out));
-        // SAFETY: both are borrowed for this call alone, and they have space for all places.
-        unsafe { self.sum(0..self.nodes.len(), &self.corners, at_corners, out) }
+        // SAFETY: both are borrowed for this call alone, and there is a corner at each place.
+        unsafe { self.sum(which, places, at_corners, out) }
     }
 }
 

@@ -5,7 +5,7 @@ use sinew_core::{AssemblyError, BlockMatrix, ElementStiffness, EvaluationError};
 use super::axes::Place;
 use super::beside::TangentBeside;
 use super::evaluator::{Asked, Untyped};
-use super::means::{at_edges, means, require, take_dilation};
+use super::means::{at_edge, means, require, take_dilation};
 use super::memory::Relaxing;
 use super::product::{EdgeTangent, OwnTangent, left_of_smoothed, left_of_tets};
 use super::region::HyperelasticRegion;
@@ -57,7 +57,7 @@ impl Tangents<'_, '_> {
         let kind = wanted.kind();
         let is_smoothed = region.is_smoothed();
         if is_smoothed {
-            means(region, scratch, law, relaxing, false)?;
+            means(region, scratch, law, relaxing)?;
         }
         for tet in region.rest.tets() {
             let gradient = match is_smoothed {
@@ -66,7 +66,7 @@ impl Tangents<'_, '_> {
             };
             let at = law.at_point(gradient, region.axes.as_ref(), Place::Tets(tet));
             let left = if is_smoothed {
-                let [dilation, _] = scratch.dilations[region.patch_of[tet] as usize];
+                let dilation = scratch.dilations[region.patch_of[tet] as usize];
                 left_of_smoothed(region, relaxing, at, (tet, dilation))
             } else {
                 require(at, region, relaxing, tet)?;
@@ -86,7 +86,7 @@ impl Tangents<'_, '_> {
             return Ok(());
         }
         for (edge, average) in region.edge_averages().iter().enumerate() {
-            let at = at_edges(region, law, edge, &scratch.gradients, relaxing)?;
+            let at = at_edge(region, law, edge, &scratch.gradients, relaxing)?;
             let tangent = EdgeTangent::of::<true>(at, (region, relaxing, edge), kind);
             sum.average.clone_from(average);
             let share = region.edge_share / 6.0;

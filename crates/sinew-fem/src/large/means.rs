@@ -4,7 +4,6 @@ use sinew_core::EvaluationError;
 use sinew_sparse::simd::Number;
 
 use super::axes::Place;
-use super::chunks::LANES;
 use super::defined::{require_fibres, require_law, require_memory};
 use super::evaluator::{Evaluator, Untyped};
 use super::kept::{Rows, load, no_rows, store};
@@ -14,61 +13,59 @@ use super::scratch::Scratch;
 use crate::hyperelastic::{LawAt, Tensor};
 use crate::smoothing::Average;
 
-/// Takes the gradient of the displacement in each tetrahedron and the mean dilation of each patch; with those of the change, where it is
-/// asked for.
+/// Takes the gradient of the displacement in each tetrahedron and the mean dilation of each patch.
 #[inline(always)]
 pub(super) fn means<N: Number<Real = f64>, E: Evaluator<N> + ?Sized>(
     region: &HyperelasticRegion,
     scratch: &mut Scratch,
     law: &mut E,
     relaxing: &Relaxing<'_>,
-    with_change: bool,
 ) -> Result<(), EvaluationError> {
     let rest = &region.rest;
     for first in (0..rest.count()).step_by(N::LANES) {
-        let side_by_side = first..first + N::LANES;
         let gradient = rest.gradient_of::<N>(first, &scratch.displacement);
-        store(gradient, &mut scratch.gradients[side_by_side.clone()]);
+        store(gradient, &mut scratch.gradients[first..first + N::LANES]);
         let at = law.at(gradient, region.axes.as_ref(), Place::Tets(first));
         let at = &*at;
         require(at, region, relaxing, first)?;
-        let [dilations, changes] = &mut scratch.dilations_of_tets;
         let volume = rest.volumes::<N>(first);
-        (volume * at.dilation()).store(&mut dilations[first..]);
-        if with_change {
-            let change = rest.gradient_of::<N>(first, &scratch.change);
-            store(change, &mut scratch.changes[side_by_side]);
-            let change = at.dilation_gradient().contracted(change);
-            (volume * change).store(&mut changes[first..]);
-        }
+        (volume * at.dilation()).store(&mut scratch.dilations_of_tets[first..]);
     }
-    let mean = |patch: usize, of_tets: &[f64]| {
+    for (patch, mean) in (0..region.patches.count()).zip(&mut scratch.dilations) {
         let tets = region.patches.of(patch).iter();
-        let sum: f64 = tets.map(|tet| of_tets[*tet as usize]).sum();
-        sum / region.patch_volumes[patch]
-    };
-    let [dilations, changes] = &scratch.dilations_of_tets;
-    for (patch, means) in (0..region.patches.count()).zip(&mut scratch.dilations) {
-        let change = if with_change {
-            mean(patch, changes)
-        } else {
-            0.0
-        };
-        *means = [mean(patch, dilations), change];
+        let sum: f64 = tets
+            .map(|tet| scratch.dilations_of_tets[*tet as usize])
+            .sum();
+        *mean = sum / region.patch_volumes[patch];
     }
     Ok(())
 }
 
-/// The mean deformation at edges side by side.
-#[inline(always)]
-pub(super) fn at_edges<'e, N: Number<Real = f64>, E: Evaluator<N> + ?Sized>(
+/// The law at the mean deformation of an edge, with the gradient in each tetrahedron.
+pub(super) fn at_edge<'e>(
     region: &HyperelasticRegion,
-    law: &'e mut E,
-    first: usize,
+    law: &'e mut (dyn Untyped + '_),
+    edge: usize,
     gradients: &[Rows<f64>],
     relaxing: &Relaxing<'_>,
+) -> Result<&'e dyn LawAt<f64>, EvaluationError> {
+    let mut sum = no_rows();
+    for tet in region.edges.of(edge) {
+        let volume = region.rest.volume(*tet as usize);
+        add(&mut sum, volume, &gradients[*tet as usize]);
+    }
+    let gradient = load::<f64>(&[sum]).scaled(region.edge_volumes[edge].recip());
+    mean_at_edges(region, law, (edge, gradient), relaxing)
+}
+
+/// The law at the mean gradients of the displacement at edges side by side, from the `first` on.
+#[inline(always)]
+pub(super) fn mean_at_edges<'e, N: Number<Real = f64>, E: Evaluator<N> + ?Sized>(
+    region: &HyperelasticRegion,
+    law: &'e mut E,
+    (first, gradient): (usize, Tensor<N>),
+    relaxing: &Relaxing<'_>,
 ) -> Result<E::Ref<'e>, EvaluationError> {
-    let gradient = mean_at_edges::<N>(region, first, gradients);
     let at = law.at(gradient, region.axes.as_ref(), Place::Means);
     let tag = |lane: usize| {
         let tets = region.edges.of(region.edge_at(first + lane));
@@ -77,24 +74,6 @@ pub(super) fn at_edges<'e, N: Number<Real = f64>, E: Evaluator<N> + ?Sized>(
     require_law(&*at, tag)?;
     require_memory(relaxing, at.deformation(), tag)?;
     Ok(at)
-}
-
-/// The mean of tensors over the tetrahedra at edges side by side.
-#[inline(always)]
-pub(super) fn mean_at_edges<N: Number<Real = f64>>(
-    region: &HyperelasticRegion,
-    first: usize,
-    of_tets: &[Rows<f64>],
-) -> Tensor<N> {
-    let mut sums = [no_rows(); LANES];
-    for (lane, sum) in sums.iter_mut().enumerate().take(N::LANES) {
-        for tet in region.edges.of(region.edge_at(first + lane)) {
-            let volume = region.rest.volume(*tet as usize);
-            add(sum, volume, &of_tets[*tet as usize]);
-        }
-    }
-    let volumes = N::from_lanes(|lane| region.edge_volumes[region.edge_at(first + lane)]);
-    load::<N>(&sums).scaled(volumes.recip())
 }
 
 /// `sum += factor tensor`.

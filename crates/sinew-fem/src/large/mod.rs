@@ -69,8 +69,6 @@ pub(crate) struct LargeDeformation {
     /// Data of each region that force loops read.
     numbers: Vec<Numbers<f64>>,
     nodes: usize,
-    /// Places of tetrahedra, padding included.
-    slots: usize,
     /// Number of internal (history) variables.
     variables: usize,
     /// The instructions that force loops are run with.
@@ -122,7 +120,6 @@ impl LargeDeformation {
             numbers: made.iter().map(HyperelasticRegion::numbers).collect(),
             all: Arc::new(Regions::new((made, laws), gather)),
             nodes: mesh.points.len(),
-            slots: count,
             variables: kept.variables,
             set: InstructionSet::best(),
             place_of_tet,
@@ -229,28 +226,32 @@ impl LargeDeformation {
         self.all.regions.iter().map(count).sum()
     }
 
-    /// Computes the tangent, or the viscosity, at the displacement in the scratch times the change in it, as forces (N) at the corners.
+    /// Computes the tangent, or the viscosity, at the displacement in the scratch times the change in it, as forces (N) at the nodes.
     pub(crate) fn product(
         &self,
         scratch: &mut Scratch,
         past: Past<'_>,
         wanted: Wanted,
     ) -> Result<(), EvaluationError> {
-        scratch.corners.resize(4 * self.slots, [0.0; 4]);
+        let schedule = self.all.alone();
+        let rooms = schedule.rooms();
+        scratch.product.reserve(&self.all.regions, rooms);
         scratch.last.forget();
-        for (region, law) in self.with_laws() {
+        for piece in schedule.passes().iter().flatten().flatten() {
+            let region = &self.all.regions[piece.region];
             let mut products = Products {
                 region,
+                rooms: &rooms.regions[piece.region],
+                corners: &rooms.corners,
+                gather: &self.all.gather,
+                tasks: &piece.tasks,
                 scratch,
                 relaxing: wanted.relaxing(region, past),
                 wanted,
                 set: self.set,
             };
-            law.products(&mut products)?;
+            self.all.laws[piece.region].products(&mut products)?;
         }
-        self.all
-            .gather
-            .sum_all(&mut scratch.corners, &mut scratch.sums);
         Ok(())
     }
 

@@ -8,7 +8,7 @@ use super::beside::{block_beside, carried_block};
 use super::chunks::LANES;
 use super::evaluator::{Asked, Evaluator, Typed, Untyped};
 use super::kept::{load, no_rows, store};
-use super::means::{at_edges, means, require, take_dilation};
+use super::means::{at_edge, means, require, take_dilation};
 use super::memory::{Points, Relaxing};
 use super::product::{left_of_smoothed, left_of_tets};
 use super::region::HyperelasticRegion;
@@ -64,7 +64,7 @@ impl Blocks<'_> {
         let rest = &region.rest;
         let is_smoothed = region.is_smoothed();
         if is_smoothed {
-            means::<N, E>(region, scratch, law, relaxing, false)?;
+            means::<N, E>(region, scratch, law, relaxing)?;
             if region.edge_share == 1.0 && !ALL {
                 return Ok(());
             }
@@ -80,7 +80,7 @@ impl Blocks<'_> {
             let at = &*at;
             let left = if is_smoothed {
                 let patch = |lane: usize| region.patch_of[first + lane] as usize;
-                let dilation = N::from_lanes(|lane| scratch.dilations[patch(lane)][0]);
+                let dilation = N::from_lanes(|lane| scratch.dilations[patch(lane)]);
                 left_of_smoothed(region, relaxing, at, (first, dilation))
             } else {
                 require(at, region, relaxing, first)?;
@@ -117,7 +117,7 @@ impl Blocks<'_> {
             ..
         } = self;
         for (edge, average) in region.edge_averages().iter().enumerate() {
-            let at = at_edges(region, law, edge, &scratch.gradients, relaxing)?;
+            let at = at_edge(region, law, edge, &scratch.gradients, relaxing)?;
             let stiffness = region.stiffness_at_edges(edge);
             let left = relaxing.left_of(stiffness, Bulk::none(), at.dilation());
             let volume = region.edge_share / 6.0 * average.volume;

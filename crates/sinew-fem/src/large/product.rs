@@ -1,5 +1,7 @@
 //! Products of a tangent, or of the viscosity, with a change of the displacement, without a matrix.
 
+use std::ops::Range;
+
 use sinew_core::{EvaluationError, TangentKind};
 use sinew_sparse::simd::{InstructionSet, Number, Vectors, WithReal};
 
@@ -7,17 +9,24 @@ use super::axes::Place;
 use super::beside::TangentBeside;
 use super::chunks::LANES;
 use super::evaluator::{Asked, Evaluator, Typed};
-use super::kept::{load, no_rows, store};
-use super::means::{add, at_edges, mean_at_edges, means, require};
+use super::gather::{CornerPlaces, Gather};
+use super::kept::{Rows, load, no_rows, store};
+use super::means::{add, mean_at_edges, require};
 use super::memory::{Points, Relaxing};
 use super::region::HyperelasticRegion;
-use super::scratch::Scratch;
+use super::rooms::RegionRooms;
+use super::schedule::Task;
+use super::scratch::{ProductRooms, Scratch};
 use super::wanted::{OnLaw, Wanted};
 use crate::hyperelastic::{Bulk, HyperelasticLaw, LawAt, Linearised, Tensor, projects};
 
-/// The change of the forces at the corners of a region's tetrahedra, computed by these instructions.
+/// A piece of the work on a product with a change of the displacement: the change of forces at the nodes of a region, computed by these instructions.
 pub(crate) struct Products<'a> {
     pub(super) region: &'a HyperelasticRegion,
+    pub(super) rooms: &'a RegionRooms,
+    pub(super) corners: &'a CornerPlaces,
+    pub(super) gather: &'a Gather,
+    pub(super) tasks: &'a [Task],
     pub(super) scratch: &'a mut Scratch,
     pub(super) relaxing: Relaxing<'a>,
     pub(super) wanted: Wanted,
@@ -34,75 +43,140 @@ impl Products<'_> {
 
     /// Computes it with plain numbers.
     pub(super) fn with_numbers(&mut self, law: &dyn Asked) -> Result<(), EvaluationError> {
-        law.with(self.wanted, Ok(()), |law| self.tets::<true, f64, _>(law))
+        law.with(self.wanted, Ok(()), |law| self.all::<true, f64, _>(law))
     }
 
-    /// Takes the means, where there are any, and the change of the stress at their edges.
+    /// Does the tasks. `ALL` is true if projections and the stress beside the law's may contribute: that
+    /// is compiled for plain numbers only, as it would double what there is to compile.
     #[inline(always)]
-    fn means<const ALL: bool, N: Number<Real = f64>, E: Evaluator<N> + ?Sized>(
+    fn all<const ALL: bool, N: Number<Real = f64>, E: Evaluator<N> + ?Sized>(
         &mut self,
         law: &mut E,
     ) -> Result<(), EvaluationError> {
-        let Self {
-            region,
-            scratch,
-            relaxing,
-            wanted,
-            ..
-        } = self;
-        means::<N, E>(region, scratch, law, relaxing, true)?;
-        for first in (0..region.edges.count()).step_by(N::LANES) {
-            let at = at_edges::<N, E>(region, law, first, &scratch.gradients, relaxing)?;
-            let change = mean_at_edges::<N>(region, first, &scratch.changes);
-            let place = (*region, &*relaxing, first);
-            let tangent = EdgeTangent::of::<ALL>(&*at, place, wanted.kind());
-            let to = &mut scratch.at_edges[first..first + N::LANES];
-            store(tangent.on(change), to);
+        for task in self.tasks {
+            match task {
+                Task::Means(chunk) => self.means::<N, E>(law, *chunk)?,
+                Task::Edges(edges) => self.edges::<ALL, N, E>(law, edges.clone())?,
+                Task::Forces(chunk) => self.tets::<ALL, N, E>(law, *chunk)?,
+                Task::Nodes(nodes) => {
+                    let Scratch { product, sums, .. } = &mut *self.scratch;
+                    self.gather
+                        .sum_part(nodes.clone(), self.corners, &mut product.corners, sums);
+                }
+            }
         }
         Ok(())
     }
 
-    /// Writes the change of the forces. `ALL` is true if projections and the stress beside the law's may contribute: that
-    /// is compiled for plain numbers only, as it would double what there is to compile.
+    /// Takes the means over patches of a chunk, and keeps gradients for those over edges.
+    #[inline(always)]
+    fn means<N: Number<Real = f64>, E: Evaluator<N> + ?Sized>(
+        &mut self,
+        law: &mut E,
+        number: usize,
+    ) -> Result<(), EvaluationError> {
+        let (region, rest, relaxing) = (self.region, &self.region.rest, &self.relaxing);
+        let chunk = &region.chunks[number];
+        let Scratch {
+            displacement,
+            change,
+            product,
+            ..
+        } = &mut *self.scratch;
+        let [dilations, changes] = product.dilations.each_mut();
+        let [dilations, changes] = [dilations, changes].map(|all| &mut all[region.kept.tets..]);
+        let rows = self.rooms.gradients[number] as usize;
+        for first in chunk.slots.clone().step_by(N::LANES) {
+            let gradient = rest.gradient_of::<N>(first, displacement);
+            let change = rest.gradient_of::<N>(first, change);
+            let at = law.at(gradient, region.axes.as_ref(), Place::Tets(first));
+            let at = &*at;
+            require(at, region, relaxing, first)?;
+            let volume = rest.volumes::<N>(first);
+            (volume * at.dilation()).store(&mut dilations[first..]);
+            let of_change = at.dilation_gradient().contracted(change);
+            (volume * of_change).store(&mut changes[first..]);
+            if !region.edges_of.is_empty() {
+                let own = rows + first - chunk.slots.start;
+                let own = own..own + N::LANES;
+                let [gradients, of_changes] = &mut product.gradients;
+                store(gradient.scaled(volume), &mut gradients[own.clone()]);
+                store(change.scaled(volume), &mut of_changes[own]);
+            }
+        }
+        for patch in chunk.patches.clone() {
+            let tets = region.patches.of(patch);
+            // The tetrahedra of a patch are neighbours in memory.
+            let first = tets.first().map_or(0, |tet| *tet as usize);
+            let over = region.patch_volumes[patch].recip();
+            let take_mean = |of_tets: &mut [f64], factor: f64| {
+                let of_tets = &mut of_tets[first..first + tets.len()];
+                let sum: f64 = of_tets.iter().sum();
+                of_tets.fill(factor * over * sum);
+            };
+            take_mean(dilations, 1.0);
+            take_mean(changes, region.stiffness_of_patch(patch));
+        }
+        Ok(())
+    }
+
+    /// Computes the change of the stress at some edges.
+    #[inline(always)]
+    fn edges<const ALL: bool, N: Number<Real = f64>, E: Evaluator<N> + ?Sized>(
+        &mut self,
+        law: &mut E,
+        edges: Range<usize>,
+    ) -> Result<(), EvaluationError> {
+        let (region, relaxing) = (self.region, &self.relaxing);
+        let ProductRooms {
+            gradients: [gradients, changes],
+            at_edges,
+            ..
+        } = &mut self.scratch.product;
+        for first in edges.step_by(N::LANES) {
+            let volume = N::load(&region.edge_volumes[first..]);
+            let over = N::select_le(volume, N::of(0.0), N::of(0.0), volume.recip());
+            let gradient = sums_at_edges::<N>(self.rooms, first, gradients).scaled(over);
+            let change = sums_at_edges::<N>(self.rooms, first, changes).scaled(over);
+            let at = mean_at_edges::<N, E>(region, law, (first, gradient), relaxing)?;
+            let place = (region, relaxing, first);
+            let tangent = EdgeTangent::of::<ALL>(&*at, place, self.wanted.kind());
+            let own = self.rooms.edges[first / LANES] as usize + first % LANES;
+            store(tangent.on(change), &mut at_edges[own..own + N::LANES]);
+        }
+        Ok(())
+    }
+
+    /// Writes the change of the forces at the corners of the tetrahedra of a chunk.
     #[inline(always)]
     fn tets<const ALL: bool, N: Number<Real = f64>, E: Evaluator<N> + ?Sized>(
         &mut self,
         law: &mut E,
+        number: usize,
     ) -> Result<(), EvaluationError> {
-        let is_smoothed = self.region.is_smoothed();
-        if is_smoothed {
-            self.means::<ALL, N, E>(law)?;
-        }
-        let Self {
-            region,
-            scratch,
-            relaxing,
-            wanted,
-            ..
-        } = self;
+        let (region, relaxing, wanted) = (self.region, &self.relaxing, self.wanted);
         let rest = &region.rest;
-        let corners = &mut scratch.corners[4 * region.first..];
-        for first in (0..rest.count()).step_by(N::LANES) {
-            let (gradient, change): (Tensor<N>, Tensor<N>) = if is_smoothed {
-                (
-                    load(&scratch.gradients[first..]),
-                    load(&scratch.changes[first..]),
-                )
-            } else {
-                (
-                    rest.gradient_of(first, &scratch.displacement),
-                    rest.gradient_of(first, &scratch.change),
-                )
-            };
+        let is_smoothed = region.is_smoothed();
+        let slots = region.chunks[number].slots.clone();
+        let Scratch {
+            displacement,
+            change,
+            product,
+            ..
+        } = &mut *self.scratch;
+        let corners = &mut product.corners[self.rooms.corners[number] as usize..];
+        let [dilations, changes] = &product.dilations;
+        let kept = if is_smoothed { region.kept.tets } else { 0 };
+        let [dilations, changes] = [dilations, changes].map(|all| &all[kept..]);
+        for first in slots.clone().step_by(N::LANES) {
+            let gradient = rest.gradient_of::<N>(first, displacement);
+            let change = rest.gradient_of::<N>(first, change);
             let at = law.at(gradient, region.axes.as_ref(), Place::Tets(first));
             let at = &*at;
             let mut dilation_change = N::of(0.0);
             let left = if is_smoothed {
-                let patch = |lane: usize| region.patch_of[first + lane] as usize;
-                let dilation = N::from_lanes(|lane| scratch.dilations[patch(lane)][0]);
-                dilation_change = N::from_lanes(|lane| {
-                    region.stiffness_of_patch(patch(lane)) * scratch.dilations[patch(lane)][1]
-                });
+                dilation_change = N::load(&changes[first..]);
+                let dilation = N::load(&dilations[first..]);
                 left_of_smoothed(region, relaxing, at, (first, dilation))
             } else {
                 require(at, region, relaxing, first)?;
@@ -114,22 +188,48 @@ impl Products<'_> {
             let mut stress = own.on(change).plus(of_patch, at.dilation_gradient());
             if !region.edges_of.is_empty() {
                 let mut sums = [no_rows(); LANES];
-                for (lane, sum) in sums.iter_mut().enumerate().take(N::LANES) {
-                    for edge in region.edges_of[first + lane] {
-                        add(sum, 1.0, &scratch.at_edges[edge as usize]);
-                    }
+                let edges_of = &self.rooms.edges_of[first..first + N::LANES];
+                for (sum, edges) in sums.iter_mut().zip(edges_of) {
+                    *sum = rows_of(&product.at_edges, edges);
                 }
                 stress = stress.plus(N::of(region.edge_share / 6.0), load(&sums));
             }
             if ALL {
-                let beside = TangentBeside::of(region, relaxing, first, at.deformation(), *wanted);
+                let beside = TangentBeside::of(region, relaxing, first, at.deformation(), wanted);
                 stress = beside.with(stress, change);
             }
             let stress = stress.scaled(rest.volumes(first));
-            rest.forces(first, stress, &mut corners[4 * (first - first % LANES)..]);
+            let own = first - slots.start;
+            rest.forces(first, stress, &mut corners[4 * (own - own % LANES)..]);
         }
         Ok(())
     }
+}
+
+/// The sums, at edges side by side, of gradients in their tetrahedra.
+#[inline(always)]
+fn sums_at_edges<N: Number<Real = f64>>(
+    rooms: &RegionRooms,
+    first: usize,
+    gradients: &[Rows<f64>],
+) -> Tensor<N> {
+    let starts = &rooms.starts_at[first..=first + N::LANES];
+    let mut sums = [no_rows(); LANES];
+    for (sum, range) in sums.iter_mut().zip(starts.windows(2)) {
+        let tets = range[0] as usize..range[1] as usize;
+        *sum = rows_of(gradients, &rooms.gradients_at[tets]);
+    }
+    load(&sums)
+}
+
+/// The sum of some tensors, all of whose entries are added as one row.
+#[inline(always)]
+fn rows_of(all: &[Rows<f64>], places: &[u32]) -> Rows<f64> {
+    let mut sum = no_rows();
+    for place in places {
+        add(&mut sum, 1.0, &all[*place as usize]);
+    }
+    sum
 }
 
 /// [`Products`] with the type of the law.
@@ -160,7 +260,7 @@ impl<L: HyperelasticLaw> WithReal<f64> for Sweep<'_, '_, L> {
         if N::LANES == 1 {
             products.with_numbers(untyped)
         } else {
-            products.tets::<false, N, _>(&mut Typed(&self.law))
+            products.all::<false, N, _>(&mut Typed(&self.law))
         }
     }
 }
@@ -191,10 +291,7 @@ pub(super) fn left_of_smoothed<N: Number<Real = f64>, A: LawAt<N> + ?Sized>(
     at: &A,
     (first, mean_dilation): (usize, N),
 ) -> (N, Bulk<N>) {
-    let stiffness = N::from_lanes(|lane| {
-        let patch = region.patch_of[first + lane] as usize;
-        region.stiffness_of_patch(patch)
-    });
+    let stiffness = region.stiffness_of_patches::<N>(first);
     let bulk = Bulk {
         stress: stiffness * N::of(at.lame().0) * mean_dilation,
         modulus: N::of(0.0),

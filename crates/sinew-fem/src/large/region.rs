@@ -188,6 +188,15 @@ impl HyperelasticRegion {
         stiffness.map_or(1.0, |stiffness| stiffness.of_patch(patch))
     }
 
+    /// [`Self::stiffness_of_patch`] of the patches of tetrahedra side by side.
+    #[inline(always)]
+    pub(super) fn stiffness_of_patches<N: Number<Real = f64>>(&self, first: usize) -> N {
+        let Some(stiffness) = &self.stiffness else {
+            return N::of(1.0);
+        };
+        N::from_lanes(|lane| stiffness.of_patch(self.patch_of[first + lane] as usize))
+    }
+
     /// The first places behind those of this region.
     pub(super) fn next_places(&self) -> FirstPlaces {
         let tets = if self.is_smoothed() {

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use super::chunks::{LANES, tet_at};
-use super::gather::Gather;
+use super::gather::{CornerPlaces, Gather};
 use super::region::HyperelasticRegion;
 use super::when::{AllChunks, FIRST, When};
 
@@ -11,8 +11,7 @@ use super::when::{AllChunks, FIRST, When};
 #[derive(Clone, Debug)]
 pub(super) struct Rooms {
     pub(super) regions: Vec<RegionRooms>,
-    /// The place of each corner at nodes, in the order of [`Gather::corners`].
-    pub(super) corners: Vec<u32>,
+    pub(super) corners: CornerPlaces,
     /// Rows for gradients, edges and corners.
     pub(super) gradients_count: usize,
     pub(super) edges_count: usize,
@@ -183,7 +182,7 @@ impl Rooms {
             rooms[region].corners[own] + corner - 4 * first as u32
         };
         Self {
-            corners: gather.corners().iter().map(corner).collect(),
+            corners: CornerPlaces::new(gather.corners().iter().map(corner).collect()),
             regions: rooms,
             gradients_count: gradients.count,
             edges_count: edges.count,

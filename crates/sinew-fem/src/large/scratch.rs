@@ -15,24 +15,55 @@ pub(crate) struct Scratch {
     pub(crate) displacement: Aligned<[f64; 4]>,
     /// Its change, for products.
     pub(crate) change: Vec<[f64; 4]>,
-    /// Change of the forces (N) at the four corners of each tetrahedron, each with 0 to fill a row; empty until a product is made.
-    pub(super) corners: Vec<[f64; 4]>,
     /// Their sums (N) at each node that has corners, in the order of [`super::gather::Gather`].
     pub(super) sums: Vec<[f64; 4]>,
     /// The evaluation that `sums` are of.
     pub(super) last: LastEvaluation,
     /// Values that force loops keep.
     pub(super) kept: Kept<f64>,
+    /// Values that products keep.
+    pub(super) product: ProductRooms,
     /// Gradient of the displacement in each tetrahedron of a region, where means are taken.
     pub(super) gradients: Vec<Rows<f64>>,
-    /// Gradient of its change.
-    pub(super) changes: Vec<Rows<f64>>,
-    /// Change of the stress (Pa) at each edge, then padding to fill a vector.
+    /// Dilation of each tetrahedron times its volume (m^3).
+    pub(super) dilations_of_tets: Vec<f64>,
+    /// Mean dilation of each patch.
+    pub(super) dilations: Vec<f64>,
+}
+
+/// Values that the loops of products keep from one task to another, as [`Kept`] those of forces; empty until a product is made.
+#[derive(Debug, Default)]
+pub(super) struct ProductRooms {
+    /// Gradients of the displacement, and of its change, times volumes, where edges take means.
+    pub(super) gradients: [Vec<Rows<f64>>; 2],
+    /// Changes of the stress (Pa) at edges.
     pub(super) at_edges: Vec<Rows<f64>>,
-    /// Dilation of each tetrahedron times its volume (m^3), and its change.
-    pub(super) dilations_of_tets: [Vec<f64>; 2],
-    /// Mean dilation of each patch, and its change.
-    pub(super) dilations: Vec<[f64; 2]>,
+    /// The mean dilation of the patch of each tetrahedron, and its change times the patch's share of the stiffness.
+    pub(super) dilations: [Vec<f64>; 2],
+    /// Changes of the forces (N) at the corners of tetrahedra, each with 0 to fill a row.
+    pub(super) corners: Vec<[f64; 4]>,
+}
+
+impl ProductRooms {
+    /// Makes space for products with these regions.
+    pub(super) fn reserve(&mut self, regions: &[HyperelasticRegion], rooms: &Rooms) {
+        let smoothed = regions.iter().filter(|region| region.is_smoothed());
+        let smoothed = smoothed.map(|region| region.rest.count()).sum();
+        for gradients in &mut self.gradients {
+            gradients.resize(rooms.gradients_count, no_rows());
+        }
+        self.at_edges.resize(rooms.edges_count, no_rows());
+        for dilations in &mut self.dilations {
+            dilations.resize(smoothed, 0.0);
+        }
+        self.corners.resize(rooms.corners_count, [0.0; 4]);
+    }
+}
+
+/// The largest count of a region that takes means.
+fn most(regions: &[HyperelasticRegion], count: impl Fn(&HyperelasticRegion) -> usize) -> usize {
+    let smoothed = regions.iter().filter(|region| region.is_smoothed());
+    smoothed.map(count).max().unwrap_or(0)
 }
 
 /// Values that force loops keep from one task to another. The threads of an evaluation share it.
@@ -73,7 +104,8 @@ pub(super) struct Places<'a, T> {
 impl<T: Copy> Places<'_, T> {
     /// True if all assigned blocks are within the arrays.
     pub(super) fn hold(&self, rooms: &Rooms) -> bool {
-        rooms.gradients_count <= self.gradients.count()
+        rooms.corners.count() <= self.corners.count()
+            && rooms.gradients_count <= self.gradients.count()
             && rooms.edges_count <= self.at_edges.count()
             && rooms.corners_count <= self.corners.count()
     }
@@ -144,23 +176,17 @@ impl Scratch {
         regions: &[HyperelasticRegion],
         rooms: &Rooms,
     ) -> Self {
-        let most = |count: fn(&HyperelasticRegion) -> usize| {
-            let smoothed = regions.iter().filter(|region| region.is_smoothed());
-            smoothed.map(count).max().unwrap_or(0)
-        };
-        let smoothed = most(|region| region.rest.count());
+        let smoothed = most(regions, |region| region.rest.count());
         Self {
             displacement: Aligned::filled([0.0; 4], nodes),
             change: vec![[0.0; 4]; nodes],
-            corners: Vec::new(),
             sums: vec![[0.0; 4]; taken],
             last: LastEvaluation::default(),
             kept: Kept::new(regions, rooms, 1),
             gradients: vec![no_rows(); smoothed],
-            changes: vec![no_rows(); smoothed],
-            at_edges: vec![no_rows(); most(|region| region.edge_volumes.len())],
-            dilations_of_tets: [vec![0.0; smoothed], vec![0.0; smoothed]],
-            dilations: vec![[0.0; 2]; most(|region| region.patches.count())],
+            product: ProductRooms::default(),
+            dilations_of_tets: vec![0.0; smoothed],
+            dilations: vec![0.0; most(regions, |region| region.patches.count())],
         }
     }
 

@@ -119,6 +119,12 @@ const MOST_FOLLOWED: f64 = 1.5;
 /// Parts after which a look tells again, where the wave alone, by what it was at rest, would allow longer ones than are taken.
 const PARTS_BETWEEN_DOUBTS: u32 = 24;
 
+/// The same while that wave is as it was at the last look, up to [`SAME`].
+const PARTS_BETWEEN_DOUBTS_AT_REST: u32 = 5 * PARTS_BETWEEN_DOUBTS;
+
+/// Change of the fastest wave's square that tells nothing new, as a factor.
+const SAME: f64 = 1.1;
+
 /// Steps after which fewer parts are taken, as many as these needed at most: each change of the step excites the fastest motions a little.
 const STEPS_UNTIL_FEWER: u32 = 24;
 
@@ -470,9 +476,16 @@ impl Substepped {
     fn is_followed(&self, cut: &StepCut, wave: f64, part: f64) -> bool {
         let rest = self.rest.map(|(_, rest)| rest);
         let by_rest = || rest.is_some_and(|rest| rest.allows(wave, part));
+        let is_same = wave <= SAME * cut.wave && cut.wave <= SAME * wave;
+        // The farther from the limit, the later: what grows fourfold in its square is seen by then.
+        let spare = (Known::of(cut).limit_at(wave) / part).min(2.0);
+        let until_doubt = match is_same {
+            true => PARTS_BETWEEN_DOUBTS_AT_REST,
+            false => whole(f64::from(PARTS_BETWEEN_DOUBTS) * spare.powi(4)),
+        };
         wave <= MOST_FOLLOWED * cut.wave
             && Known::of(cut).allows(wave, part)
-            && (cut.taken < PARTS_BETWEEN_DOUBTS || by_rest())
+            && (cut.taken < until_doubt || by_rest())
     }
 
     /// The largest motion of a cell against a neighbour since the step began, over its size; 0 where it is surely `within` that, as in most steps.
