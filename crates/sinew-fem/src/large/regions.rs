@@ -17,8 +17,8 @@ pub(super) struct Regions {
     /// The law of each.
     pub(super) laws: Vec<Arc<dyn Compiled>>,
     pub(super) gather: Gather,
-    /// Made for the first evaluation: machines have schedules of their own.
-    alone: OnceLock<Schedule>,
+    /// Made for the first evaluation by one thread.
+    alone: OnceLock<Arc<Schedule>>,
 }
 
 impl Regions {
@@ -35,9 +35,17 @@ impl Regions {
     }
 
     /// The order of work of one thread.
-    pub(super) fn alone(&self) -> &Schedule {
+    pub(super) fn alone(&self) -> &Arc<Schedule> {
         self.alone
-            .get_or_init(|| Schedule::new(&self.regions, &self.gather, 1))
+            .get_or_init(|| Arc::new(Schedule::new(&self.regions, &self.gather, 1)))
+    }
+
+    /// The order of work of `parts` threads.
+    pub(super) fn schedule(&self, parts: usize) -> Arc<Schedule> {
+        match parts {
+            0 | 1 => Arc::clone(self.alone()),
+            parts => Arc::new(Schedule::new(&self.regions, &self.gather, parts)),
+        }
     }
 }
 

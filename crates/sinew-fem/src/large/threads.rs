@@ -21,7 +21,7 @@ pub(crate) struct SharedForces<T> {
     all: Arc<Regions>,
     /// Data of each region that loops read.
     numbers: Vec<Numbers<T>>,
-    schedule: Schedule,
+    schedule: Arc<Schedule>,
     set: InstructionSet,
     kept: Kept<T>,
     sums: Shared<[T; 4]>,
@@ -34,7 +34,7 @@ impl<T: Precision> SharedForces<T> {
         parts: usize,
         set: InstructionSet,
     ) -> Self {
-        let schedule = Schedule::new(&all.regions, &all.gather, parts);
+        let schedule = all.schedule(parts);
         Self {
             numbers,
             set,
