@@ -68,7 +68,8 @@ pub trait ElasticLaw: Send + Sync {
 
     /// The square (1/s^2) of the largest frequency of plane waves as short as an element, at most half a sweep; `None` for a law that does not tell.
     ///
-    /// It is no bound of the largest eigenvalue of `M^-1 S` by itself, S being that of [`ElasticLaw::stiffest_product`], but grows about as that does when the
+    /// It is not itself a bound of the largest eigenvalue of `M^-1 S`, S being that of
+    /// [`ElasticLaw::stiffest_product`], but grows about as that does when the
     /// body is deformed: by at least its power 2/3 up to a growth of one half, so that a stable step that was found once can be followed without a product.
     ///
     /// # Errors
