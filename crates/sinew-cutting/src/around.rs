@@ -31,7 +31,7 @@ pub(crate) struct Around {
 }
 
 impl Around {
-    /// With space for so many nodes and tetrahedra.
+    /// An empty list with capacity for this many nodes and tetrahedra.
     pub(crate) fn with_room(nodes: usize, tets: usize) -> Self {
         Self {
             is_known: false,

@@ -62,7 +62,7 @@ struct Turn {
 }
 
 impl<'a> Seeing<'a> {
-    /// As a blade sees that has gone in direction `last` before.
+    /// A view of the nodes by a sheet whose blade moved in direction `last` before.
     pub(crate) fn new(sheet: &'a Sheet, last: Option<Vector>, longest_edge: f64) -> Self {
         let turn = |last: Vector| {
             let (now, [[first, end], _]) = (sheet.heading(), sheet.poses());
