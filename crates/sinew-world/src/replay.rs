@@ -253,7 +253,7 @@ impl Replay {
         &self.world
     }
 
-    /// The world at the end of what was repeated, which goes on from there.
+    /// The world at the end of the replay, ready to continue.
     #[must_use]
     pub fn into_world(self) -> World {
         self.world

@@ -439,7 +439,7 @@ impl AsRef<World> for World {
     }
 }
 
-/// Takes a step on a copy of a state, which sets the method up and shows whether it can go on from there.
+/// Takes a step on a copy of a state, which sets the method up and shows whether it can continue from there.
 fn try_step(
     system: &dyn System,
     inputs: &Inputs,

@@ -100,7 +100,8 @@ impl Journal {
     }
 
     /// Adds the commands that are new in a log, except those after the last step: poses among them may be replaced by
-    /// later ones. Where the log went back, as that of a world that was restored, the file is written anew. Commands that could not be written are tried again, and the failure is reported once.
+    /// later ones. If the log went back, as that of a restored world, the file is rewritten. Commands that could not
+    /// be written are tried again, and the failure is reported once.
     ///
     /// # Errors
     /// [`JournalError`].
@@ -184,7 +185,7 @@ impl Journal {
     }
 }
 
-/// A file that is created, or one that is empty; `None` where something stands in it.
+/// A file that is created, or an empty one; `None` if it has content.
 fn open(path: &Path) -> io::Result<Option<File>> {
     let mut options = OpenOptions::new();
     options.write(true);

@@ -109,7 +109,7 @@ impl World {
         }
     }
 
-    /// A recorder that saw the motion up to the present state earlier, in so many steps.
+    /// A recorder that has already seen the motion up to the present state, in `steps` steps.
     pub fn show_again<'r, R: Recorder + ?Sized>(
         &self,
         recorder: &'r mut R,
@@ -252,7 +252,7 @@ impl World {
         Ok((idle as usize).max(1))
     }
 
-    /// Cuts what hands and the scene cut at the beginning of a step that ends at `end` (s).
+    /// Applies the cuts of users and of the scene at the beginning of a step that ends at `end` (s).
     fn cut_before(&mut self, end: f64) -> Result<(), WorldStepError> {
         self.change = None;
         let drives_loads = self.drives_loads();
@@ -319,7 +319,7 @@ impl World {
         Ok(())
     }
 
-    /// Gives the channels of all tools in hand their poses at the end (s) of a step that begins at `t` (s).
+    /// Sets the poses of all tools that a user steers, at the end (s) of a step that begins at `t` (s).
     fn move_tools(&mut self, t: f64, end: f64) -> Result<(), WorldStepError> {
         let last = self.state.clock.last_step().unwrap_or(0.0);
         for (index, hand) in self.tools.iter_mut().enumerate() {
@@ -327,7 +327,7 @@ impl World {
                 continue;
             };
             if !hand.is_steered {
-                // Of a tool that is a body of its own it is the hand that is steered.
+                // A tool that is a body of its own is coupled to the user's tool pose: that one is steered.
                 let own = self.body.model().tools();
                 let own = own.and_then(|tools| tools.tools().get(index));
                 let own = own.map_or(Pose::identity(), |tool| tool.motion.at(t, &self.inputs));

@@ -142,8 +142,8 @@ impl World {
         })
     }
 
-    /// The pose to which a tool goes, or its hand draws it: that of the last command, else that of its own path now. Ids of a
-    /// world of another scene give the identity.
+    /// The pose to which a tool moves, or to which the user's coupling pulls it: that of the last command, else that
+    /// of its own path now. Ids of a world of another scene give the identity.
     #[must_use]
     pub fn hand_pose(&self, tool: ToolId) -> Pose {
         let own = || {
