@@ -10,7 +10,8 @@ const MARGIN: f64 = 1.01;
 
 /// The nodes that may be within an edge of a blade, as long as it stays within a box and no node has gone far since they were found.
 ///
-/// It follows from the places of the nodes alone what is near, and it takes no part in any result: it is dropped and found again at any time.
+/// A cache: it follows from the positions of the nodes alone and changes no result, so it can be dropped and rebuilt
+/// at any time.
 #[derive(Default)]
 pub(crate) struct NearNodes {
     /// The box (m) within which the blade must stay; `None` if nothing is known.
