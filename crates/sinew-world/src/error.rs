@@ -60,7 +60,7 @@ pub enum WorldStepError {
     /// A cut after which the motion cannot continue.
     #[error(transparent)]
     Cutting(#[from] CuttingError),
-    /// Loads that cannot be driven on what a cut left.
+    /// Loads that cannot be driven on the body after a cut.
     #[error("after a cut: {0}")]
     Driven(String),
     /// A pose that could not be recorded.

@@ -247,7 +247,7 @@ impl Replay {
         }
     }
 
-    /// The world as far as its motion is repeated.
+    /// The world at the current point of the replay.
     #[must_use]
     pub fn world(&self) -> &World {
         &self.world

@@ -68,9 +68,9 @@ impl World {
         Ok(self.advance(steps, recorder)?)
     }
 
-    /// Takes the steps of [`World::dt`] that cover a time (s) from now on, and ends with it: where they do not fit, as many shorter
-    /// ones of one length. A single short step among long ones would bring energy in where methods are stable in steps of one
-    /// length alone.
+    /// Advances by a time (s) in steps of [`World::dt`]; if the time is not a multiple of it, the steps are equal and
+    /// shorter. A single short step among long ones would add energy with methods that are stable in steps of
+    /// constant length only.
     ///
     /// # Errors
     /// [`AdvanceToError`], also for a time that is negative or not finite.

@@ -164,8 +164,8 @@ impl World {
         Some(self.tools_with(tool)?.report(&self.state, tool.place))
     }
 
-    /// The distance (m) between a tool and the cell or triangle that is nearest to it, negative inside; `None` where it
-    /// may touch none.
+    /// The signed distance (m) between a tool and the nearest cell or triangle, negative inside; `None` if it may
+    /// touch none.
     #[must_use]
     pub fn tool_gap(&self, tool: ToolId) -> Option<Depth> {
         let pose = self.tool_pose(tool);
