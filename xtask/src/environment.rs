@@ -1,4 +1,5 @@
-//! Virtual environments of Python in `target/`, for programs that packages bring and packages that are installed anew.
+//! Virtual environments of Python in `target/`, for packages with programs and for packages that are installed from
+//! here.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -9,7 +10,7 @@ use sinew_scene::output::say;
 use crate::failure::Failure;
 use crate::python::{find, last_line};
 
-/// The file that says what stands in an environment, written once all is there.
+/// The file that lists the contents of an environment, written once it is complete.
 const COMPLETE: &str = "complete.txt";
 
 /// The oldest Python that the package supports.

@@ -90,7 +90,7 @@ fn of_law(id: &str) -> Result<Value, Failure> {
     Ok(case)
 }
 
-/// The same of fibres by themselves.
+/// The same for fibres without a matrix.
 fn of_fibres() -> Result<Vec<Value>, Failure> {
     let direction = [0.6, 0.0, -0.8];
     let eta = 2000.0;

@@ -10,7 +10,7 @@ use crate::failure::Failure;
 use crate::repository::root;
 use crate::wheel;
 
-/// What the tests, the examples and the notebook need.
+/// Packages that the tests, the examples and the notebook need.
 const PACKAGES: &[&str] = &[
     "dask[distributed]",
     "gymnasium",

@@ -30,7 +30,7 @@ pub struct Bench {
     pub quick: bool,
 }
 
-/// Why a bench could not start.
+/// Reasons why a bench cannot start.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum BenchError {

@@ -64,7 +64,7 @@ pub struct Skipped {
     pub integrator: String,
     /// Step (s).
     pub dt: f64,
-    /// Why.
+    /// Reason why it was not made.
     pub reason: String,
 }
 

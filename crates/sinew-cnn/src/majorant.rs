@@ -218,7 +218,7 @@ impl Majorant {
         }
     }
 
-    /// A as weights of the mass, of K and, where there are any, of the dashpots.
+    /// A as weights of the mass, of K and of the dashpots, if any.
     pub(crate) fn weights_of_target(&self) -> (f64, f64, Option<f64>) {
         let damping = self.operators.damping();
         (

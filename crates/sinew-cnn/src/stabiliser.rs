@@ -98,7 +98,7 @@ pub struct Stabiliser {
     dt: f64,
 }
 
-/// The slowest elastic motion of a body, and what is added to the mass makes of it.
+/// The slowest elastic motion of a body, with and without the added mass.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Slowing {
     /// Its period (s).
@@ -120,7 +120,7 @@ enum Spared {
     Iteration(Arc<Projection>),
 }
 
-/// Energy of W in a motion, as a share of what the blocks hold in it, below which it is a rigid one to rounding.
+/// Energy of W in a motion, as a share of its energy in the blocks, below which it is a rigid one to rounding.
 const RIGID: f64 = 1e-10;
 
 /// Iterations by which a solution begins and continues.
@@ -130,7 +130,7 @@ enum Iteration {
     /// `P_p = A (I - (I - P1^-1 A)^p)^-1`, above A for every p where P1 is above A.
     Jacobi(u64),
     /// Chebyshev iteration (Saad, Iterative Methods for Sparse Linear Systems, algorithm 12.1) on
-    /// [floor, 1], which holds the spectrum of `P1^-1 A`. The residual polynomial is at most
+    /// [floor, 1], which contains the spectrum of `P1^-1 A`. The residual polynomial is at most
     /// `eps = 1/T_p((1 + a)/(1 - a))`; dividing by 1 + eps keeps P above A.
     Chebyshev(u64),
 }
@@ -179,7 +179,8 @@ impl Stabiliser {
         Self { spared, ..self }
     }
 
-    /// The parts with those of their motions that W resists to rounding only: not with springs that resist turns, for instance.
+    /// The parts with only the motions that W resists to rounding; springs that resist turns exclude rotations, for
+    /// instance.
     fn without_resistance(&self, mut parts: Vec<FreePart>) -> Vec<FreePart> {
         let n = self.majorant.dofs();
         let (mut x, mut product, mut bound) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
@@ -272,14 +273,14 @@ impl Stabiliser {
         !matches!(self.spared, Spared::None)
     }
 
-    /// True if P is made of one block for each cell, apart from rigid motions that it may spare: a force on a cell then
-    /// moves that cell alone, or its part as a whole.
+    /// True if P consists of one block for each cell, apart from rigid motions that it may spare: a force on a cell
+    /// then moves only that cell, or its part as a rigid body.
     #[must_use]
     pub fn is_of_blocks(&self) -> bool {
         self.inner.is_single()
     }
 
-    /// The rigid motions that its blocks leave out, where they are all that P is made of.
+    /// The rigid motions that its blocks leave out, if P consists of blocks alone.
     #[must_use]
     pub fn deflation(&self) -> Option<&Arc<Deflation>> {
         match &self.spared {
@@ -295,7 +296,7 @@ impl Stabiliser {
     }
 
     /// Sweeps after which each cell knows `P^-1 r`, r being rho of the sweep `right_side`; `None` where
-    /// no program can express it, since cells would have to go one after the other, or need sums over all of them.
+    /// no program can express it, since it visits one cell after the other, or needs sums over all of them.
     pub fn sweeps(&self, program: &mut Program, right_side: Sweep) -> Option<Solution> {
         if self.spares() {
             return None;
@@ -402,7 +403,7 @@ impl Stabiliser {
         self.solver().solve(r, out);
     }
 
-    /// The iteration in the order of the cells, where that is the inner one.
+    /// The iteration in the order of the cells, if that is the inner one.
     fn gauss_seidel(&self) -> Option<GaussSeidel> {
         match self.inner {
             Inner::GaussSeidel { sweeps } if !self.majorant.mass_suffices() => {
@@ -443,7 +444,7 @@ impl Solution {
     }
 
     /// An update that adds the solution times `weight` to the terms it has; its target is none of the
-    /// registers that hold the solution.
+    /// registers with the solution.
     #[must_use]
     pub fn added_to(&self, update: Update, weight: f64) -> Update {
         let terms = self.terms.iter();

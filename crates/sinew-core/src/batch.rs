@@ -426,7 +426,8 @@ impl<'a> Batch<'a> {
         Ok(())
     }
 
-    /// Ends a step or substep of a machine that holds u and v in its own form and knows that no displacement is beyond
+    /// Ends a step or substep of a machine that stores u and v in its own format and knows that no displacement is
+    /// beyond
     /// [`Batch::divergence_limit`]. The state must hold the values that [`Batch::watched`] names, and all of u and v
     /// only if [`Batch::looks_at_steps`].
     ///

@@ -13,7 +13,7 @@ pub(crate) struct Record {
 /// Course of a channel between two values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Between {
-    /// A value holds from its time on until the next: forces.
+    /// Piecewise constant: a value applies from its time until the next. Used for forces.
     Hold,
     /// Straight lines: positions, whose speed is then known to damping.
     Line,
@@ -72,7 +72,7 @@ pub(crate) fn check_finite(channel: u32, t: f64, value: f64) -> Result<(), Input
 }
 
 impl Record {
-    /// Values that hold, none yet.
+    /// An empty record of piecewise constant values.
     pub(crate) fn hold() -> Self {
         Self {
             value: empty(),
@@ -161,7 +161,7 @@ impl Record {
         values.push(value);
     }
 
-    /// Forgets the values before the one that holds, or the line that passes, at `t` (s).
+    /// Forgets the values before the one, or the line, that applies at `t` (s).
     pub(crate) fn forget_before(&mut self, t: f64) {
         for ramp in [&mut self.value, &mut self.rate] {
             if let Some((times, values)) = points(ramp) {

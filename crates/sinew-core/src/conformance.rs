@@ -61,7 +61,7 @@
 //!     with_room: || Box::new(Mine { a: Vec::with_capacity(100) }),
 //! });
 //!
-//! // Each law can be called by itself, too.
+//! // Each law can be called separately, too.
 //! sinew_core::conformance::observed_order_is_declared_order(&|| Box::new(Mine::default()));
 //! ```
 

@@ -1,4 +1,4 @@
-//! Contact of a body with what touches it from outside, such as rigid tools.
+//! Contact of a body with rigid tools and other obstacles.
 
 use std::fmt::Debug;
 
@@ -26,8 +26,9 @@ pub trait Contact: Debug + Send + Sync {
     /// Numbers that it keeps in [`State::contact`].
     fn kept(&self) -> usize;
 
-    /// Pushes the cells of a trial state: changes u and v, and what it keeps in [`State::contact`], which is zeros before the first step. It asks `cells` for u and v before it reads them, and
-    /// adds those that it pushed to `pushed`.
+    /// Resolves contact on a trial state: changes u and v of cells, and its own variables in [`State::contact`],
+    /// which are zero before the first step. Asks `cells` for u and v before it reads them, and appends the changed
+    /// cells to `pushed`.
     fn meet(
         &self,
         meeting: &Meeting<'_>,
@@ -36,20 +37,23 @@ pub trait Contact: Debug + Send + Sync {
         pushed: &mut Vec<u32>,
     );
 
-    /// The impulse (N s) that each thing which touches the body has received from it since the motion began.
+    /// The impulse (N s) that each obstacle has received from the body since the motion began.
     fn impulses(&self, state: &State) -> Vec<[f64; 3]>;
 
-    /// The work (J) that they did on the body since the motion began.
+    /// The work (J) that the obstacles did on the body since the motion began.
     fn work(&self, state: &State) -> f64;
 
-    /// Adds the forces (N) of the last step to those on all degrees of freedom, with or without those in directions that are held.
+    /// Adds the contact forces (N) of the last step to `out`, over all degrees of freedom; components in fixed
+    /// directions only if `with_held`.
     fn add_forces(&self, state: &State, with_held: bool, out: &mut [f64]);
 }
 
-/// Shows contact the cells of a trial state: a machine that keeps its own vectors writes no more of them than a step asks for.
+/// Access of contact to the cells of a trial state: a machine that keeps its own vectors copies only the cells that a
+/// step needs.
 pub trait ShowCells {
-    /// Writes u and v of the cells that contact reads into the state. Without a box, of all of them. With one (m), it may write those alone whose ways meet it, and lists their places among
-    /// these cells in `near`, increasing. A way leads straight to where the step ended, from `u` less [`Meeting::way`] of `v`.
+    /// Copies u and v of the contact cells into `state`. With `within` (m), it may copy only cells whose path over
+    /// the step meets the box; `near` receives their indices among these cells, increasing. A path is the segment
+    /// that ends at `u` and begins at `u` less [`Meeting::way`] of `v`.
     fn show(
         &mut self,
         within: Option<[[f64; 3]; 2]>,
@@ -95,7 +99,8 @@ pub struct Meeting<'a> {
     pub mass: &'a [f64],
     /// The matrix P.
     pub inertia: Inertia<'a>,
-    /// The time (s) by which a change of velocity is divided in an acceleration that the state keeps; `None` where it keeps none.
+    /// The time (s) by which a change of velocity is divided to correct the acceleration that the state keeps; `None`
+    /// if it keeps none.
     pub kick: Option<f64>,
     /// The size (m/s) up to which a component of a velocity moves the displacement: infinite but for a network that saturates.
     pub saturation: f64,

@@ -11,7 +11,7 @@ pub enum CostClock {
     AllThreads,
     /// Wall time, for work that no CPU clock sees.
     Wall {
-        /// Why no CPU clock tells the cost, such as `the steps run on a graphics processor`.
+        /// Reason why no CPU clock tells the cost, such as `the steps run on a graphics processor`.
         reason: &'static str,
     },
 }

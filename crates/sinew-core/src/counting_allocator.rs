@@ -1,4 +1,4 @@
-//! An allocator that counts, for tests of what allocates.
+//! Allocator that counts, for tests of allocations.
 
 #![allow(
     unsafe_code,
@@ -16,7 +16,7 @@ thread_local! {
     static PEAK: Cell<isize> = const { Cell::new(0) };
 }
 
-/// Bytes that all threads hold. It wraps round rather than fail where another allocator's block comes back.
+/// Bytes that all threads have allocated. It wraps round rather than fail if another allocator's block is freed here.
 static LIVE: AtomicUsize = AtomicUsize::new(0);
 
 /// The system's allocator, which counts what each thread allocates: the global allocator of a test
@@ -35,14 +35,15 @@ static LIVE: AtomicUsize = AtomicUsize::new(0);
 pub struct CountingAllocator;
 
 impl CountingAllocator {
-    /// Number of allocations by this thread while `body` runs; 0 too where it is not the global allocator.
+    /// Number of allocations by this thread while `body` runs; also 0 if it is not the global allocator.
     pub fn count(body: impl FnOnce()) -> u64 {
         let before = ALLOCATIONS.get();
         body();
         ALLOCATIONS.get() - before
     }
 
-    /// Result of `body`, and the most bytes that this thread held at a time while it ran, beyond what it held before; 0 where
+    /// Result of `body`, and the peak of the bytes that this thread allocated during it, beyond those at its
+    /// beginning; 0 if
     /// it is not the global allocator.
     pub fn peak<T>(body: impl FnOnce() -> T) -> (T, usize) {
         let before = HELD.get();
@@ -51,7 +52,7 @@ impl CountingAllocator {
         (result, PEAK.get().saturating_sub(before).unsigned_abs())
     }
 
-    /// Bytes that all threads hold; 0 where it is not the global allocator.
+    /// Bytes that all threads have allocated; 0 if it is not the global allocator.
     #[must_use]
     pub fn live_bytes() -> usize {
         LIVE.load(Ordering::Relaxed)

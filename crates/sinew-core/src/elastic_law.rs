@@ -14,9 +14,9 @@ use crate::vectors::{add_scaled, dot, scale};
 /// With `W(u)` the energy, the law's net force is `f_ext(u) - dW/du - (alpha M + E) v - V(u) v`: alpha and the constant matrix E are those of
 /// [`ElasticLaw::damping`], V is the stiffness damping of [`ElasticLaw::viscous_force`]. Methods that
 /// solve equations or watch the energy need it ([`crate::Needs::Tangents`]). Points are those of [`crate::ForceLaw::net_force`];
-/// evaluation changes nothing.
+/// evaluation has no side effects.
 pub trait ElasticLaw: Send + Sync {
-    /// `out = dW/du` (N), one sweep, with what the sweep finds on its way.
+    /// `out = dW/du` (N), one sweep; returns the deformation found by the same sweep.
     ///
     /// # Errors
     /// [`EvaluationError`] when the law is outside its domain; `out` is then unspecified.
@@ -68,7 +68,8 @@ pub trait ElasticLaw: Send + Sync {
 
     /// The square (1/s^2) of the largest frequency of plane waves as short as an element, at most half a sweep; `None` for a law that does not tell.
     ///
-    /// It is no bound of the largest eigenvalue of `M^-1 S` by itself, S being that of [`ElasticLaw::stiffest_product`], but grows about as that does when the
+    /// It is not itself a bound of the largest eigenvalue of `M^-1 S`, S being that of
+    /// [`ElasticLaw::stiffest_product`], but grows about as that does when the
     /// body is deformed: by at least its power 2/3 up to a growth of one half, so that a stable step that was found once can be followed without a product.
     ///
     /// # Errors
@@ -89,8 +90,8 @@ pub trait ElasticLaw: Send + Sync {
         false
     }
 
-    /// `out -= factor dF/du` (N/m), the symmetric part, with the loads F as far as they depend on the displacement: what Newton's method
-    /// adds to the exact tangent.
+    /// `out -= factor dF/du` (N/m), the symmetric part of the load stiffness, F being the loads that depend on the
+    /// displacement: Newton's method adds it to the exact tangent.
     ///
     /// # Errors
     /// [`EvaluationError`] where `out` has no block for a coupling; its entries are then unspecified.
@@ -103,10 +104,11 @@ pub trait ElasticLaw: Send + Sync {
         Ok(())
     }
 
-    /// `out -= factor dF/du w` (N), the symmetric part: what [`ElasticLaw::add_load_stiffness`] adds to a matrix, without one.
+    /// `out -= factor dF/du w` (N), the symmetric part: the product of the matrix of
+    /// [`ElasticLaw::add_load_stiffness`].
     fn add_load_product(&self, _trial: &Trial<'_>, _factor: f64, _w: &[f64], _out: &mut [f64]) {}
 
-    /// `out = -factor dF/du w` (N), the part of the derivative without symmetry: what [`ElasticLaw::add_load_stiffness`] leaves out.
+    /// `out = -factor dF/du w` (N), the skew part of the derivative, which [`ElasticLaw::add_load_stiffness`] omits.
     fn load_skew_product(&self, _trial: &Trial<'_>, _factor: f64, _w: &[f64], out: &mut [f64]) {
         out.fill(0.0);
     }
@@ -122,7 +124,8 @@ pub trait ElasticLaw: Send + Sync {
     /// `out = V(u) w` (N): the force of stiffness damping at the trial's displacement for velocities w, of which V is a function of the
     /// displacement alone, symmetric and positive semidefinite. About a sweep.
     ///
-    /// Unless a law has another, V is the factor times the tangent with rotations held fast, and supports are at rest. A law of bodies that turn
+    /// Unless a law has another, V is the factor times the tangent at constant rotations, and supports are at rest. A
+    /// law of bodies that turn
     /// needs one that does not act on a rigid motion.
     ///
     /// # Errors
@@ -191,9 +194,9 @@ pub trait ElasticLaw: Send + Sync {
 /// The velocities (m/s) that stiffness damping acts on.
 #[derive(Clone, Copy, Debug)]
 pub enum Velocities<'a> {
-    /// These of the degrees of freedom, with supports at rest.
+    /// Velocities of the degrees of freedom, with supports at rest.
     Cells(&'a [f64]),
-    /// These of the degrees of freedom, and those of supports at the trial's time.
+    /// Velocities of the degrees of freedom, with those of supports at the trial's time.
     All(&'a [f64]),
     /// Velocities of supports alone.
     Supports,
@@ -274,7 +277,7 @@ impl ElasticLaw for LinearOperators {
 pub struct Deformed {
     /// W: stored energy (J).
     pub energy: f64,
-    /// The smallest ratio of an element's volume to that at rest; infinite where there are no elements.
+    /// The smallest ratio of an element's volume to that at rest; infinite without elements.
     pub smallest_volume_ratio: f64,
     /// Number of elements that are inside out.
     pub inverted: usize,
@@ -300,6 +303,6 @@ pub enum TangentKind {
     Exact,
     /// Each element's part without its negative eigenvalues.
     Projected,
-    /// Positive semidefinite with rotations held fast where a law has a rotation; else the projected one.
+    /// Positive semidefinite, at constant rotations, for a law with a rotation; else the projected one.
     Frozen,
 }

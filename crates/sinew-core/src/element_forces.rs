@@ -1,4 +1,4 @@
-//! Forces of elements, for machines that hold a motion in a form of their own.
+//! Element forces, for machines that store a motion in a format of their own.
 
 use std::fmt::Debug;
 use std::ops::Range;
@@ -10,7 +10,7 @@ use crate::evaluation_error::EvaluationError;
 use crate::load_time::LoadTime;
 use crate::operators::LinearOperators;
 
-/// The part of a force law that machines with threads and vectors compute: forces of elements, beside matrices.
+/// The part of a force law that machines with threads and vectors compute: element forces, in addition to matrices.
 ///
 /// The law's net force is `f_ext - K u - (alpha M + E) v - f(u)`: M, K, alpha, the dashpots E and the loads are those of
 /// [`ElementForces::operators`], which has no stiffness damping, and f is the sum over the elements.
@@ -18,7 +18,7 @@ pub trait ElementForces: Send + Sync {
     /// The matrices and loads, and so the cells.
     fn operators(&self) -> &LinearOperators;
 
-    /// All cells, in an order in which those come one after the other whose forces are complete one after the other.
+    /// All cells, in the order in which their forces are completed.
     fn order(&self) -> Vec<u32>;
 
     /// Number of elements.
@@ -42,12 +42,12 @@ pub struct SweepShape<'a> {
     pub parts: usize,
 }
 
-/// A sweep over elements, with buffers for what it keeps: displacements are taken, forces made pass by pass, and then
-/// given. The bits do not depend on the number of parts.
+/// A sweep over elements, with its buffers: displacements are read, forces computed pass by pass, and then written.
+/// The bits do not depend on the number of parts.
 ///
 /// # Safety
-/// Each of the three is called by several threads, each for places or parts of its own, none before the one
-/// before has come to its end everywhere, and nobody uses what it reads or writes of the vectors meanwhile.
+/// Each of the three is called by several threads, each for disjoint positions or parts, and none begins before the
+/// one before has finished on all threads; nobody else uses the memory that it reads or writes meanwhile.
 #[allow(unsafe_code, reason = "one contract for all methods stands above")]
 pub trait ElementSweep<T>: Debug + Send + Sync {
     /// Number of passes.
@@ -62,13 +62,13 @@ pub trait ElementSweep<T>: Debug + Send + Sync {
     /// [`EvaluationError`] where a support follows an input that the time does not bring.
     fn begin(&mut self, when: LoadTime<'_>) -> Result<(), EvaluationError>;
 
-    /// Takes the displacement (m) at some positions from a vector.
+    /// Reads the displacement (m) at some positions from a vector.
     ///
     /// # Safety
     /// See [`ElementSweep`].
     unsafe fn take(&self, fields: &Fields<T>, source: usize, positions: Range<usize>);
 
-    /// Computes a part of a pass; whether the law is defined for the elements that it met.
+    /// Computes a part of a pass; returns false if the law is undefined for one of its elements.
     ///
     /// # Safety
     /// See [`ElementSweep`].

@@ -65,8 +65,8 @@ impl Guarding {
         clamped as u64
     }
 
-    /// A staggered method may keep the acceleration that produced its velocity: what the clamp took from the velocity
-    /// it takes from this too, by the time between the step's two velocities.
+    /// Corrects the acceleration that a staggered method may keep: by the change of velocity that the clamp made,
+    /// over the time between the step's two velocities.
     fn correct_acceleration(&self, state: &mut State, dt: f64) {
         let time = if self.under_way { dt } else { dt / 2.0 };
         for ((a, v), unclamped) in state.a.iter_mut().zip(&state.v).zip(&self.v) {

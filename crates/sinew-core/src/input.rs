@@ -7,7 +7,7 @@ use crate::ramp::{Channel, Ramp, RampError};
 
 /// Inputs that a caller gives while a simulation runs: forces of a user, factors of loads, positions of supports.
 ///
-/// The caller owns them and passes them with every step. They are a record: what was given is kept
+/// The caller owns them and passes them with every step. They are a record: each value is kept
 /// with its time, so that a run that is driven by them is a function of them, and the same record
 /// played again gives the same bits. A method sees a force that was given frame by frame exactly as
 /// it would see the same force known beforehand.
@@ -57,13 +57,13 @@ impl Inputs {
         })
     }
 
-    /// Adds a channel of lines that is 0 until it is given a value, which then holds before its time as well.
+    /// Adds a channel of lines that is 0 until it is given a value, which then applies before its time as well.
     pub fn add_open_line(&mut self) -> Channel {
         self.push(Record::open_line())
     }
 
-    /// Adds a channel of factors of a ramp, each of which holds from its time on; 1 before the first. What follows the channel gets the ramp times
-    /// the factor: a load that is turned up and down, beside its own course over time.
+    /// Adds a channel of factors of a ramp, each of which applies from its time on; 1 before the first. A load that
+    /// follows the channel gets the ramp times the factor: it is scaled, in addition to its own course over time.
     ///
     /// # Errors
     /// [`RampError`] for a ramp that follows an input or has a factor already, or has an impossible parameter.
@@ -112,7 +112,7 @@ impl Inputs {
         Ok(())
     }
 
-    /// Times (s) and values of a channel that are on record; none where it was given none, or there is no such channel.
+    /// Recorded times (s) and values of a channel; empty if it has none, or if there is no such channel.
     #[must_use]
     pub fn course(&self, channel: Channel) -> (&[f64], &[f64]) {
         let record = self.channels.get(channel.0 as usize);

@@ -66,8 +66,8 @@ pub trait Integrator: Send {
     /// Properties that the method declares; the conformance suite checks them.
     fn properties(&self) -> Properties;
 
-    /// Sets up for a system and a step: checks, buffers, factors. Called before every batch; what is
-    /// known of the same system and step is kept.
+    /// Sets up for a system and a step: checks, buffers, factors. Called before every batch; results for the
+    /// same system and step are reused.
     ///
     /// # Errors
     /// [`SetupError`] when the system lacks what the method needs or the step makes no sense.
@@ -103,7 +103,7 @@ pub trait Integrator: Send {
     /// Takes `state` from t to t + dt: a batch of one, as live code needs it.
     ///
     /// # Errors
-    /// [`StepError`] when set-up fails or the system refuses a trial state; `state` is then that of before, or after
+    /// [`StepError`] when set-up fails or the system refuses a trial state; `state` is then unchanged, or that after
     /// the last substep of a step that is cut, as its clock says.
     fn step(
         &mut self,

@@ -95,7 +95,7 @@ pub(crate) struct Lanczos {
 }
 
 impl Lanczos {
-    /// The iteration from `P^-1 dual`; `None` where that is 0.
+    /// The iteration from `P^-1 dual`; `None` if that is 0.
     pub(crate) fn start(
         mut dual: Vec<f64>,
         solve: &mut impl FnMut(&[f64], &mut [f64]),
@@ -230,7 +230,7 @@ mod tests {
         assert_eq!(largest_eigenvalue(&[1.0; 4], |_, out| out.fill(0.0)), 0.0);
     }
 
-    /// The lower of two eigenvalues close together holds the estimate for ten steps here, and must not be
+    /// The lower of two eigenvalues close together delays the estimate for ten steps here, and must not be
     /// taken for the largest.
     #[test]
     fn the_larger_of_two_eigenvalues_close_together_is_found() {

@@ -7,7 +7,7 @@
 //! * [`simulate()`] runs an integrator; divergence is a result, not a panic.
 //! * The feature `conformance` adds the laws that every integrator keeps, as tests.
 //!
-//! All quantities are SI, all vectors hold free degrees of freedom only, node-major (x y z).
+//! All quantities are SI, all vectors have free degrees of freedom only, node-major (x y z).
 //!
 //! ```
 //! use sinew_core::LinearOperators;

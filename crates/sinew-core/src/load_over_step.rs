@@ -34,7 +34,7 @@ impl LoadOverStep {
     }
 
     /// The first instant (s) at which a ramp breaks the condition, between `from` and `to` (s) in
-    /// steps of `dt` (s) from `from` on; `None` where it never does. Allocates nothing.
+    /// steps of `dt` (s) from `from` on; `None` if it never does. Allocates nothing.
     #[must_use]
     pub fn first_broken(self, ramp: &Ramp, from: f64, dt: f64, to: f64) -> Option<f64> {
         if self == Self::Any {
@@ -65,7 +65,7 @@ impl LoadOverStep {
 }
 
 /// The longest step (s), not above `dt`, that meets every jump and kink of the ramps after t = 0 and
-/// before `to` (s); `None` where it would be absurdly short.
+/// before `to` (s); `None` if it would be absurdly short.
 #[must_use]
 pub fn step_that_meets<'a>(
     ramps: impl IntoIterator<Item = &'a Ramp>,

@@ -98,7 +98,7 @@ struct Matrices {
 
 impl LinearOperators {
     /// Puts matrices together. `mass` holds the lumped mass of each degree of freedom (kg);
-    /// whether it is positive is checked by the integrators, which divide by it.
+    /// integrators, which divide by it, check that it is positive.
     ///
     /// # Errors
     /// [`OperatorError`] when sizes or patterns differ, a rate is negative or a ramp impossible.
@@ -177,8 +177,8 @@ impl LinearOperators {
         })
     }
 
-    /// These matrices with bounds that are taken where the largest eigenvalues of `M^-1 K` and `blockdiag(K)^-1 K` would be estimated: those of
-    /// elements hold after cuts, and cost nothing after them. They are believed.
+    /// These matrices with bounds that replace estimates of the largest eigenvalues of `M^-1 K` and `blockdiag(K)^-1
+    /// K`: bounds of elements stay valid after cuts, at no cost. They are not checked.
     #[must_use]
     pub fn with_element_bounds(mut self, bounds: ElementBounds) -> Self {
         let matrices = Arc::make_mut(&mut self.matrices);
@@ -188,7 +188,7 @@ impl LinearOperators {
         self
     }
 
-    /// Bounds that are taken for eigenvalues, where there are any.
+    /// Bounds used in place of estimated eigenvalues, if any.
     #[must_use]
     pub fn element_bounds(&self) -> Option<ElementBounds> {
         self.matrices.bounds
@@ -309,7 +309,7 @@ impl LinearOperators {
     }
 
     /// `out += F(after) - F(before)` (N) of the loads that are not smooth between two instants
-    /// `from` and `to` (s); whether there are any.
+    /// `from` and `to` (s); returns true if there are any.
     pub fn add_load_change(
         &self,
         [before, after]: [LoadTime<'_>; 2],

@@ -15,7 +15,7 @@ pub enum OptionValue {
 }
 
 impl OptionValue {
-    /// The number, where it is a finite one.
+    /// The number, if it is a finite one.
     #[must_use]
     pub fn number(&self) -> Option<f64> {
         match self {
@@ -24,14 +24,14 @@ impl OptionValue {
         }
     }
 
-    /// The whole number from 1 up to `most`, where it is one.
+    /// The whole number from 1 up to `most`, if it is one.
     #[must_use]
     pub fn count(&self, most: u32) -> Option<u32> {
         let fits = |value: &f64| (1.0..=f64::from(most)).contains(value) && value.fract() == 0.0;
         self.number().filter(fits).map(|value| value as u32)
     }
 
-    /// The word, where it is one.
+    /// The word, if it is one.
     #[must_use]
     pub fn word(&self) -> Option<&str> {
         match self {

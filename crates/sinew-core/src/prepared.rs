@@ -36,7 +36,7 @@ impl Prepared {
         self.loads = loads_revision(system);
     }
 
-    /// Forgets what was done, before set-up begins to change anything.
+    /// Invalidates the preparation, before set-up begins to change anything.
     pub fn forget(&mut self) {
         *self = Self::default();
     }

@@ -216,10 +216,10 @@ impl Needs {
         }
     }
 
-    /// Checks that a system has what is needed.
+    /// Checks that a system has the properties a method needs.
     ///
     /// # Errors
-    /// [`SetupError::Lacks`] where it does not.
+    /// [`SetupError::Lacks`] if it does not.
     pub fn check(self, integrator: &'static str, system: &dyn System) -> Result<(), SetupError> {
         let has = match self {
             Self::Forces => true,
@@ -233,7 +233,7 @@ impl Needs {
         }
     }
 
-    /// The error for a system that lacks what is needed.
+    /// The error for a system that lacks a needed property.
     #[must_use]
     pub fn lacking(self, integrator: &'static str) -> SetupError {
         SetupError::Lacks {

@@ -60,8 +60,8 @@ pub enum Ramp {
     InputRate(Channel),
     /// Another ramp that follows no input, times a factor.
     Scaled(Box<Ramp>, Scaling),
-    /// Another ramp as the place of a support. A step takes it where the support is at the step's own instant, through jumps
-    /// and kinks too: a mean over the step keeps the impulse of a force, and puts a support where it is not.
+    /// Another ramp as the position of a support. A step takes its value at the step's own instant, through jumps and
+    /// kinks too: a mean over the step keeps the impulse of a force, but would misplace a support.
     Position(Box<Ramp>),
 }
 
@@ -120,7 +120,7 @@ pub enum RampError {
         /// Description of the ramp.
         of: String,
     },
-    /// A factor of an input, or of what has one.
+    /// A factor of an input, or of a ramp that already has a factor.
     #[error("a factor of a ramp {of}: expected that of one whose value is known")]
     FactorOf {
         /// Description of the ramp.
@@ -230,7 +230,7 @@ impl Ramp {
         self.derivative_of_piece(0, t, t)
     }
 
-    /// The factor at time `t` (s), continued smoothly from the piece that holds in the middle of
+    /// The factor at time `t` (s), continued smoothly from the piece that applies in the middle
     /// `from`..`to` (s): the piece before a jump at `to`, the piece after a jump at `from`, however
     /// either was rounded.
     #[must_use]
@@ -238,7 +238,7 @@ impl Ramp {
         self.derivative_of_piece(0, 0.5 * (from + to), t)
     }
 
-    /// A derivative (1/s^order) of the smooth piece that holds at `at` (s), at time `t` (s).
+    /// A derivative (1/s^order) of the smooth piece that applies at `at` (s), at time `t` (s).
     pub(crate) fn derivative_of_piece(&self, order: u32, at: f64, t: f64) -> f64 {
         match (self, order) {
             (Self::Step, 0) => f64::from(at >= 0.0),
@@ -290,7 +290,7 @@ impl Ramp {
         }
     }
 
-    /// The sine `size sin(rate t + phase)` that holds at `at` (s), as `[size, rate, phase]` (1, rad/s,
+    /// The sine `size sin(rate t + phase)` that applies at `at` (s), as `[size, rate, phase]` (1, rad/s,
     /// rad), of a ramp that never ceases to be one.
     pub(crate) fn sine_at(&self, at: f64) -> Option<[f64; 3]> {
         match self {

@@ -2,7 +2,7 @@
 
 use crate::{EvaluationError, Inputs, LoadTime, State, StepReport, System, Trial};
 
-/// Decision whether a simulation continues.
+/// Decision to continue or end a simulation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
     /// The run continues.
@@ -74,13 +74,13 @@ impl Moment<'_> {
 /// lets a method take many steps at once.
 pub trait Recorder {
     /// The first of the steps from `step` on (0: the initial state) after which it wants to see the
-    /// state, where there is one.
+    /// state, if any.
     fn next(&mut self, step: usize) -> Option<usize>;
 
     /// Records a moment it wanted. `state.v` may be staggered: ask [`Moment::velocity`].
     ///
     /// # Errors
-    /// [`RecordError`] when it could not keep what it saw; the simulation ends.
+    /// [`RecordError`] when it could not store the moment; the simulation ends.
     fn record(&mut self, moment: &Moment<'_>) -> Result<Verdict, RecordError>;
 
     /// Degrees of freedom whose displacements it wants of every step. Asked once.

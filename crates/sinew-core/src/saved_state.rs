@@ -64,8 +64,8 @@ impl SavedState {
         }
     }
 
-    /// The state, of a system built in the same way. Loads are not compared, and the law of a system without matrices by
-    /// what it reports of itself ([`crate::ForceLaw::fingerprint`]).
+    /// The state, for a system built in the same way. Loads are not compared, and the law of a system without
+    /// matrices is compared by [`crate::ForceLaw::fingerprint`].
     ///
     /// # Errors
     /// [`StateBytesError`] for another system.

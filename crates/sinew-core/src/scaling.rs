@@ -1,6 +1,6 @@
 //! Factors of ramps, changed now and then.
 
-/// A factor that holds from each of some instants (s) to the next; 1 before the first.
+/// A piecewise constant factor: each value applies from its instant (s) to the next; 1 before the first.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Scaling {

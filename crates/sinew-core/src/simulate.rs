@@ -6,7 +6,7 @@ use crate::{
     Verdict, Watch,
 };
 
-/// Most steps of a batch: bounds what a watch keeps before it is written down.
+/// Most steps of a batch, which bounds the memory of watched samples.
 const LONGEST_BATCH: usize = 1024;
 
 /// Length, number and limit of the steps of a run.

@@ -1,4 +1,4 @@
-//! Extreme eigenvalues, from which stable steps follow, and what loads excite between them.
+//! Extreme eigenvalues, from which stable steps follow, and the part of the spectrum that loads excite.
 
 pub use crate::following::{PRODUCTS_OF_BEGINNING, follow_largest_eigenvalue};
 pub use crate::lanczos::{

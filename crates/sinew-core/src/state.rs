@@ -38,28 +38,30 @@ pub struct State {
     /// Identity of the matrices and the loads under which the last step was taken. It is not written with serde.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub loads: Option<[Revision; 2]>,
-    /// Start of the motion, where a guarded method bounds velocities by its energy; `None` until
-    /// then. Set it to `None` after changing `u` or `v` by hand. It is not written with serde.
+    /// Start of the motion, for a guarded method that bounds velocities by its energy; `None` until
+    /// then. Set it to `None` after changing `u` or `v` directly. It is not written with serde.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub start: Option<Start>,
-    /// The parts into which steps are cut by the current stiffness, where a method does so.
+    /// The substeps into which steps are cut by the current stiffness, for methods that do so.
     pub cut: Option<StepCut>,
     /// Two fields over all degrees of freedom that have turned towards the body's fastest motion, where steps are cut by it
     /// ([`crate::spectrum::follow_largest_eigenvalue`]); empty elsewhere.
     pub fastest: Vec<f64>,
 }
 
-/// The cut of steps into parts that the current stiffness of a system allows.
+/// The division of steps into substeps by the current stiffness of a system.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct StepCut {
     /// Number of substeps of a step.
     pub parts: u32,
-    /// Parts taken since it was found, or where damping goes by the stiffness since what a product does not tell was.
+    /// Substeps taken since the stable step was found; with stiffness damping, since the quantities that no product
+    /// gives were found.
     pub taken: u32,
     /// The stable step (s) that was found last.
     pub stable_step: f64,
-    /// The square (1/s^2) of the fastest wave ([`crate::ElasticLaw::fastest_wave`]) as that step was found; 0 where none tells.
+    /// The square (1/s^2) of the fastest wave ([`crate::ElasticLaw::fastest_wave`]) at the time the stable step was
+    /// found; 0 if the law gives none.
     pub wave: f64,
     /// The square (1/s^2) of the fastest wave as it was seen last.
     pub seen: f64,
@@ -169,9 +171,11 @@ pub enum VelocityTime {
     MeanOverStep,
 }
 
-/// Times for which a method's damping takes velocities where it asks for the forces of a state, in steps.
+/// Offsets, in steps, of the times at which a method's damping takes velocities when the forces of a state are
+/// evaluated.
 ///
-/// First-order methods set the way of one step over its time beside that of another; what supports feel of damping is the force of that pair.
+/// First-order methods combine displacements per time of two steps; the damping force on supports is that of this
+/// pair.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct DampedAt {

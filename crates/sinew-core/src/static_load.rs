@@ -22,7 +22,7 @@ pub trait StaticLoad {
         Ok(())
     }
 
-    /// `out = -factor dF/du w` (N), the part of the derivative without symmetry; whether there is any.
+    /// `out = -factor dF/du w` (N), the skew part of the derivative; returns true if there is any.
     fn skew_product(&self, _u: &[f64], _factor: f64, _w: &[f64], _out: &mut [f64]) -> bool {
         false
     }

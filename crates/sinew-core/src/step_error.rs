@@ -7,7 +7,7 @@ use crate::synchronise::SynchroniseError;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SetupError {
-    /// The system lacks what the method needs.
+    /// The system lacks a property that the method needs.
     #[error("`{integrator}` needs {needs}, which this system does not offer")]
     Lacks {
         /// Integrator id.
@@ -102,7 +102,7 @@ pub enum SetupError {
         /// Degrees of freedom of the system.
         dofs: usize,
     },
-    /// A staggered state under other loads than those that produced it.
+    /// A staggered state under loads that differ from those that produced it.
     #[error(
         "`{integrator}`: the loads were replaced in mid-run; a velocity half a step behind follows from \
          those before. Give loads that change as it happens through `Inputs`, or call \

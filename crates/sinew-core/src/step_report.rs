@@ -20,7 +20,7 @@ pub struct StepReport {
     pub backtracks: u64,
     /// Solutions with a tangent whose negative eigenvalues were removed.
     pub projected_solves: u64,
-    /// Cells whose rows set-up read: all of a new system, those that changed afterwards.
+    /// Cells whose rows set-up read: all of a new system, afterwards only changed ones.
     pub cells_set_up: u64,
     /// Degrees of freedom whose velocity was saturated; for a step taken in parts, in the part with
     /// the most.

@@ -1,4 +1,4 @@
-//! Velocities that hold half a step before the displacement.
+//! Velocities at half a step before the displacement.
 
 use crate::evaluation_error::EvaluationError;
 use crate::input::Inputs;
@@ -85,10 +85,10 @@ impl State {
     }
 
     /// Moves a staggered velocity to the displacement's time, so that any method can continue from here; returns
-    /// whether it was staggered. `work` has the length of `u`.
+    /// true if it was staggered. `work` is scratch space, of the length of `u`.
     ///
-    /// Contact has no part in that: whatever takes the next step lets it push by as much as the whole of the time between two
-    /// velocities asks for, and what it pushes by is what tools receive.
+    /// Contact is left out: in the next step it acts with the impulse of the whole time between the two velocities,
+    /// and tools receive that impulse.
     ///
     /// # Errors
     /// [`SynchroniseError`] when the system refuses the state, or the velocity is a mean over a step.

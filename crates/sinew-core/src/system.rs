@@ -67,7 +67,8 @@ pub trait System: Send + Sync {
         Ok(())
     }
 
-    /// True if [`System::accept`] reads the state. If it does not, machines that hold u and v in a form of their own
+    /// True if [`System::accept`] reads the state. If it does not, machines that store u and v in a format of their
+    /// own
     /// need not write them out after each step.
     fn looks_at_steps(&self) -> bool {
         true
@@ -84,7 +85,7 @@ pub trait System: Send + Sync {
     }
 
     /// The largest stiffness of any material against compression, `lambda + 2 mu`, over the smallest of any against shear,
-    /// mu, where the system knows them: what rounding a stiffness costs grows with it.
+    /// mu, if the system knows them: the error of rounded stiffness grows with it.
     fn stiffness_contrast(&self) -> Option<f64> {
         None
     }
@@ -111,7 +112,7 @@ pub trait System: Send + Sync {
         None
     }
 
-    /// Size of the body (m), where it has one: the longest edge of its bounding box.
+    /// Size of the body (m), if it has one: the longest edge of its bounding box.
     fn extent(&self) -> Option<f64> {
         None
     }

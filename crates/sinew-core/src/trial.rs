@@ -8,7 +8,7 @@ use crate::state::State;
 pub struct Trial<'a> {
     /// The time of the loads, and inputs from outside.
     pub load: LoadTime<'a>,
-    /// Time from the last accepted state to this point (s); laws with memory need it. Infinite where the point is held until all has relaxed.
+    /// Time from the last accepted state to this point (s); laws with memory need it. Infinite for full relaxation.
     pub dt: f64,
     /// Displacement (m).
     pub u: &'a [f64],

@@ -7,7 +7,7 @@ use crate::incidence::Incidence;
 #[derive(Default)]
 pub(crate) struct Around {
     pub(crate) is_known: bool,
-    /// True if what is at nodes that are near was found.
+    /// True if the tetrahedra at nodes near the blade were found.
     is_found: bool,
     /// The nodes that may be near, and behind them the other corners.
     nodes: Vec<u32>,
@@ -31,7 +31,7 @@ pub(crate) struct Around {
 }
 
 impl Around {
-    /// With space for so many nodes and tetrahedra.
+    /// An empty list with capacity for this many nodes and tetrahedra.
     pub(crate) fn with_room(nodes: usize, tets: usize) -> Self {
         Self {
             is_known: false,
@@ -95,7 +95,7 @@ impl Around {
         self.is_beside.resize(self.nodes.len(), false);
     }
 
-    /// Finds what is at nodes that are near now.
+    /// Finds the tetrahedra at nodes that are near now, and their corners.
     pub(crate) fn find(&mut self, is_near: impl Fn(u32) -> bool) {
         let mut are_same = self.is_found;
         for (flag, node) in self.is_near.iter_mut().zip(&self.nodes[..self.listed]) {

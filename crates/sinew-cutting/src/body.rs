@@ -40,9 +40,10 @@ pub struct CuttableBody {
     /// One flag per node: true if it must not be moved at rest, because it is on a cut face, at a removed tetrahedron,
     /// or was fixed on request.
     pub(crate) is_kept: Vec<bool>,
-    /// Nodes, increasing, that stay where they are at rest for now.
+    /// Nodes, increasing, whose rest positions are temporarily fixed.
     pub(crate) held: Vec<u32>,
-    /// The node that each one was copied from in this life of the body; itself, where it was none or is one of a body that was read back.
+    /// The node that each one was copied from since this body was created or read back; itself if it is no copy made
+    /// since then.
     pub(crate) copied_from: Vec<u32>,
     pub(crate) tets: Vec<[u32; 4]>,
     pub(crate) is_removed: Vec<bool>,
@@ -102,7 +103,7 @@ impl Room {
         }
     }
 
-    /// Lists a corner of a face that was cut, where it is not listed yet.
+    /// Lists a corner of a face that was cut, unless it is listed already.
     pub(crate) fn list_corner(&mut self, node: u32) {
         if !std::mem::replace(&mut self.is_listed[node as usize], true) {
             self.corners.push(node);
@@ -191,14 +192,15 @@ impl CuttableBody {
         })
     }
 
-    /// Keeps nodes where they are at rest: those of supports, or between regions.
+    /// Fixes the rest positions of nodes, such as those of supports or between regions.
     pub fn keep(&mut self, nodes: &[u32]) {
         for node in nodes {
             self.is_kept[*node as usize] = true;
         }
     }
 
-    /// Keeps these nodes, and no others than [`CuttableBody::keep`] names, where they are at rest until this is called again: those that a tool has hold of.
+    /// Fixes the rest positions of these nodes, in addition to those of [`CuttableBody::keep`], until the next call:
+    /// the nodes that a tool grasps.
     pub fn hold(&mut self, nodes: impl IntoIterator<Item = u32>) {
         self.held.clear();
         self.held.extend(nodes);
@@ -235,7 +237,7 @@ impl CuttableBody {
         &self.origins
     }
 
-    /// The node that a node was copied from; itself where it is none of the copies that this body has made.
+    /// The node that a node was copied from; itself if this body has not made it as a copy.
     #[must_use]
     pub fn copied_from(&self, node: u32) -> u32 {
         self.copied_from[node as usize]

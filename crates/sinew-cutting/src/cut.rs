@@ -1,4 +1,4 @@
-//! A stroke: what a sheet touches is marked, faces between its sides are cut, nodes are split.
+//! A stroke: tetrahedra touched by a sheet are marked, faces between its sides are cut, nodes are split.
 
 use crate::body::{CuttableBody, NONE};
 use crate::error::CutError;
@@ -15,8 +15,8 @@ use sinew_mesh::vector::{Vector, bounds_of, cross, length, sub};
 const SMOOTHING: usize = 2;
 
 impl CuttableBody {
-    /// Cuts by a sheet in the current configuration, in which the nodes have these positions (m). Copies of nodes get the positions
-    /// of what they are copies of, and nodes that are moved at rest onto the sheet theirs.
+    /// Cuts by a sheet in the current configuration, with these positions (m) of the nodes. Copies of nodes get the
+    /// positions of their originals; nodes that are moved at rest onto the sheet get their new positions.
     ///
     /// Nodes within a share `snap` of their shortest edge are moved first; 0 moves none. Where the sheet begins where the last one ended, its beginning
     /// goes with the tissue that has moved since, and nodes keep the sides on which they were as the blade passed them. A face is cut that has tetrahedra of
@@ -34,7 +34,8 @@ impl CuttableBody {
         self.follow(sheet.poses(), positions, snap)
     }
 
-    /// Cuts what a blade, a segment, passes from one pose to the next, each given by its two ends (m), as [`CuttableBody::stroke`] does by a sheet.
+    /// Cuts the tissue that a blade, a segment, passes from one pose to the next, each given by its two ends (m), as
+    /// [`CuttableBody::stroke`] does by a sheet.
     /// A blade that rests cuts the tissue that comes through it.
     ///
     /// # Errors
@@ -112,8 +113,8 @@ impl CuttableBody {
         self.split(positions);
     }
 
-    /// Lifts the blade: the next stroke continues no tetrahedron that this one left partly cut. Returns what was left
-    /// uncut, as [`CuttableBody::uncut`].
+    /// Lifts the blade: the next stroke continues no tetrahedron that this one left partly cut. Returns the uncut
+    /// part, as [`CuttableBody::uncut`].
     pub fn lift(&mut self) -> Option<Uncut> {
         let uncut = self.uncut();
         self.marks.clear();
@@ -164,8 +165,8 @@ impl CuttableBody {
         self.marks.set(tet, mark);
     }
 
-    /// Takes the edges of a tetrahedron as crossed that join nodes which the blade has passed on different sides: where they lay as it passed counts, and
-    /// not where tissue has moved since.
+    /// Marks the edges of a tetrahedron as crossed whose ends the blade has passed on different sides: by their
+    /// positions when it passed them, not by the current ones.
     fn complete(&mut self, tet: u32, sheet: &Sheet) {
         let (beside, nodes) = (self.beside(tet), self.tets[tet as usize]);
         let flats = self.room.nodes.flats(nodes);
@@ -226,7 +227,7 @@ impl CuttableBody {
         }
     }
 
-    /// The side of a tetrahedron: that of its mark, or where it lies now.
+    /// The side of a tetrahedron: that of its mark, or else of its current position.
     fn side_of(&self, tet: u32) -> i8 {
         match self.marks.of(tet).side {
             0 => self.beside(tet).side(),

@@ -16,7 +16,7 @@ pub(crate) struct Drift {
 }
 
 impl Drift {
-    /// The way of tissue beside the blade at a place before it.
+    /// The displacement of the tissue next to the blade, at a place before that motion.
     pub(crate) fn at(&self, before: Vector) -> Vector {
         let share = dot(sub(before, self.from), self.along);
         add(self.at_first, scaled(self.slope, share))

@@ -70,7 +70,7 @@ impl Mark {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) enum NodeSide {
-    /// Not settled: where it lies now.
+    /// Not settled: its current position counts.
     #[default]
     Open,
     OnSheet,
@@ -128,7 +128,7 @@ impl Marks {
         }
     }
 
-    /// True if they are those of a body of as many nodes and tetrahedra.
+    /// True if they fit a body with this many nodes and tetrahedra.
     pub(crate) fn are_of(&self, nodes: usize, tets: usize) -> bool {
         self.of.len() == tets
             && self.marked.iter().all(|tet| (*tet as usize) < tets)
@@ -166,7 +166,7 @@ impl Marks {
         self.passed[node as usize] != NodeSide::Open
     }
 
-    /// Notes that the blade passes a node at this distance from the sheet; whether it is the first time.
+    /// Records that the blade passes a node at this distance from the sheet; returns true if it is the first time.
     pub(crate) fn pass_node(&mut self, node: u32, distance: f64) -> bool {
         let passed = &mut self.passed[node as usize];
         let is_first = *passed == NodeSide::Open;

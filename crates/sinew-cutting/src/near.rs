@@ -2,7 +2,7 @@
 
 use sinew_mesh::vector::Vector;
 
-/// Share of the longest edge by which the blade, and each node along each axis, may go until they are found anew.
+/// Share of the longest edge by which the blade, and each node along each axis, may move before the list is rebuilt.
 const ROOM: f64 = 0.25;
 
 /// Factor by which that is wider as they are found: no rounding may lose one.
@@ -10,16 +10,17 @@ const MARGIN: f64 = 1.01;
 
 /// The nodes that may be within an edge of a blade, as long as it stays within a box and no node has gone far since they were found.
 ///
-/// It follows from the places of the nodes alone what is near, and it takes no part in any result: it is dropped and found again at any time.
+/// A cache: it follows from the positions of the nodes alone and changes no result, so it can be dropped and rebuilt
+/// at any time.
 #[derive(Default)]
 pub(crate) struct NearNodes {
     /// The box (m) within which the blade must stay; `None` if nothing is known.
     within: Option<[Vector; 2]>,
     /// Increasing.
     nodes: Vec<u32>,
-    /// Where all nodes were as these were found (m).
+    /// Positions (m) of all nodes when the list was built.
     places: Vec<Vector>,
-    /// The way (m) that each may have gone since.
+    /// The displacement (m) along each axis that each node may have made since.
     room: f64,
     /// True if no node was farther away than that from its place at the last sheet.
     knows_last: bool,
@@ -27,7 +28,7 @@ pub(crate) struct NearNodes {
 
 /// Numbers of nodes, increasing.
 pub(crate) enum Nodes<'a> {
-    /// Those of a list.
+    /// The nodes of a list.
     Listed(std::slice::Iter<'a, u32>),
     /// All of them.
     All(std::ops::Range<u32>),
@@ -58,8 +59,8 @@ impl NearNodes {
         self.within = None;
     }
 
-    /// Makes sure that they are those near a blade within a box, of nodes with these positions, which had those `last` ones at the last sheet: none
-    /// before the first. True if they are others than before.
+    /// Rebuilds the list if necessary: the nodes near a blade within a box, at the positions `now`; `last` are the
+    /// positions at the last sheet, empty before the first. Returns true if the list was rebuilt.
     pub(crate) fn find(
         &mut self,
         near: [Vector; 2],
@@ -100,12 +101,12 @@ impl NearNodes {
         self.holds(near) && self.places.len() == count
     }
 
-    /// Notes that the positions of now are those of the last sheet from here on.
+    /// Records that the current positions are those of the last sheet.
     pub(crate) fn end(&mut self) {
         self.knows_last = true;
     }
 
-    /// Of `count` nodes, those that may be within an edge of a box.
+    /// The nodes, of `count`, that may be within an edge of a box.
     pub(crate) fn of(&self, near: [Vector; 2], count: usize) -> Nodes<'_> {
         match self.knows(near, count) {
             true => Nodes::Listed(self.nodes.iter()),
@@ -113,7 +114,7 @@ impl NearNodes {
         }
     }
 
-    /// Of `count` nodes, those that may have been within an edge of a box at the last sheet, or be now, or between.
+    /// The nodes, of `count`, that may be, or may have been since the last sheet, within an edge of a box.
     pub(crate) fn since_last(&self, near: [Vector; 2], count: usize) -> Nodes<'_> {
         match self.knows_last {
             true => self.of(near, count),
@@ -128,7 +129,7 @@ impl NearNodes {
     }
 }
 
-/// True if as many places are no farther apart than `room` along each axis.
+/// True if both lists have the same length and no two places differ by more than `room` along any axis.
 fn is_within(room: f64, places: &[Vector], others: &[Vector]) -> bool {
     // Without a branch, so that several are compared at a time: this is done at each sheet.
     let pairs = places.as_flattened().iter().zip(others.as_flattened());
@@ -155,7 +156,7 @@ mod tests {
         std::array::from_fn(|_| random(seed))
     }
 
-    /// The nodes that may be within an edge of a box, or come near it on the way from one place to the other.
+    /// The nodes that may come within an edge of a box between their places `from` and `to`.
     fn all_near([low, high]: [Vector; 2], from: &[Vector], to: &[Vector]) -> Vec<u32> {
         let nodes = (0..).zip(from.iter().zip(to));
         let near = nodes.filter(|(_, (from, to))| {

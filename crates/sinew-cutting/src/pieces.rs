@@ -7,7 +7,7 @@ use crate::body::CuttableBody;
 pub struct Pieces {
     /// Number of pieces.
     pub count: usize,
-    /// The piece of each tetrahedron, in the order of their first ones; `None` where it was removed.
+    /// The piece of each tetrahedron, in the order of their first ones; `None` if it was removed.
     pub of_tet: Vec<Option<u32>>,
 }
 

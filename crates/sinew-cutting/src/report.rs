@@ -14,9 +14,9 @@ pub struct Stroke {
     pub mass_gained: f64,
     /// Nodes that were moved at rest onto the sheet, in this order.
     pub moved: Vec<MovedNode>,
-    /// The node that each new node is a copy of; the new ones follow the last node in this order.
+    /// The original of each new node; the new ones follow the last node in this order.
     pub copied: Vec<u32>,
-    /// Tetrahedra that have a copy in a node's place, or a moved node; increasing.
+    /// Tetrahedra with a copied or moved node, increasing.
     pub changed_tets: Vec<u32>,
 }
 

@@ -8,7 +8,7 @@ use sinew_mesh::vector::{Vector, add, dot, length, mean, scaled, sub};
 /// Share of an edge by which a stroke that enters the body is more than touch.
 const TOUCH: f64 = 1e-6;
 
-/// Pieces that a stroke cut off and touched all over, beside the pieces that it parted.
+/// Small pieces that a stroke cut off and touched in all their tetrahedra, apart from the pieces that it separated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Chips {

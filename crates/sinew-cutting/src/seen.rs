@@ -17,11 +17,12 @@ impl Outlines {
 pub(crate) struct SeenNodes {
     distances: Vec<f64>,
     flats: Vec<Flat>,
-    /// The search in which each was seen.
+    /// The number of the search in which each node was last seen.
     looks: Vec<u32>,
-    /// Those that the current search has seen.
+    /// The nodes that the current search has seen.
     seen: Vec<u32>,
-    /// What each is wholly beyond, one bit each: four edges of the sheet's bounds, and its plane to either side.
+    /// Half-spaces that contain each node, one bit each: outside the four edges of the sheet's bounds, two sides of
+    /// its plane.
     beyond: Vec<u8>,
 }
 
@@ -68,7 +69,7 @@ impl SeenNodes {
         is_new
     }
 
-    /// Finds for each node that the search has seen what it is wholly beyond.
+    /// Finds the half-spaces that contain each node that the search has seen.
     pub(crate) fn outline(&mut self, Outlines([mut low, mut high]): Outlines) {
         // As far as any of them has moved.
         for axis in 0..2 {
@@ -97,7 +98,7 @@ impl SeenNodes {
         }
     }
 
-    /// False only if the sheet passes nothing of a tetrahedron, whose nodes were outlined: all of them are beyond the same.
+    /// False only if one half-space contains all nodes of a tetrahedron, so that the sheet misses it.
     pub(crate) fn may_be_passed(&self, nodes: [u32; 4]) -> bool {
         let [a, b, c, d] = nodes.map(|node| self.beyond[node as usize]);
         a & b & c & d == 0

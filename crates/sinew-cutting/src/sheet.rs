@@ -10,7 +10,8 @@ const RIM: f64 = 1e-9;
 /// Share of its size by which the box around a sheet reaches out: beyond its rim, unless the sheet is narrower than this.
 const BOX_RIM: f64 = 1e-5;
 
-/// The quadrilateral that a blade, a segment, sweeps from one pose to the next, in its mean plane; two triangles where it turns about a point of its own.
+/// The quadrilateral that a blade, a segment, sweeps from one pose to the next, in its mean plane; two triangles if
+/// it turns about one of its own points.
 #[derive(Clone, Copy, Debug)]
 pub struct Sheet {
     corners: [Vector; 4],
@@ -28,7 +29,8 @@ pub struct Sheet {
 }
 
 impl Sheet {
-    /// The sheet between two poses of a blade, each given by its two ends (m). `None` where it has no area or an end is not finite.
+    /// The sheet between two poses of a blade, each given by its two ends (m). `None` if it has no area or an end is
+    /// not finite.
     #[must_use]
     pub fn swept(before: [[f64; 3]; 2], after: [[f64; 3]; 2]) -> Option<Self> {
         let corners = [before[0], before[1], after[1], after[0]];
@@ -72,7 +74,7 @@ impl Sheet {
         Self { drift, ..self }
     }
 
-    /// The way that tissue has gone, beside the blade at a place before it.
+    /// The displacement of the tissue next to the blade, at a place before that motion.
     pub(crate) fn drift_at(&self, before: Vector) -> Vector {
         self.drift.at(before)
     }
@@ -206,8 +208,8 @@ impl Sheet {
     }
 }
 
-/// A normal of what a blade sweeps whose ends go to opposite sides, as where it turns about its middle: halves count alike, for by their signs they would
-/// cancel. `None` where both go to one side.
+/// A normal of the surface swept by a blade whose ends move to opposite sides, as when it turns about its middle: the
+/// two halves count with one sign, since they would cancel otherwise. `None` if both ends move to one side.
 fn turned_over(&[a, b, c, d]: &[Vector; 4]) -> Option<Vector> {
     let blade = scaled(add(sub(b, a), sub(c, d)), 0.5);
     let [of_first, of_second] = [sub(d, a), sub(c, b)].map(|way| cross(blade, way));

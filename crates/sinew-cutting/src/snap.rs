@@ -11,7 +11,7 @@ use sinew_mesh::vector::{Vector, add, cross, dot, length, scaled, sub};
 /// Factor by which nodes that are moved onto sheets may raise the largest frequency of a mesh's tetrahedra, at most.
 pub const FREQUENCY_GROWTH: f64 = 1.25;
 
-/// Quality of a tetrahedron with a moved node, in terms of what the mesh had, at least.
+/// Minimum quality of a tetrahedron with a moved node, as a share of its quality in the mesh.
 const QUALITY: f64 = 0.3;
 
 /// Cosine of the angle beyond which two triangles of the surface belong to two faces of it.
@@ -45,7 +45,7 @@ impl CuttableBody {
     /// Moves nodes of crossed edges that are within a share `snap` of their shortest edge onto the sheet, nearest
     /// first. Space is moved through the tissue: each goes, at rest, to the point that lies on the sheet now. Nodes of
     /// the surface stay in their face, and those of an earlier cut where they are, because its two faces fit each
-    /// other, as do those that are kept or held.
+    /// other, as do fixed ones.
     pub(crate) fn snap(&mut self, sheet: &Sheet, positions: &mut [Vector], snap: f64) {
         let mut near = std::mem::take(&mut self.room.near);
         near.clear();

@@ -8,7 +8,7 @@ const FARTHEST: f64 = 1e6;
 /// A pose of a blade at a time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BladePose {
-    /// Number of the stroke: where it changes, the blade was lifted.
+    /// Number of the stroke: it changes when the blade was lifted.
     pub stroke: f64,
     /// Time (s).
     pub t: f64,

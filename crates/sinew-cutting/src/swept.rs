@@ -1,4 +1,4 @@
-//! The way of a blade as the tissue beside it sees it.
+//! The path of a blade relative to the tissue next to it.
 
 use crate::body::CuttableBody;
 use crate::drift::Drift;
@@ -11,7 +11,7 @@ const NEAR: f64 = 0.5;
 /// Cosine of the angle between the ways of both ends beyond which a sheet is warped too much.
 const FLAT: f64 = 0.5;
 
-/// Weighted sums over tissue beside a blade, by its share of the way from end to end.
+/// Weighted sums over tissue next to a blade, by position along the blade (0 to 1).
 #[derive(Default)]
 struct Sums {
     weight: f64,
@@ -46,9 +46,10 @@ impl Sums {
 }
 
 impl CuttableBody {
-    /// The sheet that a blade sweeps from one pose to the next through tissue that has moved to these positions since the last sheet: where the blade
-    /// begins goes with the tissue beside it, as the nodes nearest to it tell. So it begins in the tissue where the last sheet ended, and a resting blade
-    /// cuts what comes through it. `None` where it has no area.
+    /// The sheet that a blade sweeps from one pose to the next through tissue that has moved to these positions since
+    /// the last sheet: its beginning moves with the tissue next to it, by the nearest nodes. So it begins in the
+    /// tissue where the last sheet ended, and a resting blade cuts tissue that moves through it. `None` if it has no
+    /// area.
     pub(crate) fn swept(
         &self,
         [before, after]: [[Vector; 2]; 2],
@@ -133,7 +134,7 @@ impl CuttableBody {
         Some(Sheet::swept(begin, end)?.with_drift(drift))
     }
 
-    /// Turns a sheet so that its sides are those of the sheets before.
+    /// Orients a sheet so that its sides match those of the sheets before.
     pub(crate) fn turned_as_before(&mut self, sheet: &Sheet) -> Sheet {
         let Some(last) = self.marks.normal else {
             self.marks.normal = Some(sheet.normal());

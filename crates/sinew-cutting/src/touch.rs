@@ -41,7 +41,7 @@ impl Beside {
     }
 }
 
-/// A sheet as nodes are seen beside it, with what is the same for all of them.
+/// A sheet, with quantities that are the same for all nodes.
 pub(crate) struct Seeing<'a> {
     sheet: &'a Sheet,
     turn: Option<Turn>,
@@ -62,7 +62,7 @@ struct Turn {
 }
 
 impl<'a> Seeing<'a> {
-    /// As a blade sees that has gone in direction `last` before.
+    /// A view of the nodes by a sheet whose blade moved in direction `last` before.
     pub(crate) fn new(sheet: &'a Sheet, last: Option<Vector>, longest_edge: f64) -> Self {
         let turn = |last: Vector| {
             let (now, [[first, end], _]) = (sheet.heading(), sheet.poses());
@@ -104,7 +104,7 @@ impl<'a> Seeing<'a> {
 }
 
 impl CuttableBody {
-    /// A tetrahedron, whose nodes this search has seen, beside the sheet.
+    /// The position of a tetrahedron, whose nodes this search has seen, relative to the sheet.
     pub(crate) fn beside(&self, tet: u32) -> Beside {
         Beside(self.room.nodes.distances(self.tets[tet as usize]))
     }
@@ -199,7 +199,7 @@ impl CuttableBody {
         }
     }
 
-    /// Checks for a place (m) whether a tetrahedron with a vertex there may reach into a box, unless it is stretched.
+    /// A test of places (m): true if a tetrahedron with a vertex there may reach into a box, unless it is stretched.
     pub(crate) fn is_near(&self, [low, high]: [Vector; 2]) -> impl Fn(&Vector) -> bool + use<> {
         let reach = self.longest_edge;
         let [low, high] = [
@@ -297,7 +297,7 @@ impl CuttableBody {
         self.room.left = left;
     }
 
-    /// Sees again what the sheet passes of the tetrahedra that it touched, some of whose nodes were moved.
+    /// Recomputes which parts of the touched tetrahedra the sheet passes, after nodes were moved.
     pub(crate) fn look_again(&mut self, sheet: &Sheet) {
         let mut touched = std::mem::take(&mut self.room.touched);
         for (tet, passed) in &mut touched {

@@ -299,7 +299,7 @@ impl CutModel {
         self.follow_telling(poses, state, inputs, |_| ())
     }
 
-    /// As [`CutModel::follow`]; `tell` is called with the state before it is changed, where it is.
+    /// Same as [`CutModel::follow`], but calls `tell` with the state before the nodes change, if they do.
     ///
     /// # Errors
     /// Same as [`CutModel::stroke`].

@@ -43,7 +43,7 @@ pub(crate) fn unit(vector: [f64; 3]) -> Option<[f64; 3]> {
 pub(crate) enum Axes {
     /// The same in the whole region.
     Everywhere(Box<Frame>),
-    /// Those of each tetrahedron of the mesh.
+    /// Axes per tetrahedron of the mesh.
     Each(Arc<[Frame]>),
 }
 

@@ -72,7 +72,7 @@ pub enum Threads {
     /// The calling thread alone.
     #[default]
     One,
-    /// At most so many, and no more than the system gives processors to this process.
+    /// At most this many, and no more than the processors available to this process.
     UpTo(NonZero<u32>),
     /// All processors that the system gives to this process.
     All,

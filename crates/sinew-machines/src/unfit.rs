@@ -1,6 +1,6 @@
 //! Settings that a system does not fit.
 
-/// Why a machine with the settings asked for cannot run a system.
+/// Reasons why a machine with the given settings cannot run a system.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Unfit {

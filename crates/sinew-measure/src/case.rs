@@ -66,7 +66,7 @@ impl Span {
     }
 }
 
-/// Why a scene is no case.
+/// Reasons why a scene is no case.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum CaseError {

@@ -29,7 +29,7 @@ pub struct Forecast {
     pub seen: usize,
 }
 
-/// Why there is no forecast: what will also end the run.
+/// Reasons why there is no forecast; each would also end the run.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ForecastError {

@@ -17,7 +17,7 @@ use crate::reference::{ErrorNorm, LateRange, ReferenceError, Track};
 use crate::row::{Row, RowOutcome, Work, finite};
 use crate::timing::{Effort, time_run};
 
-/// Why a run could not be measured.
+/// Reasons why a run could not be measured.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum MeasureError {

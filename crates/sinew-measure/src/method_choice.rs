@@ -97,7 +97,7 @@ impl MethodChoice {
     }
 }
 
-/// Why a method cannot be used on a scene.
+/// Reasons why a method cannot be used on a scene.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MethodError {

@@ -112,7 +112,7 @@ pub(crate) fn of_advance_to(error: AdvanceToError, t: f64) -> PyErr {
     }
 }
 
-/// The exception of a command that is refused: the session goes on as before.
+/// The exception for a refused command; the session continues as before.
 pub(crate) fn of_command(error: CommandError) -> PyErr {
     match error {
         CommandError::NoTool { .. } | CommandError::NoLoad { .. } => {

@@ -14,10 +14,10 @@ use sinew_scene::Scene;
 use crate::errors::{of_scene, value_error};
 use crate::guard::guarded;
 
-/// Time between two looks for a signal.
+/// Time between two checks for a signal.
 const LOOK: Duration = Duration::from_millis(50);
 
-/// What is asked of a scene: error, cost and time (s) of pilots.
+/// The question about a scene: error, cost and time (s) of pilots; `None` without error and cost.
 pub(crate) fn question(
     tolerance: Option<f64>,
     budget: Option<f64>,
@@ -40,7 +40,7 @@ pub(crate) fn question(
     }))
 }
 
-/// The plan as one object. A signal leaves the thread to end by itself.
+/// The plan as one object. After a signal the thread is left to finish in the background.
 pub(crate) fn planned(py: Python<'_>, scene: Scene, question: Option<Question>) -> PyResult<Value> {
     let (to, from) = channel();
     let work = move || {

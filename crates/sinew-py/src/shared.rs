@@ -16,7 +16,7 @@ use crate::guard::{guarded, guarded_here, unusable};
 /// A world that threads of Python take turns with.
 pub(crate) struct Shared {
     world: Mutex<World>,
-    /// What factors may take.
+    /// Memory limit of factors.
     memory: Memory,
     /// The thread that has its turn, or 0.
     owner: AtomicUsize,

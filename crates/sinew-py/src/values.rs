@@ -7,7 +7,7 @@ use sinew_core::{OptionValue, Options};
 
 use crate::errors::value_error;
 
-/// A value without arrays, paths and the like, as `sinew_sim._values.plain` gives it, as one of TOML.
+/// A value without arrays and paths, as `sinew_sim._values.plain` gives it, converted to TOML.
 pub(crate) fn to_toml(value: &Bound<'_, PyAny>) -> PyResult<toml::Value> {
     Ok(depythonize(value)?)
 }
@@ -31,7 +31,7 @@ pub(crate) fn assignments(values: Option<&Bound<'_, PyDict>>) -> PyResult<Vec<St
     plain.iter().map(assignment).collect()
 }
 
-/// The value without arrays, numbers of numpy, paths and the like.
+/// The value without arrays, paths and numbers of numpy.
 pub(crate) fn plain<'py>(value: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
     let values = value.py().import("sinew_sim._values")?;
     values.call_method1("plain", (value,))

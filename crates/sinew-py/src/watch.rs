@@ -58,7 +58,7 @@ pub(crate) struct Onlooker {
     /// The exception that ended the run.
     pub(crate) raised: Option<PyErr>,
     pub(crate) is_ended: bool,
-    /// When it was last told.
+    /// Time of the last call.
     told: Instant,
 }
 

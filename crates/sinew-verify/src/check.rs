@@ -77,7 +77,7 @@ pub enum Source {
 }
 
 impl Source {
-    /// The source in words.
+    /// Description of the source.
     #[must_use]
     pub fn words(self) -> String {
         match self {

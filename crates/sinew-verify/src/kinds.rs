@@ -19,7 +19,7 @@ impl Kind {
     /// All that tables have.
     pub(crate) const ALL: [Self; 4] = [Self::P1, Self::Fbar, Self::Edge(1.0), Self::Edge(0.9)];
 
-    /// The element, with patches of so many tetrahedra where it has patches.
+    /// The element; `patch` is the number of tetrahedra per patch, for elements that have patches.
     pub(crate) fn element(self, patch: Option<u32>) -> Element {
         match self {
             Self::P1 => Element::P1,

@@ -1,5 +1,5 @@
 //! Every figure that the library is held to: closed forms, figures in print, independent computations. Each is asked for with
-//! a tolerance and a source, computed anew, and passes or fails.
+//! a tolerance and a source, computed in each run, and passes or fails.
 //!
 //! A subject is a file under `subjects` with a list of checks, each a function that computes one or more figures.
 //! [`VerifyPlan`] computes them. The bench builds on the same bodies ([`bodies`], [`tissue`]), reference elements

@@ -16,7 +16,7 @@ pub enum Progress {
         done: usize,
         /// Runs in all.
         of: usize,
-        /// The run, in words.
+        /// Description of the run.
         what: String,
     },
 }

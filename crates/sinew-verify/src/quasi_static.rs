@@ -8,8 +8,8 @@ use crate::error::LabError;
 /// A time (s) beside which that of any motion of a body counts for nothing.
 pub(crate) const SLOW: f64 = 1e6;
 
-/// The state after each of so many equal parts of [`SLOW`], and the Newton iterations of each: implicit Euler, where inertia counts for
-/// nothing, balances forces.
+/// The state after each of `parts` equal parts of [`SLOW`], and the Newton iterations of each: implicit Euler, with
+/// negligible inertia, balances forces.
 pub(crate) fn follow(model: &Model, parts: u32) -> Result<Vec<(State, u64)>, LabError> {
     let options = Options::new().with_number("newton_tolerance", 1e-8);
     let mut integrator = sinew_integrators::build("implicit-euler", &options)?;

@@ -52,7 +52,7 @@ pub struct VerifiedRow {
     pub asked: Asked,
     /// The figure; none where it could not be computed or is not finite.
     pub got: Option<f64>,
-    /// Why there is none.
+    /// Reason why there is none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub missing: Option<String>,
     /// The origin of what is asked.

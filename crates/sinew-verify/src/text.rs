@@ -33,7 +33,7 @@ pub(crate) fn shown(x: f64, digits: usize) -> String {
 }
 
 impl VerifiedRow {
-    /// The figure in words, or why there is none.
+    /// The figure as text, or the reason why there is none.
     pub(crate) fn got_in_words(&self) -> String {
         match (&self.missing, self.got) {
             (Some(reason), _) => reason.clone(),

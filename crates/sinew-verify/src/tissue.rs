@@ -94,7 +94,7 @@ impl Specimen {
         static_solution_under(&self.model, &self.model.full_loads(&loads))
     }
 
-    /// Displacements (m) at so many equal instants of `steps` steps each, and the work of all of them.
+    /// Displacements (m) at equally spaced instants, `steps` steps apart, and the work of all of them.
     ///
     /// # Errors
     /// [`StepError`].
@@ -166,7 +166,8 @@ pub fn release(cells: usize, law: Law, element: Element) -> Result<Specimen, Lab
     }))
 }
 
-/// A column that is spun about its axis, by so much at the top (1/s), after Bonet, Gil, Lee and others (Comput. Methods Appl. Mech. Eng. 283,
+/// A column that is spun about its axis, with this rate (1/s) at the top, after Bonet, Gil, Lee and others (Comput.
+/// Methods Appl. Mech. Eng. 283,
 /// 2015).
 ///
 /// # Errors

@@ -61,19 +61,19 @@ pub enum Command {
         /// The factor.
         factor: f64,
     },
-    /// Closes the jaws of a tool: what it pushes in a step then goes with it until they open. Until the first of these
-    /// commands a tool holds at the times that the scene says.
+    /// Closes the jaws of a tool: nodes that it pushes in a step then move with it until the jaws open. Until the
+    /// first of these commands the scene's schedule applies.
     Grasp {
         /// Name of the tool.
         tool: Arc<str>,
     },
-    /// Opens the jaws of a tool, which lets go of all that it holds.
+    /// Opens the jaws of a tool and releases all nodes in it.
     Release {
         /// Name of the tool.
         tool: Arc<str>,
     },
     /// Forces (N) on nodes (0-based) of the body as it is now, besides all loads, in the place of those of the last such
-    /// command. They stay with their nodes when the body is cut; what falls on held components goes into the supports
+    /// command. They stay with their nodes when the body is cut; a part on fixed components goes into the supports
     /// and is in no reaction.
     Forces(Vec<(u32, [f64; 3])>),
     /// Another integrator, which continues from the state.

@@ -57,10 +57,10 @@ pub enum WorldStepError {
     /// A method that could not take the step, or a law that refused a state.
     #[error(transparent)]
     Step(#[from] StepError),
-    /// A cut that leaves nothing to go on with.
+    /// A cut after which the motion cannot continue.
     #[error(transparent)]
     Cutting(#[from] CuttingError),
-    /// Loads that cannot be driven on what a cut left.
+    /// Loads that cannot be driven on the body after a cut.
     #[error("after a cut: {0}")]
     Driven(String),
     /// A pose that could not be recorded.
@@ -69,7 +69,7 @@ pub enum WorldStepError {
     /// Forces that could not be recorded.
     #[error(transparent)]
     Forces(#[from] ForceInputError),
-    /// A failure before the motion was saved and restored, in words.
+    /// Message of a failure before the motion was saved and restored.
     #[error("{0}")]
     Earlier(String),
     /// A step by which the time does not advance any more.
@@ -155,7 +155,7 @@ pub enum RestoreError {
     /// A state of another system.
     #[error(transparent)]
     State(#[from] StateBytesError),
-    /// Inputs that are none.
+    /// Inputs that cannot be decoded.
     #[error(transparent)]
     Inputs(#[from] InputBytesError),
     /// Loads that cannot be driven.

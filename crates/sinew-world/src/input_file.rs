@@ -30,7 +30,7 @@ impl InputFile {
     /// Reads a file of a scene, by its resolved path, for its hash.
     ///
     /// # Errors
-    /// [`InputFileError`] where it cannot be read.
+    /// [`InputFileError`] if it cannot be read.
     pub fn of(scene: &SceneSource, path: PathBuf) -> Result<Self, InputFileError> {
         match scene.read(&path) {
             Ok(content) => Ok(Self {

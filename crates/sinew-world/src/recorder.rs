@@ -56,7 +56,7 @@ pub struct BodyCut {
     pub energy: f64,
 }
 
-/// A recorder with what it has seen: however many calls take the steps, it sees one motion.
+/// A recorder and the steps it has seen: it sees one motion, however many calls take the steps.
 pub struct Shown<'r, R: Recorder + ?Sized> {
     pub(crate) steps: RecordedSteps<'r, R>,
     pub(crate) body: Arc<SceneBody>,

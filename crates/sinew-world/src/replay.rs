@@ -247,13 +247,13 @@ impl Replay {
         }
     }
 
-    /// The world as far as its motion is repeated.
+    /// The world at the current point of the replay.
     #[must_use]
     pub fn world(&self) -> &World {
         &self.world
     }
 
-    /// The world at the end of what was repeated, which goes on from there.
+    /// The world at the end of the replay, ready to continue.
     #[must_use]
     pub fn into_world(self) -> World {
         self.world

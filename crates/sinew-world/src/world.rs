@@ -29,7 +29,8 @@ pub use saved::Saved;
 
 /// A scene in motion: the only thing that takes its steps.
 ///
-/// It holds the scene, which does not change, and what does: the body, state, integrator, tools and inputs. A [`Recorder`](crate::Recorder)
+/// It owns the scene, which is constant, and the body, state, integrator, tools and inputs, which change. A
+/// [`Recorder`](crate::Recorder)
 /// observes the motion of [`World::advance`]; [`Command`](crate::Command)s between steps steer tools, scale loads, cut, and switch
 /// methods.
 ///
@@ -138,7 +139,7 @@ struct Method {
 struct Hand {
     name: Arc<str>,
     steering: Steering,
-    /// Position (m) and rotation vector (rad) to which it moves, and where it stays; `None` while it follows the scene.
+    /// Position (m) and rotation vector (rad) to which it moves and then stays; `None` while it follows the scene.
     target: Option<([f64; 3], [f64; 3])>,
     /// True if it was given a pose.
     is_steered: bool,
@@ -308,7 +309,8 @@ impl World {
         })
     }
 
-    /// The same session, whose log says which values, as `KEY=VALUE`, were set in the scene's file to get the scene.
+    /// The same world, whose log records the values, as `KEY=VALUE`, that were set in the scene's file to get the
+    /// scene.
     #[must_use]
     pub fn with_values(mut self, values: &[String]) -> Self {
         self.log.note_values(values.to_vec());
@@ -439,7 +441,7 @@ impl AsRef<World> for World {
     }
 }
 
-/// Takes a step on a copy of a state, which sets the method up and shows whether it can go on from there.
+/// Takes a step on a copy of a state, which sets the method up and shows whether it can continue from there.
 fn try_step(
     system: &dyn System,
     inputs: &Inputs,

@@ -1,7 +1,8 @@
-//! A hand that presses a cube of tissue and feels it, by the clock: 1 kHz for the device, 100 Hz for the simulation.
+//! A user's hand that presses a cube of tissue and feels it, by the clock: 1 kHz for the device, 100 Hz for the
+//! simulation.
 //!
-//! [`SoftwareDevice`] stands in for a device: a handle of 100 g in a hand that goes up and down. A real one takes its place by an
-//! implementation of [`Device`] with its position and its force; all else stays as it is here:
+//! [`SoftwareDevice`] replaces a device: a handle of 100 g in a hand that moves up and down. For a real one,
+//! implement [`Device`] with its position and its force; all else stays as it is here:
 //!
 //! 1. The tool of the scene is a body of its own on a virtual coupling, whose other end the device moves.
 //! 2. [`ToolSimulation`] steps the [`World`], and finds how stiff the tissue at the tool is.

@@ -8,7 +8,7 @@ use sinew_bench::beside::RivalError;
 
 /// The running program; it ends with this.
 pub(super) struct Conversation {
-    /// The program in words.
+    /// Name of the program in messages.
     name: &'static str,
     child: Child,
     commands: ChildStdin,

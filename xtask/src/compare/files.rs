@@ -9,7 +9,7 @@ use sinew_mesh::{
     WriteMshError, write_msh,
 };
 
-/// Why a file could not be written.
+/// Reasons why a file could not be written.
 #[derive(Debug, thiserror::Error)]
 pub(super) enum FilesError {
     #[error(transparent)]

@@ -19,7 +19,7 @@ pub(super) struct Bench {
 }
 
 impl Bench {
-    /// A scene with so many cells along an edge, by this method in steps of `dt` (s).
+    /// A scene with `cells` cells along an edge, by this method in steps of `dt` (s).
     pub(super) fn scene(&self, cells: usize, method: &str, dt: f64) -> Result<PathBuf, Failure> {
         let text = CUBE
             .replace("cells = 10", &format!("cells = {cells}"))

@@ -1,4 +1,4 @@
-//! A hand on the page.
+//! The user's pointer on the page.
 
 use std::time::{Duration, Instant};
 
@@ -149,7 +149,7 @@ pub(super) fn press_hold_and_switch(bench: &Bench) -> Result<(), Failure> {
     complaints(&tab)
 }
 
-/// The page without a scene: two panes under the same hand, reloaded once.
+/// The page without a scene: two panes under the same pointer, reloaded once.
 pub(super) fn side_by_side(bench: &Bench) -> Result<(), Failure> {
     let served = Served::start(&bench.sinew, &[])?;
     let mut tab = open(bench, &served)?;
@@ -213,7 +213,7 @@ pub(super) fn random_input(bench: &Bench, seconds: u64) -> Result<(), Failure> {
     })
 }
 
-/// Has all begin anew by one method, once the commands that wait are few enough for more.
+/// Restarts with one pane and one method, once few enough commands are queued.
 fn begin_anew(tab: &mut Tab) -> Result<(), Failure> {
     let begun = Instant::now();
     loop {

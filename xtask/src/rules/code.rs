@@ -148,7 +148,7 @@ pub(super) fn path(tokens: &[TokenTree], mut at: usize) -> (Vec<String>, usize) 
 pub(super) struct Import {
     /// The path of what is imported.
     pub(super) path: Vec<String>,
-    /// The name that it gets; `None` stands for all names in `path` (`*`).
+    /// The name that it gets; `None` for all names in `path` (`*`).
     pub(super) name: Option<String>,
     /// True if others may import it from here (`pub use`, of any visibility).
     pub(super) is_public: bool,

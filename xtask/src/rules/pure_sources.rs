@@ -30,7 +30,7 @@ const CLOCKS: &[&str] = &[
     "crates/sinew-haptics/src/real_time.rs",
 ];
 
-/// Libraries that must not stand in a public signature, so that a new major version of theirs is none of ours.
+/// Libraries that must not appear in a public signature, so that a new major version of theirs is none of ours.
 const FOREIGN: &[&str] = &["faer", "nalgebra"];
 
 /// Checks all files in `folders`.
@@ -76,7 +76,7 @@ pub(super) fn check(root: &Path, folders: &[&str]) -> Result<Vec<Breach>, RuleEr
 struct Seen {
     /// Impure modules that it names, e.g. `std::fs`.
     impure: Vec<String>,
-    /// Names that stand for something of a foreign library.
+    /// Names that come from a foreign library.
     foreign: Vec<String>,
     /// The tokens of each public item, from behind `pub` to the brace of a body or to the item's end.
     signatures: Vec<Vec<TokenTree>>,
@@ -128,7 +128,7 @@ impl Seen {
         }
     }
 
-    /// The first word of a signature that stands for something foreign.
+    /// The first word of a signature that comes from a foreign library.
     fn foreign_word(&self, signature: &[TokenTree]) -> Option<String> {
         signature.iter().find_map(|token| match token {
             TokenTree::Ident(_) => ident(Some(token))

@@ -183,7 +183,7 @@ pub(super) const PRIVATE: &[(&str, &str)] = &[
     ("tokio", "sinew-live"),
 ];
 
-/// Checks that every crate has a room and depends on no other than it may.
+/// Checks that every crate is listed and depends on no other than it may.
 pub(super) fn check(packages: &[Package]) -> Vec<Breach> {
     let rooms: BTreeMap<&str, &[&str]> = ROOMS.iter().copied().collect();
     let mut breaches = Vec::new();

@@ -5,7 +5,7 @@ use sinew_scene::output::say;
 use super::place::Place;
 use crate::failure::Failure;
 
-/// Takes every piece of advice, and looks whether its mesh has tetrahedra.
+/// Follows every piece of advice, and checks that its mesh has tetrahedra.
 pub(super) fn try_all(place: &Place<'_>) -> Result<(), Failure> {
     let mut tried = Vec::new();
     for extension in sinew_mesh::converted_extensions() {

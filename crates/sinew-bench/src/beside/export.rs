@@ -34,7 +34,7 @@ pub struct Exported {
     pub dofs: usize,
 }
 
-/// Why a case cannot be exported.
+/// Reasons why a case cannot be exported.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ExportError {

@@ -43,7 +43,7 @@ pub(super) fn bodies(
     Ok(bodies)
 }
 
-/// The peers' cube with so many cells along an edge.
+/// The peers' cube with `cells` cells along an edge.
 pub(super) fn cube_body(cells: usize) -> Result<Body, LabError> {
     let mesh = cube(cells, 0.1, Split::Kuhn)?;
     body(format!("cube {}^3", cells + 1), &mesh, "sides", "top")

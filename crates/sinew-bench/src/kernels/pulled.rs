@@ -74,7 +74,7 @@ struct Runner {
     automatic: Laps,
     /// Times (s) of the plain loop for as many steps as the fixed run has, lap by lap.
     plain: Vec<f64>,
-    /// Where it ended.
+    /// Displacements (m) at the end of the plain loop.
     plain_end: Vec<f64>,
 }
 

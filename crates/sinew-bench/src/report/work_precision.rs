@@ -13,8 +13,8 @@ const LARGEST_SHOWN_ERROR: f64 = 100.0;
 pub(super) const LEAST_SHOWN_ERROR: f64 = 1e-8;
 
 /// Error over CPU time of the runs of a case: a line per method over its steps, and the Pareto
-/// front down to the first run below all errors shown. A method looks the same in the plots of all
-/// cases and on all laws and elements of one, and no two look alike.
+/// front down to the first run below all errors shown. A method has the same style in the plots of all
+/// cases, laws and elements, and no two methods share one.
 #[must_use]
 pub fn work_precision(results: &BenchResults, case: &str) -> Plot {
     let rows: Vec<&Row> = results.rows_of(case).collect();

@@ -23,7 +23,7 @@ pub struct Written {
     pub plots: Vec<PathBuf>,
 }
 
-/// Why nothing, or not everything, was written.
+/// Reasons why results could not be written, or only in part.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum WriteError {
@@ -32,7 +32,7 @@ pub enum WriteError {
     Results {
         /// The file that was to hold them.
         path: PathBuf,
-        /// Why.
+        /// The reason.
         source: ResultsError,
     },
     /// The folder or a file in it cannot be written.

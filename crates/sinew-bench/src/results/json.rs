@@ -4,7 +4,7 @@ use serde::Deserialize;
 
 use super::{BenchResults, SCHEMA};
 
-/// Why results cannot be written as, or read from, JSON.
+/// Reasons why results cannot be written as JSON or read from it.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ResultsError {

@@ -20,7 +20,7 @@ pub struct Missing {
     /// The text that replaces a number, such as `inf`; `None` without any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub value: Option<String>,
-    /// Why it is missing.
+    /// Reason why it is missing.
     pub reason: String,
 }
 

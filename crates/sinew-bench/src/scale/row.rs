@@ -92,7 +92,7 @@ pub struct ScaleSkipped {
     pub tets: usize,
     /// Method, precision and threads.
     pub method: String,
-    /// Why not.
+    /// Reason why it was not made.
     pub reason: String,
 }
 

@@ -93,8 +93,8 @@ impl Run<'_> {
     }
 }
 
-/// After 40 steps u and v are those of [`ReferenceMachine`], to a rounding (relative), and so are the clock and the work; after a few
-/// where velocities are bounded.
+/// After 40 steps u, v, the clock and the work are those of [`ReferenceMachine`], to a rounding (relative); after a
+/// few steps if velocities are bounded.
 pub fn bodies_move_as_by_the_reference(
     methods: &[Method],
     bodies: &[Body],

@@ -10,8 +10,8 @@ use super::{Make, Method};
 
 /// After 100 steps u, v and a are those of the same program executed literally on matrices that are
 /// written out, to 1e-13 relative, and so are the clock and the work: every method and a program
-/// with every instruction, clamped and not, on systems of every kind. Where a clamp makes the motion carry
-/// errors away, the bound grows as they do, and steps are fewer where that is more than 10 times.
+/// with every instruction, clamped and not, on systems of every kind. If a clamp makes errors grow with the
+/// motion, the bound grows with them, and fewer steps are taken if that is more than 10 times.
 pub fn steps_are_those_of_the_definition(methods: &[Method], make: &Make) {
     for run in everything_runs().chain(all_runs(methods)) {
         let (steps, growth) = match run.bounds {
@@ -58,7 +58,7 @@ pub fn steps_of_many_cells_are_those_of_the_definition(methods: &[Method], make:
     }
 }
 
-/// Ways of cutting 100 steps into batches, and whether each has a machine of its own.
+/// Divisions of 100 steps into batches, each with a flag: true if each batch has a machine of its own.
 fn ways() -> [(Vec<usize>, bool); 5] {
     [
         (vec![1; STEPS], false),

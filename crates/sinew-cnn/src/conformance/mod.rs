@@ -3,8 +3,8 @@
 //! A machine is compared with programs executed literally: every sweep as its documentation defines it, on
 //! matrices that are written out entry by entry, and with motions that are known exactly. The suite
 //! brings its own systems (one layer and three; mass and stiffness damping, dashpots and all of them;
-//! loads that jump and loads with kinks; free and partly held) and a program with every instruction;
-//! what else it runs are the programs of the methods that it is given.
+//! loads that jump and loads with kinks; free and partly fixed) and a program with every instruction;
+//! it also runs the programs of the methods that it is given.
 //!
 //! ```
 //! use sinew_cnn::conformance::Method;

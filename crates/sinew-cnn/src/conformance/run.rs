@@ -39,7 +39,7 @@ impl Method {
         self.properties.changing_loads.needed()
     }
 
-    /// The method on a system of a kind, where it takes it.
+    /// The method on a system of a kind, if it supports it.
     pub(super) fn on(&self, kind: Kind) -> Option<Run> {
         if !takes(self.needed(), kind.changing) {
             return None;

@@ -72,7 +72,7 @@ enum Mistake {
     ClampsForgotten,
     /// Updates for the last step of a batch alone are never made.
     LastStepForgotten,
-    /// Sweeps are made whether a step needs them or not.
+    /// Sweeps are made even if a step does not need them.
     ConditionsForgotten,
     /// A step that is to be taken in parts is taken whole.
     RepeatsForgotten,

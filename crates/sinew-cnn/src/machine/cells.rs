@@ -15,7 +15,7 @@ const CHUNK: usize = 768;
 /// The registers of all cells.
 pub(super) struct Registers<'a> {
     pub(super) state: &'a mut State,
-    /// All registers but those of the state.
+    /// All registers except those of the state.
     pub(super) own: &'a mut [Vec<f64>],
 }
 
@@ -236,7 +236,7 @@ impl Cells<'_> {
 }
 
 impl Update {
-    /// The weight of a register, where it is read.
+    /// The weight of a register, if it is read.
     fn weight_of(&self, register: Register, followed: &FollowedLoad) -> Option<f64> {
         let terms = self.terms.iter();
         let terms = terms.filter(|term| term.register == register);

@@ -10,15 +10,15 @@ pub(super) struct Follower<'a> {
     pub(super) weight: f64,
 }
 
-/// A bound on the size of a sum, and marks where it was reached.
+/// A bound on the size of a sum, and marks of the values that reached it.
 pub(super) struct Bound<'a> {
     pub(super) limit: f64,
     /// Becomes 1 where the bound was reached: as wide as the values, so that several are compared at a time.
     pub(super) reached: &'a mut [u64],
 }
 
-/// `out = own out + sum of weight slice`, or without its first term where `own` is `None`, added up in
-/// that order, then bounded; whether the bound was reached. At most [`MOST`] slices, as long as `out`.
+/// `out = own out + sum of weight slice`, or without its first term if `own` is `None`, added up in that order,
+/// then bounded; returns true if the bound was reached. At most [`MOST`] slices, of the length of `out`.
 pub(super) fn combine(
     out: &mut [f64],
     own: Option<f64>,

@@ -39,11 +39,11 @@ pub trait Machine: Send + std::fmt::Debug {
         CostClock::default()
     }
 
-    /// Takes a program for a system, and allocates what it needs: afterwards a batch allocates nothing.
+    /// Loads a program for a system, and allocates its buffers: afterwards a batch allocates nothing.
     fn load(&mut self, program: Arc<Program>, system: &dyn System);
 
-    /// Takes the steps of a batch, each in as many parts as the program repeats. The velocity of `state`
-    /// holds at the displacement's time, or in the middle of a last part where the program leaves it there.
+    /// Takes the steps of a batch, each in as many substeps as the program repeats. The velocity of `state` is that
+    /// at the displacement's time, or in the middle of the last substep if the program leaves it there.
     ///
     /// # Errors
     /// [`StepError::Refused`] when the system refuses a trial state, [`StepError::NotPrepared`] if no program was loaded.

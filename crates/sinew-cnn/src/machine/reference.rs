@@ -17,7 +17,7 @@ use crate::program::{Forces, LoadAt, Loads, Program, Sweep};
 #[derive(Debug, Default)]
 pub struct ReferenceMachine {
     program: Option<Arc<Program>>,
-    /// All registers but those of the state.
+    /// All registers except those of the state.
     registers: Vec<Vec<f64>>,
     /// rho, then q.
     q: Vec<f64>,

@@ -7,7 +7,7 @@ use super::{
 };
 
 impl Program {
-    /// An empty program, after whose steps the velocity holds at this time.
+    /// An empty program with this time of the velocity after a step.
     #[must_use]
     pub fn new(velocity: VelocityTime) -> Self {
         Self {
@@ -80,7 +80,7 @@ impl Program {
         }
     }
 
-    /// The register that holds `u + beta v`.
+    /// The register with `u + beta v`.
     fn source(&mut self, u: Register, v: Register, beta: f64) -> Register {
         let known = self.sources.iter();
         let mut known = known.filter(|source| (source.u, source.v) == (u, v));

@@ -10,7 +10,7 @@ use super::number::significant;
 use super::stretch::stretches;
 use super::{Program, Quotient, Register, Sweep};
 
-/// Significant digits of numbers, where none are asked for.
+/// Significant digits of numbers by default.
 const DIGITS: usize = 6;
 
 /// Longest line of a list.

@@ -171,7 +171,7 @@ impl Program {
         terms
     }
 
-    /// An update as a formula, and its clamp as another where there is one.
+    /// An update as a formula, and its clamp, if any, as another.
     pub(super) fn update_lines(&self, update: &Update, digits: usize) -> Vec<Line> {
         let target = self.name(update.target);
         let mut terms: Vec<(Coefficient, String)> = Vec::new();

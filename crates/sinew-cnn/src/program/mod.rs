@@ -28,7 +28,7 @@ use crate::blocks::CellBlocks;
 /// Chua, IEEE Trans. Circuits Syst. II 40, 1993): sweeps over all cells, after each of which every
 /// cell combines its own registers.
 ///
-/// A cell holds a few registers, each one value per layer. A sweep is the only place where a cell
+/// A cell has a few registers, each one value per layer. A sweep is the only place where a cell
 /// reads its neighbours; see [`Sweep`]. A program is a plain value: it can be printed, compared and
 /// tested without a mesh. A [`crate::Machine`] runs it.
 ///
@@ -49,7 +49,7 @@ pub struct Program {
     names: Vec<&'static str>,
     /// Registers that follow from those of the state when one is loaded.
     pub entry: Vec<Update>,
-    /// A first step, from a velocity at the displacement's time; empty where it is like all others.
+    /// The first step, from a velocity at the displacement's time; empty if it is like all others.
     pub start: Vec<Sweep>,
     /// A step.
     pub step: Vec<Sweep>,
@@ -72,7 +72,7 @@ pub struct Program {
     sources: Vec<Source>,
 }
 
-/// A register that holds `u + beta v`, so that one product serves K and stiffness damping.
+/// A register with `u + beta v`, so that one product serves K and stiffness damping.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Source {
     register: Register,

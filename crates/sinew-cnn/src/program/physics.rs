@@ -43,7 +43,7 @@ impl Physics {
         }
     }
 
-    /// `q = M^-1 (phi F - kappa K source - E dashpots_on)`, the dashpots only where there are any.
+    /// `q = M^-1 (phi F - kappa K source - E dashpots_on)`, the dashpots only if there are any.
     #[must_use]
     pub fn sweep(
         &self,

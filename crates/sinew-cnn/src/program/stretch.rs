@@ -10,7 +10,7 @@ const FEWEST: usize = 3;
 pub(super) struct Stretch {
     pub(super) from: usize,
     pub(super) to: usize,
-    /// Number of kinds; all sweeps where none is left out.
+    /// Number of kinds; all sweeps if none is left out.
     pub(super) shown: usize,
 }
 

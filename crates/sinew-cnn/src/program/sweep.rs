@@ -1,6 +1,6 @@
 //! One sweep over all cells.
 
-/// A value that each cell holds for each of its layers.
+/// A value per cell and layer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Register(pub(super) u8);
 
@@ -53,7 +53,7 @@ impl Register {
     }
 }
 
-/// A sweep over all cells, and what each cell does with the result:
+/// A sweep over all cells, followed by updates of each cell:
 ///
 /// `rho = phi F - kappa K r_s - delta E r_d + sum_j (a_j + b_j m) r_j`, `q = rho`, `M^-1 rho` or
 /// `P^-1 rho`, then the updates in order. K and the dashpots E are the only reads of neighbours, each
@@ -129,7 +129,7 @@ pub enum LoadAt {
 /// Forces that the neighbours add to a sweep.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Forces {
-    /// Products with the matrices; none where both are `None`.
+    /// Products with the matrices; none if both are `None`.
     Products {
         /// `- kappa K r`.
         stiffness: Option<Product>,

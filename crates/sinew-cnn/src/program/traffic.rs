@@ -8,7 +8,7 @@ use super::{Clamp, Forces, Program, Quotient, Register, Sweep, When};
 /// not the last of a batch.
 ///
 /// Counted for a machine that passes once over the cells in each sweep: every register (and the mass,
-/// where it is used) that the pass reads counts as one vector read, every one that it writes as one
+/// if used) that the pass reads counts as one vector read, every one that it writes as one
 /// vector written, however often; q and what the neighbours read again stay in cache. A product
 /// streams each block of the matrix once, with the number of its column.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -7,7 +7,8 @@ use sinew_core::FreePart;
 use super::factor::Factor;
 use super::{LAYERS, MOST, RigidMotions};
 
-/// `P = M' + S - S R (R'S R)^-1 R'S`: the inertia M' and what a step adds to it, one block S for each cell, less what rigid motions R would feel of it.
+/// `P = M' + S - S R (R'S R)^-1 R'S`: the inertia M' plus the stiffness terms of a step, one block S for each cell,
+/// without their effect on the rigid motions R.
 ///
 /// For a matrix W with `W <= S` and `W R = 0`, `W <= P - M'`: with the projection `Z = I - R (R'S R)^-1 R'S` it is `Z'W Z <= Z'S Z = P - M'`. So P bounds `M' + W` as the blocks
 /// `B = M' + S` do, is never above them, and is M' on rigid motions. Its inverse is that of the blocks and a correction by sums over each part,
@@ -117,7 +118,7 @@ impl Deflation {
         })
     }
 
-    /// `out += U G^-1 U' r`: what makes `B^-1 r` to `P^-1 r`.
+    /// `out += U G^-1 U' r`: the correction from `B^-1 r` to `P^-1 r`.
     pub fn correct(&self, r: &[f64], out: &mut [f64]) {
         for part in self.sound() {
             let mut sums = part.rigid.sums(&part.moved, r);

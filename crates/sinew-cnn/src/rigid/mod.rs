@@ -1,4 +1,4 @@
-//! Rigid motions of parts of a body, which feel nothing of what a step adds to the inertia.
+//! Rigid motions of parts of a body, to which a step adds no inertia.
 
 mod deflation;
 mod factor;

@@ -45,8 +45,8 @@ impl RigidMotions {
         self.free.twists.len()
     }
 
-    /// Takes the motions about rest, or about displacements (m), and makes them orthonormal where `weigh` gives the metric of a cell times a vector; whether they are
-    /// independent in it.
+    /// Takes the motions about rest, or about displacements (m), and makes them orthonormal in the metric that
+    /// `weigh` applies to a cell's vector; returns false if they are dependent in it.
     pub(crate) fn take(
         &mut self,
         u: Option<&[f64]>,
@@ -205,7 +205,7 @@ impl RigidMotions {
         }
     }
 
-    /// Moves the part by the exponential of a sum of its twists, from where it is placed.
+    /// Moves the part from its place by the exponential of a sum of its twists.
     fn turn(&self, c: &Coefficients, places: &[f64], y: &mut [f64]) {
         let (mut translation, mut rotation) = ([0.0; 3], [0.0; 3]);
         for (twist, c) in self.free.twists.iter().zip(c) {

@@ -1,4 +1,4 @@
-//! Rigid motions beside an iteration.
+//! Projection of rigid motions out of an iteration.
 
 use sinew_core::FreePart;
 

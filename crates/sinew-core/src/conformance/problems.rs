@@ -121,11 +121,11 @@ pub(super) fn loaded_chain(damping: Dampers, masses: [f64; 2], loads: Vec<Load>)
     })
 }
 
-/// The component of the body in which one of its nodes is held.
+/// The component of the body in which one of its nodes is fixed.
 pub(super) const HELD: usize = 7;
 
 /// Three nodes in space, each bound to the ground and to both others by springs in no special
-/// direction, so that all blocks of K are full; the last is held in y and keeps that component, which
+/// direction, so that all blocks of K are full; the last is fixed in y and keeps that component, which
 /// feels no force.
 fn body(damping: Dampers, force: f64) -> Problem {
     let directions = [[0.6, 0.64, 0.48], [-0.36, 0.48, 0.8], [0.8, -0.36, 0.48]];

@@ -7,7 +7,7 @@ use crate::{
     StepReport, System, Verdict, simulate_under,
 };
 
-/// Keeps every `every`th state and what it watched of every step; stops at a step.
+/// Records every `every`th state and the watched values of every step; stops at a step.
 pub(super) struct Keeper {
     pub(super) every: usize,
     pub(super) stop_at: Option<usize>,
@@ -95,8 +95,8 @@ fn run(
 }
 
 /// Takes steps one by one, in one batch, under a recorder that wants every third state and
-/// watches every step, and stopped by one and continued from a clone with a fresh integrator; holds
-/// all of them to the same bits and the same work. The states before and after each step.
+/// watches every step, and stopped by one and continued from a clone with a fresh integrator; requires
+/// the same bits and the same work of all of them. Returns the states before and after each step.
 pub(super) fn in_every_way(
     make: &dyn Fn() -> Boxed,
     system: &dyn System,

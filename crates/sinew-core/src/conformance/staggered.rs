@@ -29,8 +29,8 @@ fn leapfrog(problem: &Problem, dt: f64, kept: Acceleration) -> State {
 
 /// A state whose velocity a leapfrog left half a step behind is taken over by way of
 /// [`State::synchronise`], to the last bit: whether it keeps the acceleration of its last kick or
-/// not, after steps of the same length and of another. Only a method that is staggered itself goes
-/// on otherwise, and only with the same step.
+/// not, after steps of the same length and of another. Only a method that is staggered itself
+/// continues differently, and only with the same step.
 pub fn a_staggered_state_is_taken_over_at_one_time(make: &dyn Fn() -> Boxed) {
     for problem in problems(Dampers::MASS, FORCE) {
         let system = &problem.system;

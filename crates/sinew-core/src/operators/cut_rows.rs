@@ -8,8 +8,8 @@ use super::{LinearOperators, OperatorError};
 use crate::derived::Derived;
 use crate::revision::Revision;
 
-/// The rows and masses of a body that a cut changed: of cells that were there, and of those that are appended, for
-/// [`LinearOperators::take_cut_rows`]. Used again, it allocates nothing.
+/// The rows and masses that a cut changed, of existing cells and of appended ones, for
+/// [`LinearOperators::take_cut_rows`]. Reused, it allocates nothing.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct CutRows {
     rows: RowsOfCells,

@@ -43,7 +43,7 @@ pub struct LoadState {
 /// An end of the stable range about rest, and what else happens on that side.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct End {
-    /// The last stable amount, if the curve goes on beyond it.
+    /// The last stable amount, if the curve continues beyond it.
     pub limit: Option<f64>,
     /// The amount beyond which the size of the nominal stress falls, if it does. A law that is stable may have it: a
     /// bar pulled by a force then necks.

@@ -577,8 +577,8 @@ pub fn single_precision_is_double_precision_rounded<L: HyperelasticLaw>(law: L) 
 }
 
 /// A law that is not defined for inverted elements refuses them, flat ones, and what is not a number; another has
-/// finite stresses there. A law with a limit says so in words, and single precision, whose numbers end sooner, has a
-/// limit wherever double precision has one.
+/// finite stresses there. A law with a limit describes it, and single precision, whose range is smaller, has a limit
+/// wherever double precision has one.
 pub fn what_is_refused_is_where_the_law_is_not_defined<L: HyperelasticLaw>(law: L) {
     let flat = |x: f64| law.at(Tensor([[x - 1.0, 0.0, 0.0], [0.0; 3], [0.0; 3]]));
     for stretch in [-0.5, -1e-9, 0.0, 1e-9, f64::NAN] {

@@ -30,14 +30,14 @@ pub(crate) enum Event {
     },
     /// A command that is refused, or a message that is no command.
     Refused {
-        /// Why.
+        /// The reason.
         reason: String,
     },
     /// A pane that cannot continue.
     Stopped {
         /// The pane.
         pane: usize,
-        /// Why.
+        /// The reason.
         reason: String,
     },
     /// Tools became other ones.
@@ -49,7 +49,7 @@ pub(crate) enum Event {
     Reset,
     /// A trusted run that ended.
     TrustedEnded {
-        /// Why.
+        /// The reason.
         reason: String,
     },
     /// A moment that was saved.
@@ -161,7 +161,7 @@ pub(crate) struct PaneFacts {
     pub(crate) step: StepFacts,
     /// The options of its integrator that can be set.
     pub(crate) options: Vec<OptionFacts>,
-    /// Why it stopped, where it did.
+    /// Reason why it stopped, if it did.
     pub(crate) stopped: Option<String>,
 }
 
@@ -172,7 +172,7 @@ pub(crate) struct IntegratorFacts {
     pub(crate) name: String,
     /// One line about it.
     pub(crate) summary: String,
-    /// Why it cannot run here.
+    /// Reason why it cannot run here, if so.
     pub(crate) refused: Option<String>,
     /// Stability of its steps, as far as it is known.
     #[serde(flatten)]

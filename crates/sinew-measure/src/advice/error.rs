@@ -1,10 +1,10 @@
-//! Why there is no advice.
+//! Reasons why there is no advice.
 
 use super::question::QuestionError;
 use crate::case::CaseError;
 use crate::one_thread::ThreadError;
 
-/// Why there is no advice.
+/// Reasons why there is no advice.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum AdviceError {

@@ -42,7 +42,7 @@ const ROUNDING: f64 = 1e-10;
 /// Smallest error that is sought where only a cost is given.
 const LEAST_ERROR: f64 = 1e-12;
 
-/// Why a method is no candidate for the answer.
+/// Reasons why a method is no candidate.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum LeftOut {
@@ -57,7 +57,7 @@ pub enum LeftOut {
     StabilityUnknown,
 }
 
-/// Why the run that the scene asks for was not measured.
+/// Reasons why the run that the scene asks for was not measured.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum NotMeasured {

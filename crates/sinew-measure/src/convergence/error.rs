@@ -1,4 +1,4 @@
-//! Why the error in space of a scene is not known.
+//! Reasons why the spatial error of a scene is unknown.
 
 use sinew_core::{OptionError, SetupError, SimulateError};
 use sinew_scene::RefinementError;
@@ -6,7 +6,7 @@ use sinew_scene::RefinementError;
 use crate::forecast::ForecastError;
 use crate::reference::ReferenceError;
 
-/// Why a scene could not be solved on several meshes.
+/// Reasons why a scene could not be solved on several meshes.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ConvergeError {

@@ -58,7 +58,7 @@ pub enum ReferenceMethod {
     },
 }
 
-/// Why there is no reference.
+/// Reasons why there is no reference.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ReferenceError {

@@ -6,14 +6,14 @@ use serde::{Deserialize, Deserializer, Serialize};
 
 use super::{CaseInfo, Row, RowOutcome};
 
-/// A number that should be there and is none.
+/// A required number that is not finite.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Gap {
     /// The field that it belongs to.
     pub field: String,
     /// The text that replaces it, such as `inf`; `None` without any.
     pub value: Option<String>,
-    /// Why it cannot be shown.
+    /// Reason why it cannot be shown.
     pub reason: &'static str,
 }
 

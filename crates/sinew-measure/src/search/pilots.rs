@@ -23,7 +23,7 @@ pub struct Pilot {
     pub row: Row,
 }
 
-/// Why a pilot was not made.
+/// Reasons why a pilot was not made.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum PilotError {

@@ -52,7 +52,7 @@ pub(super) struct Next {
 #[derive(Debug)]
 pub(super) struct Trail {
     pub(super) candidate: Candidate,
-    /// Why it was refused last.
+    /// Reason of the last refusal.
     pub(super) reason: Option<PilotError>,
     interval: f64,
     /// Every number of parts is a multiple of this one.

@@ -28,7 +28,8 @@ pub struct AskedCurves {
     /// The second axis of sheets and shears, as far as it is at right angles to the first; where there is none the second
     /// of the material's axes by data of the mesh, or the mesh's axis after the one that the first is nearest to.
     pub across: Option<[f64; 3]>,
-    /// The least and the largest stretch; an amount of shear is a stretch less 1. Where there are none, those of measured points with some room, or else from .7 to 2.
+    /// The least and the largest stretch; an amount of shear is a stretch less 1. `None`: the range of the measured
+    /// points with a margin, or else from .7 to 2.
     pub stretch: Option<[f64; 2]>,
 }
 
@@ -39,7 +40,7 @@ pub struct RegionCurves {
     pub number: usize,
     /// Its group; `None` for the whole mesh.
     pub group: Option<String>,
-    /// Its law in words.
+    /// Description of its law.
     pub law: String,
     /// Lame's constants (lambda, mu) (Pa) at rest, without fibres.
     pub lame: (f64, f64),
@@ -150,7 +151,7 @@ pub fn curves_of_laws(
         .collect()
 }
 
-/// A range with some room round it.
+/// A range widened by a margin on both sides.
 fn with_room([low, high]: [f64; 2]) -> [f64; 2] {
     let room = ROOM * (high - low).max(0.01);
     // No stretch is 0.
@@ -224,7 +225,7 @@ fn directions(region: &Region) -> ([f64; 3], Option<[f64; 3]>) {
 }
 
 impl RegionCurves {
-    /// The region in words, such as "region 1, `tissue`".
+    /// The region's name in reports, such as "region 1, `tissue`".
     #[must_use]
     pub fn name(&self) -> String {
         match &self.group {

@@ -1,4 +1,4 @@
-//! Laws and the ranges in which they are stable, in words.
+//! Descriptions of laws and of the ranges in which they are stable.
 
 use sinew_draw::short;
 use sinew_fem::homogeneous::{Curve, Load};

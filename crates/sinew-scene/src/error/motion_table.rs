@@ -43,7 +43,7 @@ pub enum MotionTableFault {
     Header {
         /// The line, shortened.
         found: String,
-        /// The lines that fit, in words.
+        /// Description of the lines that fit.
         expected: String,
     },
     /// A row with more or fewer numbers than columns.

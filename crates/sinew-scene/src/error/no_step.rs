@@ -2,7 +2,7 @@
 
 use sinew_core::{OptionError, SetupError};
 
-/// Why an integrator cannot say up to which step it is stable.
+/// Reasons why the stable step of an integrator cannot be found.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum StableStepError {
     /// An option that the integrator refuses.
@@ -13,7 +13,7 @@ pub enum StableStepError {
     Setup(#[from] SetupError),
 }
 
-/// Why an integrator sets no step on a scene.
+/// Reasons why an integrator sets no step on a scene.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum NoStableStep {
     /// Nothing vibrates or is damped.

@@ -3,7 +3,7 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// Why an output was refused, or failed while it was written. Every message names the path.
+/// Reasons why an output was refused or failed during writing. Every message names the path.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum OutputError {

@@ -167,8 +167,8 @@ fn temporary_in(folder: &Path) -> io::Result<(PathBuf, File)> {
 #[cfg(unix)]
 fn keep_access(old: &Metadata, file: &File) {
     use std::os::unix::fs::{MetadataExt, PermissionsExt, fchown};
-    /// The bits for reading, writing and execution, without set-user-id and the like, which must not pass
-    /// to new content.
+    /// The bits for reading, writing and execution. Set-user-id, set-group-id and sticky bits must not pass to new
+    /// content.
     const ACCESS: u32 = 0o777;
     let _ = fchown(file, Some(old.uid()), Some(old.gid()));
     let _ = file.set_permissions(fs::Permissions::from_mode(old.mode() & ACCESS));

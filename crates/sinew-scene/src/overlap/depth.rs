@@ -111,7 +111,7 @@ impl Depths {
     }
 
     /// The distance (m) of a point in a tetrahedron from the surface, if it is larger than `least` (m): from all
-    /// triangles of the surface that do not hold the point. `None` once `looks` checks of tetrahedra are used up.
+    /// triangles of the surface that do not contain the point. `None` once `looks` checks of tetrahedra are used up.
     pub(super) fn beyond(
         &mut self,
         (mesh, places): (&TetMesh, &[Vector]),

@@ -9,7 +9,7 @@ use sinew_core::{
 
 use super::Simulation;
 
-/// Why a body has no matrices at rest.
+/// Reasons why a body has no matrices at rest.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum AtRestError {

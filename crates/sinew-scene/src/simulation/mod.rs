@@ -179,8 +179,8 @@ impl Simulation {
         step::follows_stiffness(self.settings(), self.system())
     }
 
-    /// The largest stable step of the scene's integrator. The first call solves for it, later ones
-    /// remember it; where dt = "auto", building the scene was the first.
+    /// The largest stable step of the scene's integrator. The first call computes it, later ones return the cached
+    /// value; with dt = "auto" it was computed when the scene was built.
     ///
     /// # Errors
     /// [`StableStepError`] when the system lacks what the answer needs.

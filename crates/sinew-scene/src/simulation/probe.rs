@@ -36,8 +36,8 @@ pub struct ProbeNode {
     pub share: f64,
     /// Index in the mesh, from 0.
     pub index: u32,
-    /// Its degrees of freedom: along x, y and z for a node, one for an oscillator. `None` stands for a
-    /// direction in which the node is held or moved.
+    /// Its degrees of freedom: along x, y and z for a node, one for an oscillator. `None` in a direction in which the
+    /// node is fixed or moved.
     pub dofs: Vec<Option<usize>>,
     /// The courses of each direction in which the node is moved; none in others.
     pub courses: Vec<Vec<Course>>,

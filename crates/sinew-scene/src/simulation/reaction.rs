@@ -25,7 +25,7 @@ pub struct Reaction {
     pub moment: [f64; 3],
 }
 
-/// Why there are no reactions.
+/// Reasons why there are no reactions.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ReactionError {

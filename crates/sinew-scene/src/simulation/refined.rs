@@ -5,7 +5,7 @@ use sinew_mesh::RefineError;
 use super::Simulation;
 use crate::error::SceneError;
 
-/// Why there is no finer mesh for a scene.
+/// Reasons why there is no finer mesh for a scene.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum RefinementError {

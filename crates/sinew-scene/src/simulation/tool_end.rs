@@ -91,10 +91,10 @@ pub(super) fn sentences(
     said
 }
 
-/// Share of a body's volume in which its lips may overlap unsaid.
+/// Share of a body's volume by which its cut faces may overlap without a warning.
 const OVERLAP: f64 = 1e-6;
 
-/// A sentence about how far lips of cuts overlap in a state.
+/// A sentence about the volume in which cut faces overlap in a state; `None` if it is negligible.
 pub(super) fn of_lips(body: &BodyModel, state: &State) -> Option<String> {
     let cut = &body.cut.as_ref()?.cut;
     let mut places = vec![[0.0; 3]; cut.mesh.points.len()];

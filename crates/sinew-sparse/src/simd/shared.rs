@@ -11,7 +11,7 @@ use super::aligned::Aligned;
 /// Numbers that threads write in different places at the same time.
 pub struct Shared<T> {
     first: *mut T,
-    /// Whose memory `first` points to; used through it alone.
+    /// The memory that `first` points to, used only through that pointer.
     owner: Aligned<T>,
 }
 

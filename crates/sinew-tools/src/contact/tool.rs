@@ -29,7 +29,7 @@ pub struct Tool {
 }
 
 impl Tool {
-    /// True if it holds what it touches in a step that ends at `t` (s), under inputs from outside.
+    /// True if it grasps the tissue it touches in a step that ends at `t` (s), under inputs from outside.
     pub(super) fn holds(&self, t: f64, inputs: &Inputs) -> bool {
         let own = self
             .grasp
@@ -40,13 +40,14 @@ impl Tool {
         }
     }
 
-    /// True if it ever holds what it touches, or may be told to.
+    /// True if it can grasp tissue: by its own schedule or by steering.
     pub(super) fn may_hold(&self) -> bool {
         self.grasp.is_some() || matches!(self.motion, Motion::Steered(..))
     }
 }
 
-/// A time during which a tool holds what it touches: a cell that it pushes then goes with it until the end.
+/// An interval of time in which a tool grasps the tissue it touches: a cell that it pushes then moves with it until
+/// the end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grasp {
     /// Its beginning (s).

@@ -494,7 +494,8 @@ fn depth_in_a_fast_ball(speed: f64) -> Result<f64, LabError> {
     }
 }
 
-/// A cube under a ball that rubs, after .1 s, by so many threads, its world turned by a rotation vector about the origin.
+/// A cube under a ball that rubs, after .1 s, by this many threads, its world turned by a rotation vector about the
+/// origin.
 fn rubbed(threads: f64, turn: [f64; 3]) -> Result<Vec<f64>, LabError> {
     let pose = Pose::new([0.0; 3], turn);
     let mut mesh = block([8; 3], [0.06; 3], Split::Kuhn)?;

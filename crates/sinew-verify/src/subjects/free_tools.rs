@@ -390,8 +390,8 @@ fn rubbing_collision() -> Result<Vec<f64>, LabError> {
     ])
 }
 
-/// The largest differences of spring and force, of spring and torque, and of the force from that on a tool led to the
-/// same pose.
+/// The largest differences of spring and force, of spring and torque, and of the force from that on a tool steered to
+/// the same pose.
 fn askew_at_rest() -> Result<Vec<f64>, LabError> {
     let [start, end] = [[0.03, 0.03, EDGE + 0.0125], [0.031, 0.029, EDGE + 0.007]];
     let settled = |tool: Tool| {

@@ -50,7 +50,7 @@ fn pressed(nu: f64) -> Result<Vec<Vec<f64>>, LabError> {
     Ok(specimen.by_central_difference(1e-4, 100, 50)?)
 }
 
-/// The farthest turn (rad) of the column's top with so many cells across.
+/// The largest turn (rad) of the column's top with `across` cells across.
 fn farthest_turn(across: usize) -> Result<f64, LabError> {
     let law = tissue::law("neo-hookean", 17e6, 0.495);
     let mut problem = tissue::standing(law, EDGES);

@@ -60,7 +60,7 @@ const ON_GRID: &[(Kind, [f64; 2], [f64; 2])] = &[
     (Kind::Edge(0.9), [0.045, 0.097], [0.002; 2]),
 ];
 
-/// Errors on cube-12.msh with patches of so many, to the last digit printed.
+/// Errors on cube-12.msh by size of patches (tetrahedra), to the last digit printed.
 const ON_GMSH: &[(Kind, u32, [f64; 2], &str)] = &[
     (Kind::P1, 12, [0.9831, 7.9755], ""),
     (

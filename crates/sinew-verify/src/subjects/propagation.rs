@@ -39,7 +39,7 @@ const PEERS_ERRORS: &[(&str, f64, f64, f64)] = &[
     ("implicit-euler", 1.0, 27.0, 0.5),
 ];
 
-/// Method with options, in words, error (%) at 20 ms and one unit of its last digit.
+/// Method with options, its description, error (%) at 20 ms and one unit of its last digit.
 type PapersError = (&'static str, &'static str, fn(Options) -> Options, f64, f64);
 
 const PAPERS_ERRORS: &[PapersError] = &[

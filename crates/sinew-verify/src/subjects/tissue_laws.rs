@@ -287,7 +287,7 @@ fn change_of_angular_momentum(element: Element) -> Result<f64, LabError> {
     Ok(most)
 }
 
-/// A cube without supports, its nodes displaced at random by up to so much (m).
+/// A cube without supports, its nodes displaced at random by up to `scale` (m).
 fn shaken(id: &'static str, element: Element, scale: f64) -> Result<(Model, Vec<f64>), LabError> {
     let law = tissue::law(id, YOUNGS_MODULUS, 0.45);
     let model = Model::build(&cube(3, EDGE, Split::Kuhn)?, &tissue::free(law, element))?;

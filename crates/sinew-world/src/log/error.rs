@@ -45,7 +45,7 @@ pub enum LogFault {
         /// The version that is known.
         known: usize,
     },
-    /// A word that is not what is needed.
+    /// A word other than the expected one.
     #[error("\"{found}\": expected {expected}")]
     Word {
         /// The word.

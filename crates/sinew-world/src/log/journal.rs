@@ -15,7 +15,7 @@ use super::text::{end, head, push_entry};
 pub struct Journal {
     path: PathBuf,
     file: File,
-    /// Commands in the file; `None` as long as it is empty.
+    /// Number of commands in the file; `None` while it is empty.
     entries: Option<usize>,
     /// The list of commands that they begin.
     beginning: Option<Revision>,
@@ -100,7 +100,8 @@ impl Journal {
     }
 
     /// Adds the commands that are new in a log, except those after the last step: poses among them may be replaced by
-    /// later ones. Where the log went back, as that of a world that was restored, the file is written anew. Commands that could not be written are tried again, and the failure is reported once.
+    /// later ones. If the log went back, as that of a restored world, the file is rewritten. Commands that could not
+    /// be written are tried again, and the failure is reported once.
     ///
     /// # Errors
     /// [`JournalError`].
@@ -125,7 +126,7 @@ impl Journal {
     /// Adds all that is new in the log of a session that has ended, and its end.
     ///
     /// # Errors
-    /// [`JournalError`] where the file does not hold the whole log.
+    /// [`JournalError`] if the file does not contain the whole log.
     pub fn finish(mut self, log: &Log) -> Result<(), JournalError> {
         self.go_back_with(log);
         self.add(log, log.entries().len())?;
@@ -160,13 +161,13 @@ impl Journal {
         Ok(())
     }
 
-    /// Writes the text behind what stands whole in the file. A part of a line that a full disk left is written over.
+    /// Writes the text after the last whole line of the file. A partial line that a full disk left is overwritten.
     fn append(&mut self) -> io::Result<()> {
         self.cut()?;
         self.file.write_all(self.text.as_bytes())
     }
 
-    /// Takes away what follows the whole lines.
+    /// Truncates the file after the last whole line.
     fn cut(&mut self) -> io::Result<()> {
         if self.has_rest {
             self.file.set_len(self.length)?;
@@ -184,7 +185,7 @@ impl Journal {
     }
 }
 
-/// A file that is created, or one that is empty; `None` where something stands in it.
+/// A file that is created, or an empty one; `None` if it has content.
 fn open(path: &Path) -> io::Result<Option<File>> {
     let mut options = OpenOptions::new();
     options.write(true);

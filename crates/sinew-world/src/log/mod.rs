@@ -76,7 +76,7 @@ pub struct Log {
     steps: usize,
     #[serde(skip)]
     is_cut_off: bool,
-    /// The same as long as commands are only added: what was written of it stays true.
+    /// Revision that stays the same while commands are only appended, so that a file needs only new ones.
     #[serde(skip)]
     beginning: Revision,
 }
@@ -106,7 +106,7 @@ impl Log {
         }
     }
 
-    /// Adds a command. Of several poses of a tool, or forces on nodes, before a step the last hold.
+    /// Adds a command. Of several poses of a tool, or forces on nodes, before a step the last ones apply.
     pub(crate) fn add(&mut self, step: usize, t: f64, command: Command) {
         self.steps = step;
         if let Command::Pose { tool, .. } = &command {
@@ -133,7 +133,7 @@ impl Log {
         self.entries.push(Entry { step, t, command });
     }
 
-    /// The commands up to the last reset, that among them; none where there was no reset.
+    /// The commands up to and including the last reset; empty without one.
     pub(crate) fn up_to_last_reset(&self) -> &[Entry] {
         let reset = |entry: &Entry| entry.command == Command::Reset;
         let last = self.entries.iter().rposition(reset);

@@ -54,7 +54,7 @@ impl Log {
     }
 }
 
-/// A log as far as it is read.
+/// The part of a log that was read so far.
 #[derive(Default)]
 struct Reading {
     /// True if the first line is that of a log.

@@ -167,7 +167,7 @@ impl<'a> Words<'a> {
         self.0.is_empty()
     }
 
-    /// Refuses what is left of the line.
+    /// Refuses further words on the line.
     pub(super) fn end(&self) -> Result<(), LogFault> {
         if self.0.is_empty() {
             return Ok(());

@@ -68,9 +68,9 @@ impl World {
         Ok(self.advance(steps, recorder)?)
     }
 
-    /// Takes the steps of [`World::dt`] that cover a time (s) from now on, and ends with it: where they do not fit, as many shorter
-    /// ones of one length. A single short step among long ones would bring energy in where methods are stable in steps of one
-    /// length alone.
+    /// Advances by a time (s) in steps of [`World::dt`]; if the time is not a multiple of it, the steps are equal and
+    /// shorter. A single short step among long ones would add energy with methods that are stable in steps of
+    /// constant length only.
     ///
     /// # Errors
     /// [`AdvanceToError`], also for a time that is negative or not finite.
@@ -109,7 +109,7 @@ impl World {
         }
     }
 
-    /// A recorder that saw the motion up to the present state earlier, in so many steps.
+    /// A recorder that has already seen the motion up to the present state, in `steps` steps.
     pub fn show_again<'r, R: Recorder + ?Sized>(
         &self,
         recorder: &'r mut R,
@@ -252,7 +252,7 @@ impl World {
         Ok((idle as usize).max(1))
     }
 
-    /// Cuts what hands and the scene cut at the beginning of a step that ends at `end` (s).
+    /// Applies the cuts of users and of the scene at the beginning of a step that ends at `end` (s).
     fn cut_before(&mut self, end: f64) -> Result<(), WorldStepError> {
         self.change = None;
         let drives_loads = self.drives_loads();
@@ -319,7 +319,7 @@ impl World {
         Ok(())
     }
 
-    /// Gives the channels of all tools in hand their poses at the end (s) of a step that begins at `t` (s).
+    /// Sets the poses of all tools that a user steers, at the end (s) of a step that begins at `t` (s).
     fn move_tools(&mut self, t: f64, end: f64) -> Result<(), WorldStepError> {
         let last = self.state.clock.last_step().unwrap_or(0.0);
         for (index, hand) in self.tools.iter_mut().enumerate() {
@@ -327,7 +327,7 @@ impl World {
                 continue;
             };
             if !hand.is_steered {
-                // Of a tool that is a body of its own it is the hand that is steered.
+                // A tool that is a body of its own is coupled to the user's tool pose: that one is steered.
                 let own = self.body.model().tools();
                 let own = own.and_then(|tools| tools.tools().get(index));
                 let own = own.map_or(Pose::identity(), |tool| tool.motion.at(t, &self.inputs));

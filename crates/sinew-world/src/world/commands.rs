@@ -97,8 +97,8 @@ impl World {
     }
 
     /// Checks a command as far as possible before it is given: its names, its numbers and, for the first factor of a
-    /// load, whether the method supports loads that are not known in advance. Whether another method can take a step is
-    /// found only when it is given.
+    /// load, support of the method for loads that are not known in advance. A failure of another method to take a
+    /// step is found only when the command is given.
     ///
     /// # Errors
     /// [`CommandError`] for a command that [`World::command`] refuses as well.

@@ -142,8 +142,8 @@ impl World {
         })
     }
 
-    /// The pose to which a tool goes, or its hand draws it: that of the last command, else that of its own path now. Ids of a
-    /// world of another scene give the identity.
+    /// The pose to which a tool moves, or to which the user's coupling pulls it: that of the last command, else that
+    /// of its own path now. Ids of a world of another scene give the identity.
     #[must_use]
     pub fn hand_pose(&self, tool: ToolId) -> Pose {
         let own = || {
@@ -164,8 +164,8 @@ impl World {
         Some(self.tools_with(tool)?.report(&self.state, tool.place))
     }
 
-    /// The distance (m) between a tool and the cell or triangle that is nearest to it, negative inside; `None` where it
-    /// may touch none.
+    /// The signed distance (m) between a tool and the nearest cell or triangle, negative inside; `None` if it may
+    /// touch none.
     #[must_use]
     pub fn tool_gap(&self, tool: ToolId) -> Option<Depth> {
         let pose = self.tool_pose(tool);

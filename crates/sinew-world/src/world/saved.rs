@@ -36,7 +36,7 @@ pub struct Saved {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct Commanded {
     inputs: SavedInputs,
-    /// Target of each tool, whether it was steered, and the jaws that the next step begins with.
+    /// Target of each tool, true if it was steered, and the state of its jaws at the beginning of the next step.
     tools: Vec<(Target, bool, Option<bool>)>,
     /// Forces (N) on degrees of freedom that the next step begins with.
     forces: Option<Vec<(u32, f64)>>,
@@ -62,15 +62,15 @@ enum SavedFailure {
 type Target = Option<([f64; 3], [f64; 3])>;
 
 impl Saved {
-    /// It as bytes, the same on every machine.
+    /// Converts it to bytes, the same on every machine.
     ///
     /// # Errors
-    /// [`BytesError`]; none for what [`World::save`] gives.
+    /// [`BytesError`]; never for a result of [`World::save`].
     pub fn to_bytes(&self) -> Result<Vec<u8>, BytesError> {
         bytes::write(KIND, self)
     }
 
-    /// Reads what [`Saved::to_bytes`] wrote.
+    /// Reads bytes written by [`Saved::to_bytes`].
     ///
     /// # Errors
     /// [`BytesError`] for other bytes.
@@ -165,12 +165,12 @@ impl World {
         }
     }
 
-    /// Continues from what [`World::save`] kept of this world, or of another one of the same scene that was built in the
-    /// same way. The log is that of the motion that is continued, and one that failed needs a reset here too. Scenes are
-    /// the same if their texts and the files that they read are.
+    /// Continues from a result of [`World::save`], of this world or of another one built in the same way from the
+    /// same scene: scenes are the same if their texts and the files that they read are. The log becomes that of the
+    /// saved motion; if that had failed, the world needs a reset here too.
     ///
     /// # Errors
-    /// [`RestoreError`] for what another scene left, and for values that no motion has; the world stays as it was.
+    /// [`RestoreError`] for data of another scene, and for impossible values; the world is unchanged then.
     pub fn restore(&mut self, saved: &Saved) -> Result<(), RestoreError> {
         if saved.scene != self.identity.sha256 {
             return Err(RestoreError::OtherScene);

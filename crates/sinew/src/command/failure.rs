@@ -26,7 +26,7 @@ const FAILED: u8 = 1;
 /// Exit code after an interruption, that of shells for Ctrl-C.
 const INTERRUPTED: u8 = 130;
 
-/// Why a command did not succeed.
+/// Reasons why a command did not succeed.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum Failure {
     /// A scene that cannot be used.

@@ -7,7 +7,7 @@ use sinew_scene::output::{Delivery, Destination};
 
 use super::Failure;
 
-/// Whether files may be written over.
+/// Permission to overwrite files.
 #[derive(clap::Args, Clone, Copy)]
 pub(crate) struct Force {
     /// Write over a file that holds something else

@@ -73,7 +73,7 @@ struct Planned {
     cost: Cost,
 }
 
-/// Why there is no plan.
+/// Reasons why there is no plan.
 #[derive(Debug, thiserror::Error)]
 pub enum PlanError {
     /// A scene that cannot be built.

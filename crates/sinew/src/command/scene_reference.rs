@@ -4,7 +4,7 @@ use sinew_scene::output::say;
 
 use super::Failure;
 
-/// What to print.
+/// Output format.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// Print a JSON schema for editors instead of Markdown.

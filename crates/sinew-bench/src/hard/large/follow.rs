@@ -49,7 +49,7 @@ impl Planned {
 pub(crate) struct Followed {
     /// Displacements (m) at equal instants.
     pub(crate) track: Vec<Vec<f64>>,
-    /// Why it ended before its time.
+    /// Reason why it ended early, if it did.
     pub(crate) refusal: Option<String>,
     /// True if the method itself reports that the energy grew.
     pub(crate) tells_growth: bool,

@@ -16,7 +16,7 @@ pub(super) struct Certificate {
 }
 
 impl Certificate {
-    /// Counts a step that gained so much energy (J) beyond the work of the loads, from a state with the energy `energy` (J).
+    /// Counts a step that started at the energy `energy` (J) and gained `gained` (J) beyond the work of the loads.
     pub(super) fn count(&mut self, gained: f64, energy: f64, work: &StepReport) {
         self.steps += 1;
         self.backtracks += work.backtracks;

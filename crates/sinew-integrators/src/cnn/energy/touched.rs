@@ -65,7 +65,7 @@ pub(super) struct Touched {
     pushed: Vec<u32>,
     /// History variables of contact in the last accepted sweep, or before the step.
     kept: Vec<f64>,
-    /// Why the law refused the last trial, if it did.
+    /// Error of the law at the last trial, if it refused it.
     refused: Option<EvaluationError>,
 }
 

@@ -37,7 +37,7 @@ impl Solver {
         Self::analyse_within(matrices, Memory::left())
     }
 
-    /// [`Solver::analyse`] for a factor of so much memory at most.
+    /// [`Solver::analyse`] for a factor within this memory limit.
     ///
     /// # Errors
     /// As [`Solver::analyse`].

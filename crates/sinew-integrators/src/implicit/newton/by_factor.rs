@@ -10,7 +10,7 @@ use super::unsymmetric::Unsymmetric;
 use crate::implicit::factor::{Factor, Matrices};
 use crate::implicit::factor_error::FactorError;
 
-/// What a factor is made from, once one is needed.
+/// Inputs of a factorisation that is made once it is needed.
 #[derive(Debug)]
 pub(super) struct Plan {
     pattern: Arc<Pattern>,
@@ -20,7 +20,7 @@ pub(super) struct Plan {
     dofs: usize,
     /// True if a part of the derivative has no symmetry.
     is_unsymmetric: bool,
-    /// A factor of before, whose analysis may fit.
+    /// A factor made earlier, whose analysis may be reused.
     known: Option<Factor>,
 }
 

@@ -56,7 +56,7 @@ impl ByGradients {
         self.in_step
     }
 
-    /// Iterations after which a step goes on with a factor on this pattern.
+    /// Iterations after which a step continues with a factor on this pattern.
     pub(super) fn bound_in_step(&mut self, pattern: &Pattern) -> u64 {
         self.choice.bound(Bound::InStep, pattern)
     }
@@ -96,7 +96,7 @@ impl ByGradients {
         Ok(())
     }
 
-    /// Goes on with it until a share of the residual is left, or until so many iterations were taken in the step.
+    /// Continues until a share of the residual is left, or until the step has taken `most` iterations.
     ///
     /// # Errors
     /// As [`Products::product`].

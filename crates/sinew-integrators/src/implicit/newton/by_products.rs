@@ -27,18 +27,18 @@ pub(super) trait Products {
     /// As [`Products::product`].
     fn blocks(&mut self, out: &mut [f64]) -> Result<(), EvaluationError>;
 
-    /// What inertia adds to the diagonal of the blocks.
+    /// Contribution of inertia to the diagonal of the blocks.
     fn inertia(&self, dof: usize) -> f64;
 }
 
 /// End of conjugate gradients, with the share of the right-hand side that the solution leaves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Solved {
-    /// As near as was asked for.
+    /// Converged to the share asked for.
     Near(f64),
-    /// They took all iterations that were allowed.
+    /// Stopped at the maximum number of iterations.
     Unfinished(f64),
-    /// They came upon a direction along which A is not positive; nothing is left of a share where it was the first.
+    /// Stopped at a direction along which A is not positive; `None` if it was the first.
     NotDefinite(Option<f64>),
 }
 
@@ -116,7 +116,8 @@ impl Gradients {
         self.steepness = dot(&self.residual, &self.preconditioned);
     }
 
-    /// Goes on until a share of the right-hand side is left, for `most` iterations at most; adds those taken to `iterations`.
+    /// Continues until a share of the right-hand side is left, for `most` iterations at most; adds those taken to
+    /// `iterations`.
     ///
     /// # Errors
     /// As [`Products::product`].

@@ -28,7 +28,7 @@ pub(super) struct Choice {
 pub(super) enum Bound {
     /// Iterations at rest beyond which steps take a factor from their beginning: a step takes a third more to twice as many, in several solutions.
     AtRest,
-    /// Iterations in a step beyond which it goes on with a factor: some steps take more than others.
+    /// Iterations in a step beyond which it continues with a factor: some steps take more than others.
     InStep,
 }
 

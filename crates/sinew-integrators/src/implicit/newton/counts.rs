@@ -1,13 +1,13 @@
-//! Count of what solutions took, in words.
+//! Counts of the solutions of equations, with a description for reports.
 
-/// Reasons for which a step that began without a factor goes on with one.
+/// Reasons why a step that began without a factor continues with one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Reason {
     /// Conjugate gradients would take longer.
     Work,
     /// The tangent is not positive definite.
     Indefinite,
-    /// They led nowhere.
+    /// The directions were useless.
     Stuck,
 }
 
@@ -36,7 +36,7 @@ pub(super) struct Counts {
 }
 
 impl Counts {
-    /// Counts a step that goes on with a factor.
+    /// Counts a step that continues with a factor.
     pub(super) fn went_on(&mut self, reason: Reason) {
         self.went_on[reason as usize] += 1;
     }
@@ -46,7 +46,7 @@ impl Counts {
         (self.solutions > 0).then(|| self.iterations as f64 / self.solutions as f64)
     }
 
-    /// How equations were solved.
+    /// Description of how equations were solved.
     pub(super) fn in_words(&self) -> String {
         let Some(iterations) = self.iterations_a_solution() else {
             return "each iteration made a factor: conjugate gradients would take longer in steps of this length on this body".to_owned();

@@ -64,7 +64,7 @@ impl Derivative<'_> {
         Ok(())
     }
 
-    /// What is to be added to the diagonal of the blocks.
+    /// Contribution of inertia to the diagonal of the blocks.
     pub(super) fn inertia(&self, dof: usize) -> f64 {
         self.of_mass() * self.mass[dof]
     }
@@ -91,7 +91,7 @@ pub(super) struct AtRest<'s> {
 }
 
 impl<'s> AtRest<'s> {
-    /// That of steps of `dt` (s) with these d and k.
+    /// The derivative for steps of `dt` (s) with these coefficients d and k.
     pub(super) fn new(
         system: &'s dyn System,
         law: &'s dyn ElasticLaw,

@@ -33,7 +33,7 @@ enum Way {
 pub(super) enum Direction {
     /// A solution.
     Solution,
-    /// As far as the tangent was found to be positive: it does not tell how far to go.
+    /// A descent direction found before one along which the tangent is not positive; it has no natural length.
     Beginning,
 }
 

@@ -7,7 +7,7 @@ use super::{Warning, WarningKind};
 use crate::number::{count, short};
 use crate::simulation::Simulation;
 
-/// Why the motion may grow at the scene's step, and what a clamp makes of it; nothing where the step is stable.
+/// Warnings of an unstable step, with the effect of a clamp; empty if the step is stable.
 pub(super) fn unstable(simulation: &Simulation) -> Vec<Warning> {
     let (dt, id) = (simulation.dt(), &simulation.settings().integrator);
     let kind = WarningKind::UnstableStep;

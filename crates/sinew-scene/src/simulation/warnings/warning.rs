@@ -29,7 +29,7 @@ impl Warning {
         }
     }
 
-    /// A run that is predicted to take long: time (s) by the clock on the wall, in so many steps.
+    /// A run that is predicted to take long: wall time (s) and number of steps.
     #[must_use]
     pub fn long_run(seconds: f64, steps: usize, dt: f64) -> Self {
         let what = format!(
@@ -89,7 +89,7 @@ pub enum WarningKind {
     UnusedGroups,
     /// A region without elements.
     EmptyRegion,
-    /// A part of the body that nothing holds.
+    /// A part of the body without supports.
     FreePart,
     /// A material in which plain linear tetrahedra are too stiff.
     Locking,
