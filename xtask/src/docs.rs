@@ -8,16 +8,19 @@ use sinew_scene::output::{Destination, OutputError, say};
 use crate::failure::Failure;
 use crate::repository::root;
 
-/// The case of which the README shows a plot.
+/// The case of which README and book show a plot.
 const CASE: &str = "paper-cube";
-/// A stability map of the hard cases that the README shows.
+/// A stability map of the hard cases that the book shows.
 const MAP: &str = "map-poisson.svg";
-/// The README's picture of a large deformation.
+/// The book's picture of a large deformation.
 const DEFORMATION: &str = "large-deformation.svg";
+/// The chapter with the table.
+const CHAPTER: &str = "docs/book/src/bench.md";
 const BEGIN: &str = "<!-- bench -->\n";
 const END: &str = "<!-- end -->";
 
-/// Brings the README's table and pictures up to the last bench and the last hard bench; its picture of a large deformation is computed.
+/// Brings the table and the pictures of the book's chapter on the bench up to the last bench and the last hard bench; its picture of a large deformation is
+/// computed.
 pub(crate) fn run() -> Result<(), Failure> {
     let inputs = [
         root().join("target/bench-hard").join(MAP),
@@ -37,21 +40,21 @@ pub(crate) fn run() -> Result<(), Failure> {
     let results = BenchResults::from_json(&text).map_err(Failure::input)?;
     let table = markdown_cheapest(&results);
 
-    let readme = root().join("README.md");
-    let text = std::fs::read_to_string(&readme).map_err(Failure::chore)?;
+    let chapter = root().join(CHAPTER);
+    let text = std::fs::read_to_string(&chapter).map_err(Failure::chore)?;
     let machine = &results.machine;
     let machine = format!(
         "{} ({} {}), one thread.",
         machine.cpu, machine.os, machine.arch
     );
     let Some(text) = with_table(&text, &table, &machine) else {
-        return Err(Failure::Chore(
-            "README.md has lost the marks round its table".into(),
-        ));
+        return Err(Failure::Chore(format!(
+            "{CHAPTER} has lost the marks round its table"
+        )));
     };
     let picture = work_precision(&results, CASE).svg();
     let outputs = [
-        (readme, text),
+        (chapter, text),
         (
             root().join(format!("docs/work-precision-{CASE}.svg")),
             picture,
@@ -100,8 +103,8 @@ mod tests {
     }
 
     #[test]
-    fn the_readme_has_the_marks() {
-        let readme = std::fs::read_to_string(root().join("README.md")).unwrap();
-        assert!(with_table(&readme, "", "").is_some());
+    fn the_chapter_has_the_marks() {
+        let chapter = std::fs::read_to_string(root().join(CHAPTER)).unwrap();
+        assert!(with_table(&chapter, "", "").is_some());
     }
 }

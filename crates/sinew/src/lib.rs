@@ -58,7 +58,10 @@ pub mod prelude {
     pub use sinew_world::World;
 }
 
-/// The README's examples, compiled and run with the tests.
+/// The examples of the README and of the book, compiled and run with the tests.
 #[cfg(doctest)]
 #[doc = include_str!("../../../README.md")]
-pub struct Readme;
+#[doc = include_str!("../../../docs/book/src/own-program.md")]
+#[doc = include_str!("../../../docs/book/src/own-parts.md")]
+#[doc = include_str!("../../../docs/book/src/haptics.md")]
+pub struct Documents;
