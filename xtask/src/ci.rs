@@ -10,7 +10,7 @@ use sinew_scene::output::say;
 use self::cost::{Cost, Stopwatch};
 use crate::failure::Failure;
 use crate::repository::root;
-use crate::{compare, memory, python_test, rules, to_a_scene};
+use crate::{book, compare, memory, python_test, rules, to_a_scene};
 
 /// Seed of the random cases of properties: a change fails for what it did, and not for new luck. `cargo test` alone
 /// draws new cases each time.
@@ -73,7 +73,8 @@ const STEPS: &[Step] = &[
     ),
     cargo("live page in Chromium", "xtask live-test"),
     cargo("loss of power", "xtask power-loss"),
-    cargo("commands of the README", "xtask readme"),
+    cargo("commands of the documents", "xtask readme"),
+    own("book", book_if_possible),
     cargo(
         "installation",
         "install --path crates/sinew --root target/ci-install --locked --force --no-track --quiet",
@@ -205,6 +206,14 @@ fn python_test_if_possible() -> Result<(), Failure> {
     }
 }
 
+/// Builds the book, where there is mdBook.
+fn book_if_possible() -> Result<(), Failure> {
+    match unless_missing(book::program())? {
+        Ok(program) => book::run_with(&program),
+        Err(reason) => Ok(say(&format!("== SKIPPED: {reason}"))?),
+    }
+}
+
 /// Tries the way from surfaces, images and meshes of others to scenes, where there are Python and pip.
 fn to_a_scene_if_possible() -> Result<(), Failure> {
     match unless_missing(to_a_scene::python())? {
@@ -213,7 +222,7 @@ fn to_a_scene_if_possible() -> Result<(), Failure> {
     }
 }
 
-/// A Python, or the reason why this machine has none. A pip that fails is an error.
+/// A program, or the reason why this machine has none. A pip that fails is an error.
 fn unless_missing<P>(python: Result<P, Failure>) -> Result<Result<P, String>, Failure> {
     match python {
         Ok(python) => Ok(Ok(python)),

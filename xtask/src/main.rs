@@ -1,8 +1,9 @@
 //! Repository chores:
-//! `cargo xtask bench | verify | native | memory | reproduce | meshes | compare | laws | wheel | python-test | live-test | docs | reference | readme | to-a-scene | dist | rules | ci`.
+//! `cargo xtask bench | verify | native | memory | reproduce | meshes | compare | laws | wheel | python-test | live-test | docs | book | reference | readme | to-a-scene | dist | rules | ci`.
 
 mod bench;
 mod beside;
+mod book;
 mod ci;
 mod compare;
 mod dist;
@@ -73,11 +74,13 @@ enum Chore {
     LiveTest(live_test::Arguments),
     /// Lose the power under runs on a disk of their own and go on with them; skipped where none can be mounted. Needs root, ext4 and perl.
     PowerLoss(power_loss::Arguments),
-    /// Bring the README's table and pictures up to the last bench and the last hard bench.
+    /// Bring the table and the pictures of the book's chapter on the bench up to the last bench and the last hard bench.
     Docs,
+    /// Build the book into target/book by mdBook; part of `ci` where there is one.
+    Book(book::Arguments),
     /// Write the reference and the JSON schema of scenes into docs.
     Reference,
-    /// Run the commands of the README as they are written there; part of `ci`.
+    /// Run the commands of the README and of the book as they are written there; part of `ci`.
     Readme,
     /// Run the commands of docs/to-a-scene.md and those that errors name for files of other programs; pip installs what they need into
     /// target/. Part of `ci`.
@@ -105,6 +108,7 @@ fn main() -> ExitCode {
         Chore::LiveTest(arguments) => live_test::run(&arguments),
         Chore::PowerLoss(arguments) => power_loss::run(&arguments),
         Chore::Docs => docs::run(),
+        Chore::Book(arguments) => book::run(&arguments),
         Chore::Reference => reference::run(),
         Chore::Readme => readme::run(),
         Chore::ToAScene => to_a_scene::run(),

@@ -50,6 +50,8 @@ pub(crate) enum Breach {
     },
     #[error("ARCHITECTURE.md names {name}, which does not exist")]
     NoSuchPath { name: String },
+    #[error("{path} links to {link}, which does not exist")]
+    DeadLink { path: String, link: String },
 }
 
 /// Reasons why the rules are not known to be kept.
