@@ -102,10 +102,10 @@ impl<'a> Animation<'a> {
     }
 
     fn whole(&mut self, picture: &Picture) -> Patch {
-        let numbers = picture
-            .pixels()
-            .iter()
-            .map(|pixel| self.colours.number(*pixel));
+        let width = self.size.width();
+        let pixels = picture.pixels().iter().enumerate();
+        let numbers = pixels
+            .map(|(place, pixel)| self.colours.number(*pixel, (place % width, place / width)));
         self.shown = numbers.collect();
         Patch {
             at: [0, 0],
@@ -126,12 +126,12 @@ impl<'a> Animation<'a> {
             if now.iter().zip(pixel).all(|(a, b)| a.abs_diff(*b) <= SAME) {
                 continue;
             }
-            let number = self.colours.number(*pixel);
+            let (column, row) = (place % width, place / width);
+            let number = self.colours.number(*pixel, (column, row));
             if number == *shown {
                 continue;
             }
             (*shown, changes[place]) = (number, number);
-            let (column, row) = (place % width, place / width);
             (left, right) = (left.min(column), right.max(column + 1));
             (top, bottom) = (top.min(row), bottom.max(row + 1));
         }

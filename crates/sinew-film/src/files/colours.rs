@@ -14,6 +14,14 @@ const MOST: usize = 255;
 /// Rounds in which colours move to the middle of what is nearest to them.
 const ROUNDS: usize = 5;
 
+/// Steps by which colours are made brighter or darker before they are rounded: B. Bayer's matrix of 1973.
+const THRESHOLDS: [[i8; 4]; 4] = [
+    [-4, 1, -3, 2],
+    [3, -2, 4, -1],
+    [-3, 2, -4, 1],
+    [4, -1, 3, -2],
+];
+
 /// Colours, and the nearest of them to any other.
 pub(crate) struct Colours {
     table: Vec<[u8; 3]>,
@@ -65,12 +73,14 @@ impl Colours {
         &self.table
     }
 
-    /// The number of the colour that is nearest to one, but for the rounding of its last bits.
-    pub(crate) fn number(&self, colour: [u8; 3]) -> u8 {
-        match colour == BACKGROUND {
-            true => 0,
-            false => self.nearest[bin(colour)],
+    /// The number of the colour that stands for one at a column and a row: the nearest to it after it was made somewhat
+    /// brighter or darker there, so that slopes of few colours look smooth from afar.
+    pub(crate) fn number(&self, colour: [u8; 3], (column, row): (usize, usize)) -> u8 {
+        if colour == BACKGROUND {
+            return 0;
         }
+        let more = THRESHOLDS[row % 4][column % 4];
+        self.nearest[bin(colour.map(|component| component.saturating_add_signed(more)))]
     }
 }
 
@@ -220,7 +230,7 @@ mod tests {
         }
         let colours = Colours::of([&picture].into_iter());
         for colour in few.into_iter().chain([BACKGROUND]) {
-            let found = colours.table()[usize::from(colours.number(colour))];
+            let found = colours.table()[usize::from(colours.number(colour, (1, 2)))];
             assert_eq!(found, colour);
         }
     }
@@ -235,7 +245,7 @@ mod tests {
         }
         let colours = Colours::of([&picture].into_iter());
         for pixel in picture.pixels() {
-            let found = colours.table()[usize::from(colours.number(*pixel))];
+            let found = colours.table()[usize::from(colours.number(*pixel, (1, 0)))];
             let off = found.iter().zip(pixel).map(|(a, b)| a.abs_diff(*b)).max();
             assert!(off <= Some(4), "{pixel:?} became {found:?}");
         }

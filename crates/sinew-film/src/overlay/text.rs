@@ -26,7 +26,6 @@ pub(super) struct Ink {
 pub(super) enum Anchor {
     Left,
     Middle,
-    Right,
 }
 
 /// The width (pixels) of a line of writing.
@@ -65,7 +64,6 @@ pub(super) fn write(
     let mut left = match anchor {
         Anchor::Left => x,
         Anchor::Middle => x - 0.5 * wide,
-        Anchor::Right => x - wide,
     };
     let pen = 0.5 * (PEN * scale).max(THINNEST);
     for letter in text.chars() {

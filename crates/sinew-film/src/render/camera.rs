@@ -116,7 +116,7 @@ impl Camera {
         let above = scaled(self.up, (self.middle[1] - y) / self.scale);
         let point = add(self.target, add(aside, above));
         match self.is_perspective {
-            true => (point, unit(sub(point, self.eye()))),
+            true => (point, sub(point, self.eye())),
             false => (point, scaled(self.back, -1.0)),
         }
     }
@@ -149,7 +149,7 @@ mod tests {
             let place = [0.3, -0.4, 0.25];
             let seen = camera.seen(place);
             let (from, along) = camera.ray(seen.x, seen.y);
-            let aside = cross(sub(place, from), along);
+            let aside = cross(sub(place, from), unit(along));
             assert!(length(aside) < 1e-5, "{text}: {aside:?}");
         }
     }

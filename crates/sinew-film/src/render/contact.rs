@@ -50,7 +50,7 @@ impl Contact {
         if !(x >= 0.0 && y >= 0.0 && x < last && y < last) {
             return 0.0;
         }
-        let (column, row) = (x as usize, y as usize);
+        let (column, row) = (x as i32 as usize, y as i32 as usize);
         let [along, down] = [x - column as f32, y - row as f32];
         let value = |place: usize| self.hidden[place];
         let first = row * EDGE + column;

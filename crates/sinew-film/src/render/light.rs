@@ -7,8 +7,8 @@ use crate::vector::{V3, add, scaled, unit};
 const KEY: [f32; 3] = [1.0, 0.5, 0.35];
 
 /// Light of the sky and of the floor, from all sides.
-const SKY: V3 = [0.50, 0.53, 0.58];
-const GROUND: V3 = [0.30, 0.27, 0.26];
+const SKY: V3 = [0.46, 0.48, 0.52];
+const GROUND: V3 = [0.24, 0.21, 0.21];
 
 /// A weak light from the other side, which keeps shaded sides readable.
 const FILL: f32 = 0.16;

@@ -5,6 +5,9 @@ use crate::vector::V3;
 /// Values along an edge of the table, a power of two.
 const EDGE: usize = 32;
 
+/// Added to places so that none of them is below 0: many edges of the table.
+const FAR: f32 = 4096.0;
+
 /// Values of noise between 0 and 1 at the points of a lattice that repeats itself.
 pub(super) struct Mottle {
     values: Vec<f32>,
@@ -25,12 +28,13 @@ impl Mottle {
 
     /// The noise at a place: a cell of the lattice has the length 1.
     pub(super) fn at(&self, place: V3) -> f32 {
-        let whole = place.map(f32::floor);
-        let share = [0, 1, 2].map(|axis| {
-            let share = place[axis] - whole[axis];
+        // A conversion is cheaper than `floor`, which is a call on plain processors.
+        let whole = place.map(|x| (x + FAR) as i32);
+        let share = [0, 1, 2].map(|axis: usize| {
+            let share = place[axis] + FAR - whole[axis] as f32;
             share * share * (3.0 - 2.0 * share)
         });
-        let cell = whole.map(|x| (x as i64).rem_euclid(EDGE as i64) as usize);
+        let cell = whole.map(|x| x as usize % EDGE);
         let next = cell.map(|x| (x + 1) % EDGE);
         let value = |x: usize, y: usize, z: usize| self.values[(z * EDGE + y) * EDGE + x];
         let mix = |a: f32, b: f32, share: f32| a + share * (b - a);

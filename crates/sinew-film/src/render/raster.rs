@@ -141,26 +141,37 @@ impl Samples {
         let edges = [(b, c), (c, a), (a, b)].map(|(p, q)| (p, [p.y - q.y, q.x - p.x]));
         let steps = edges.map(|(_, [right, down])| SAMPLES.map(|[x, y]| right * x + down * y));
         let most = steps.map(|steps| steps.into_iter().fold(f32::MIN, f32::max));
+        let least = steps.map(|steps| steps.into_iter().fold(f32::MAX, f32::min));
         let [near_b, near_c] = [b.near - a.near, c.near - a.near].map(|near| near / area);
         for row in first_row..end_row {
             let y = row as f32 + 0.5;
             let line = (row - top) * width;
-            for column in first..end {
+            // The pixels of the row that the edges leave, and one more on either side for rounding.
+            let (mut from, mut to) = (first as f32, end as f32);
+            for ((p, [right, down]), most) in edges.iter().zip(most) {
+                let bound = p.x - (down * (y - p.y) + most) / right;
+                if *right > 0.0 {
+                    from = from.max(bound - 1.5);
+                } else if *right < 0.0 {
+                    to = to.min(bound + 1.5);
+                }
+            }
+            for column in from as usize..to.max(0.0) as usize {
                 let x = column as f32 + 0.5;
                 let at = edges.map(|(p, [right, down])| right * (x - p.x) + down * (y - p.y));
                 if at[0] + most[0] < 0.0 || at[1] + most[1] < 0.0 || at[2] + most[2] < 0.0 {
                     continue;
                 }
+                let is_whole =
+                    at[0] + least[0] >= 0.0 && at[1] + least[1] >= 0.0 && at[2] + least[2] >= 0.0;
                 let pixel = line + column;
                 let (nears, triangles) = (&mut self.near[pixel], &mut self.triangles[pixel]);
                 for sample in 0..SAMPLES.len() {
                     let [of_a, of_b, of_c] =
                         [0, 1, 2].map(|edge: usize| at[edge] + steps[edge][sample]);
-                    if of_a < 0.0 || of_b < 0.0 || of_c < 0.0 {
-                        continue;
-                    }
+                    let is_within = is_whole || (of_a >= 0.0 && of_b >= 0.0 && of_c >= 0.0);
                     let near = a.near + of_b * near_b + of_c * near_c;
-                    if near > nears[sample] {
+                    if is_within && near > nears[sample] {
                         nears[sample] = near;
                         triangles[sample] = index;
                     }

@@ -3,15 +3,18 @@
 use rayon::prelude::*;
 
 use super::contact::Contact;
-use super::floor::{self, BACKGROUND, floor};
+use super::floor::{BACKGROUND, Floor, SLANTED};
 use super::light::Light;
 use super::paint::{Palette, Point};
 use super::raster::{BAND, NOTHING, Projected, SAMPLES, Samples};
 use super::shadow::Shadow;
 use super::{Camera, Model};
 use crate::colour_space::{Screen, linear};
-use crate::vector::{V3, add, dot, scaled, unit};
+use crate::vector::{V3, add, dot, scaled, times, unit};
 use crate::{Picture, Size};
+
+/// The share of the lamp's light that finds its way round to sides that are turned away from it.
+const AWAY: f32 = 0.35;
 
 /// What stays the same from picture to picture.
 pub(crate) struct Stage {
@@ -34,23 +37,22 @@ impl Stage {
             screen: Screen::new(),
         }
     }
-
-    pub(crate) fn camera(&self) -> &Camera {
-        &self.camera
-    }
 }
 
 /// A picture of a model. The bits do not depend on the number of threads.
 pub(crate) fn draw(stage: &Stage, model: &Model, size: Size) -> Picture {
     let mut picture = Picture::new(size, BACKGROUND);
     let projected = Projected::of(model, &stage.camera);
+    let shadow = Shadow::of(model, stage.light.key);
+    // Seen from the side or from below there is none.
+    let floor = (stage.camera.back[2] > SLANTED)
+        .then(|| Floor::of(stage.floor, &shadow, &Contact::of(model, stage.floor)));
     let drawing = Drawing {
         stage,
         model,
-        shadow: Shadow::of(model, stage.light.key),
-        contact: Contact::of(model, stage.floor),
+        shadow,
+        floor,
         background: linear(BACKGROUND),
-        has_floor: stage.camera.back[2] > floor::SLANTED,
         projected,
     };
     let width = size.width();
@@ -84,16 +86,15 @@ struct Drawing<'a> {
     model: &'a Model,
     projected: Projected,
     shadow: Shadow,
-    contact: Contact,
+    floor: Option<Floor>,
     background: V3,
-    has_floor: bool,
 }
 
 impl Drawing<'_> {
     /// The light of a pixel: of each triangle that is seen in it once, as much as it covers. `None` for the background.
     fn pixel(&self, middle: [f32; 2], seen: &[u32; 4]) -> Option<V3> {
         if *seen == [NOTHING; 4] {
-            return self.has_floor.then(|| self.floor(middle));
+            return self.floor(middle);
         }
         let mut light = [0.0; 3];
         for (first, triangle) in seen.iter().enumerate() {
@@ -110,8 +111,7 @@ impl Drawing<'_> {
             }
             let at = [middle[0] + at[0] / count, middle[1] + at[1] / count];
             let own = match *triangle {
-                NOTHING if self.has_floor => self.floor(at),
-                NOTHING => self.background,
+                NOTHING => self.floor(at).unwrap_or(self.background),
                 triangle => self.surface(triangle as usize, at),
             };
             // What is brighter than white would keep edges from being smooth.
@@ -121,15 +121,10 @@ impl Drawing<'_> {
         Some(light)
     }
 
-    fn floor(&self, [x, y]: [f32; 2]) -> V3 {
-        let ray = self.stage.camera.ray(x, y);
-        floor(
-            self.background,
-            ray,
-            self.stage.floor,
-            &self.shadow,
-            &self.contact,
-        )
+    /// The light of the floor; `None` where it is that of the background.
+    fn floor(&self, [x, y]: [f32; 2]) -> Option<V3> {
+        let left = self.floor.as_ref()?.left(self.stage.camera.ray(x, y))?;
+        Some(times(self.background, left))
     }
 
     /// The light of a triangle at a place of the picture.
@@ -164,9 +159,11 @@ impl Drawing<'_> {
         let values = [0, 1, 2].map(|corner: usize| shares[corner] * vertices[corner].value);
         let (_, paint) = self.model.triangles[self.projected.origins[triangle] as usize];
         let light = &self.stage.light;
-        let lit = match dot(normal, light.key) > -0.4 {
-            true => self.shadow.lit(place, normal),
-            false => 0.0,
+        // A side that is turned away shades itself; the map is too coarse to tell where that begins.
+        let turned = ((dot(normal, light.key) + 0.15) / 0.25).clamp(0.0, 1.0);
+        let lit = match turned > 0.0 {
+            true => AWAY + turned * (self.shadow.lit(place, normal) - AWAY),
+            false => AWAY,
         };
         let point = Point {
             normal,

@@ -77,7 +77,7 @@ impl Shadow {
         if !(x >= 0.0 && y >= 0.0 && x < last && y < last) {
             return 1.0;
         }
-        let (column, row) = (x as usize, y as usize);
+        let (column, row) = (x as i32 as usize, y as i32 as usize);
         let [along, down] = [x - column as f32, y - row as f32];
         let first = row * EDGE + column;
         let mix = |moment: usize| {
@@ -177,7 +177,13 @@ mod tests {
         assert!(lit(0.0, -0.5) < 0.01, "{}", lit(0.0, -0.5));
         assert!(lit(0.0, 0.5) > 0.99, "{}", lit(0.0, 0.5));
         assert!(lit(1.0, -0.5) > 0.99, "{}", lit(1.0, -0.5));
-        assert!((0.05..0.95).contains(&lit(0.5, -0.5)), "{}", lit(0.5, -0.5));
+        // Between both it grows, through half shade.
+        let across: Vec<f32> = (0..100).map(|step| lit(0.01 * step as f32, -0.5)).collect();
+        assert!(across.is_sorted_by(|a, b| *b > a - 1e-3), "{across:?}");
+        assert!(
+            across.iter().any(|lit| (0.2..0.8).contains(lit)),
+            "{across:?}"
+        );
         assert!(lit(50.0, 0.0) > 0.99);
     }
 }

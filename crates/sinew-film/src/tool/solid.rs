@@ -6,7 +6,7 @@ use super::Shape;
 use crate::vector::{V3, add, cross, scaled, sub, unit};
 
 /// Points of a quarter of a circle: round parts have four times as many about their axis.
-const QUARTER: usize = 10;
+const QUARTER: usize = 12;
 
 /// Share of a box's shortest edge by which its edges are rounded.
 const BEVEL: f32 = 0.08;
