@@ -9,7 +9,7 @@ use crate::{FilmError, Picture, Size};
 const STAYS: u8 = 255;
 
 /// Steps of a component by which a pixel may be off before it is shown anew.
-const SAME: u8 = 4;
+const SAME: u8 = 2;
 
 /// The least time (s) for which the last picture stays before the film begins again.
 const LAST: f64 = 0.7;
