@@ -75,5 +75,5 @@ pub use picture::Picture;
 pub use run::{Files, Run};
 pub use size::Size;
 pub use timing::Timing;
-pub use tool::{Part, PoseAt, Shape, Tool, poses_of_table};
+pub use tool::{Part, PoseAt, Shape, Tool, back_of, blades_of_strokes, poses_of_table};
 pub use view::View;

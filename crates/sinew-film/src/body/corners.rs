@@ -1,6 +1,6 @@
 //! Corners of triangles that share a normal.
 
-use super::Kind;
+use super::kind::Kind;
 use crate::vector::{V3, cross, dot, sub, unit};
 
 /// Cosine of the largest angle between the normals of triangles whose edge is drawn round: 40 degrees.

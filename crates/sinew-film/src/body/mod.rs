@@ -2,19 +2,12 @@
 
 mod boundary;
 mod corners;
+mod kind;
 
 pub(crate) use boundary::{Boundary, Uncut, boundary_of};
+pub use kind::Kind;
 
 use corners::Corners;
-
-/// What lies behind a triangle.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Kind {
-    /// The surface that the body had from the beginning; the number of its region, from 1 on.
-    Tissue(u8),
-    /// A face that was cut.
-    Cut,
-}
 
 /// The surface of a body: its triangles between points at rest.
 #[derive(Debug, Clone)]

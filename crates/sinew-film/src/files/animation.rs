@@ -2,7 +2,8 @@
 
 use png::{BitDepth, BlendOp, ColorType, Compression, DisposeOp, Encoder, Filter, Writer};
 
-use super::{Colours, SOFTWARE};
+use super::colours::Colours;
+use super::software::SOFTWARE;
 use crate::{FilmError, Picture, Size};
 
 /// The number that stands for pixels that stay as they were, after those of all colours.

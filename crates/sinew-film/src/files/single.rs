@@ -2,7 +2,7 @@
 
 use png::{BitDepth, ColorType, Compression, Encoder};
 
-use super::SOFTWARE;
+use super::software::SOFTWARE;
 use crate::{FilmError, Picture};
 
 /// Bytes within which a file of our own says so.

@@ -1,6 +1,6 @@
 //! The dark beneath what stands on the floor: less of the sky is seen from there.
 
-use super::Model;
+use super::model::Model;
 use super::shadow::spread_over;
 
 /// Cells along an edge of the map.

@@ -1,6 +1,6 @@
 //! Where a camera stands, so that all is in the picture.
 
-use super::Camera;
+use super::camera::Camera;
 use crate::vector::{V3, add, scaled};
 use crate::{Size, View};
 

@@ -1,6 +1,6 @@
 //! Where the light comes from.
 
-use super::Camera;
+use super::camera::Camera;
 use crate::vector::{V3, add, scaled, unit};
 
 /// How far the light stands above what is seen, to the left of it, and towards the eye.

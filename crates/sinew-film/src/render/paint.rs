@@ -2,8 +2,8 @@
 
 use sinew_draw::colour_map::viridis;
 
-use super::Paint;
 use super::light::Light;
+use super::model::Paint;
 use super::mottle::Mottle;
 use crate::colour_space::linear;
 use crate::vector::{V3, add, dot, scaled, sub, times, unit};

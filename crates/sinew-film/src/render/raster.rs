@@ -1,7 +1,7 @@
 //! Which triangle is seen at each of four points of a pixel.
 
 use super::camera::{Camera, Seen};
-use super::{Model, Vertex};
+use super::model::{Model, Vertex};
 use crate::vector::{between, unit};
 
 /// Rows of a band: a band's samples stay in the second cache.

@@ -2,13 +2,14 @@
 
 use rayon::prelude::*;
 
+use super::camera::Camera;
 use super::contact::Contact;
 use super::floor::{BACKGROUND, Floor, SLANTED};
 use super::light::Light;
+use super::model::Model;
 use super::paint::{Palette, Point};
 use super::raster::{BAND, NOTHING, Projected, SAMPLES, Samples};
 use super::shadow::Shadow;
-use super::{Camera, Model};
 use crate::colour_space::{Screen, linear};
 use crate::vector::{V3, add, dot, scaled, times, unit};
 use crate::{Picture, Size};

@@ -1,6 +1,6 @@
 //! Shadows: what the light does not reach, soft at their edges.
 
-use super::Model;
+use super::model::Model;
 use crate::vector::{V3, add, cross, dot, scaled, unit};
 
 /// Pixels along an edge of the map.

@@ -2,7 +2,7 @@
 
 use std::f32::consts::FRAC_PI_2;
 
-use super::Shape;
+use super::part::Shape;
 use crate::vector::{V3, add, cross, scaled, sub, unit};
 
 /// Points of a quarter of a circle: round parts have four times as many about their axis.

@@ -16,14 +16,12 @@ fn cube(look: &Look) -> Film {
         position: [0.05, 0.05, z],
         rotation: [0.0; 3],
     };
-    let ball = Tool {
-        parts: vec![Part {
-            shape: Shape::Sphere { radius: 0.02 },
-            at: [0.0; 3],
-            rotation: [0.0; 3],
-        }],
-        poses: vec![pose(0.0, 0.14), pose(1.0, 0.12)],
+    let part = Part {
+        shape: Shape::Sphere { radius: 0.02 },
+        at: [0.0; 3],
+        rotation: [0.0; 3],
     };
+    let ball = Tool::new(vec![part], vec![pose(0.0, 0.14), pose(1.0, 0.12)]);
     Film::new(sheared_cube(), vec![ball], look).expect("a film")
 }
 
