@@ -4,9 +4,9 @@ use std::collections::HashMap;
 use std::io;
 
 use sinew_film::{Clip, Colouring, Film, FilmError, Run};
-use sinew_mesh::TetMesh;
 use sinew_mesh::structured::{self, Split};
 use sinew_mesh::vtu::{Array, Grid, VtuEncoding, write_pvd, write_vtu_grid};
+use sinew_mesh::{CellType, TetMesh};
 
 use crate::common::look;
 
@@ -153,6 +153,45 @@ fn faces_that_were_cut_have_a_colour_of_their_own() {
     // Without the whole one before it is a body like any other.
     let [_, alone, _] = colour(&[half.clone(), half]);
     assert!(alone > 60, "{alone}");
+}
+
+#[test]
+fn frames_of_the_surface_alone_look_like_those_of_the_whole_body() {
+    let mesh = cube();
+    let boundary = mesh.boundary_surface();
+    let rest = vec![[0.0; 3]; boundary.points.len()];
+    let grid = Grid {
+        points: &boundary.points,
+        cells: vec![(CellType::Triangle, boundary.triangles.as_flattened())],
+        point_data: vec![Array::of_vectors("displacement", &rest)],
+        cell_data: Vec::new(),
+    };
+    let mut whole = folder(&[mesh.clone()], 0.0);
+    let look = look("iso", (200, 160), Colouring::tissue());
+    let seen = |folder: &Folder| {
+        let clip = clip(folder, "tissue").expect("a clip");
+        Film::new(clip, Vec::new(), &look)
+            .expect("a film")
+            .picture(0.0)
+    };
+    let expected = seen(&whole);
+    let mut file = Vec::new();
+    write_vtu_grid(&grid, VtuEncoding::RawAppended, &mut file).expect("a frame");
+    whole.insert("fields/frame-00000.vtu".to_owned(), file);
+    assert!(seen(&whole) == expected);
+}
+
+#[test]
+fn a_run_beyond_all_bounds_still_has_pictures() {
+    for apart in [1e30, f64::INFINITY, f64::NAN] {
+        let clip = clip(&folder(&[cube(), cube()], apart), "tissue").expect("a clip");
+        for view in ["iso", "front"] {
+            let look = look(view, (100, 80), Colouring::tissue());
+            let film = Film::new(clip.clone(), Vec::new(), &look).expect("a film");
+            let [first, last] = [0.0, 1.0].map(|t| film.picture(t));
+            assert_eq!(first.size(), last.size());
+        }
+    }
 }
 
 #[test]
