@@ -99,7 +99,7 @@ fn middle(bin: usize) -> [f32; 3] {
 /// theirs.
 fn samples<'a>(pictures: impl Iterator<Item = &'a Picture>) -> Vec<Sample> {
     let mut sums = vec![([0_u64; 3], 0_u64); 1 << (3 * BITS)];
-    for pixel in pictures.flat_map(|picture| picture.pixels()) {
+    for pixel in pictures.flat_map(Picture::pixels) {
         let (sum, count) = &mut sums[bin(*pixel)];
         for (sum, component) in sum.iter_mut().zip(pixel) {
             *sum += u64::from(*component);

@@ -99,7 +99,7 @@ impl Camera {
     }
 
     /// The direction from a place to the eye.
-    pub(crate) fn to_eye(&self, place: V3) -> V3 {
+    pub(crate) fn towards_eye(&self, place: V3) -> V3 {
         match self.is_perspective {
             true => unit(sub(self.eye(), place)),
             false => self.back,

@@ -71,6 +71,6 @@ impl Floor {
         let lower = value(below) + right * (value(below + 1) - value(below));
         let missing = upper + down * (lower - upper);
         // Shadows are a little bluer than the floor.
-        (missing > 0.0).then(|| [1.0 - missing, 1.0 - missing, 1.0 - 0.93 * missing])
+        (missing > 0.0).then_some([1.0 - missing, 1.0 - missing, 1.0 - 0.93 * missing])
     }
 }

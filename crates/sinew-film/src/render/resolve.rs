@@ -151,7 +151,7 @@ impl Drawing<'_> {
             )
         };
         let place = mean(vertices.map(|vertex| vertex.place));
-        let to_eye = self.stage.camera.to_eye(place);
+        let to_eye = self.stage.camera.towards_eye(place);
         let mut normal = unit(mean(vertices.map(|vertex| vertex.normal)));
         if dot(normal, to_eye) < -0.2 {
             // The inner side of a surface that is open, or turned inside out.

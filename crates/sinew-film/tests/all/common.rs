@@ -75,8 +75,8 @@ pub(crate) fn of_square(first: u32) -> [[u32; 3]; 2] {
     [[first, first + 1, first + 2], [first, first + 2, first + 3]]
 }
 
-/// A cube with corners at 0 and 0.1 m, as two frames: at rest, and sheared by a tenth after a second.
-pub(crate) fn sheared_cube() -> Clip {
+/// A cube with corners at 0 and 0.1 m, as two frames: at rest, and sheared by so much after a second.
+pub(crate) fn sheared_cube(by: f32) -> Clip {
     let corners: Vec<[f64; 3]> = (0..8)
         .map(|corner| [0, 1, 2].map(|axis| 0.1 * f64::from((corner >> axis) & 1)))
         .collect();
@@ -92,7 +92,7 @@ pub(crate) fn sheared_cube() -> Clip {
     let kinds = [Kind::Tissue(1); 12];
     let sheared = corners
         .iter()
-        .map(|corner| [0.1 * corner[2] as f32, 0.0, 0.0])
+        .map(|corner| [by * corner[2] as f32, 0.0, 0.0])
         .collect();
     let surface = Arc::new(Surface::new(corners, triangles.as_flattened(), &kinds));
     let frame = |t: f64, u: Vec<[f32; 3]>| {

@@ -22,7 +22,7 @@ fn cube(look: &Look) -> Film {
         rotation: [0.0; 3],
     };
     let ball = Tool::new(vec![part], vec![pose(0.0, 0.14), pose(1.0, 0.12)]);
-    Film::new(sheared_cube(), vec![ball], look).expect("a film")
+    Film::new(sheared_cube(0.1), vec![ball], look).expect("a film")
 }
 
 fn small() -> Look {
@@ -155,8 +155,8 @@ fn time_and_title_are_written_on_the_picture() {
             title: title.to_owned(),
             ..small()
         };
-        // A clip at rest: nothing else may differ.
-        film(sheared_cube(), &look).picture(t)
+        // A body at rest: nothing else may differ.
+        film(sheared_cube(0.0), &look).picture(t)
     };
     let differs = |a: &Picture, b: &Picture, rows: std::ops::Range<usize>| {
         rows.flat_map(|y| (0..120).map(move |x| (x, y)))
@@ -172,7 +172,7 @@ fn time_and_title_are_written_on_the_picture() {
 fn an_instrument_is_seen_where_it_is() {
     let look = look("front", (300, 300), Colouring::tissue());
     let film = cube(&look);
-    let without = Film::new(sheared_cube(), Vec::new(), &look).expect("a film");
+    let without = Film::new(sheared_cube(0.1), Vec::new(), &look).expect("a film");
     // Grey above red: in the column of its middle.
     let is_grey = |[r, g, b]: [u8; 3]| r.abs_diff(g) < 14 && g.abs_diff(b) < 24 && r < 225;
     let grey = |picture: &Picture| {

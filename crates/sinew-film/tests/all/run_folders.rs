@@ -33,13 +33,18 @@ fn said(folder: &Folder, colour: &str) -> String {
 
 /// A folder with frames of these bodies at t = 0, 1, and so on, each displaced by so much (m) along x from the one before.
 fn folder(bodies: &[TetMesh], apart: f64) -> Folder {
+    folder_of(bodies, |frame, _| [apart * frame as f64, 0.0, 0.0])
+}
+
+/// A folder with frames of these bodies, with the displacement (m) of each place (m).
+fn folder_of(bodies: &[TetMesh], u: impl Fn(usize, [f64; 3]) -> [f64; 3]) -> Folder {
     let mut folder = Folder::new();
     let mut series = Vec::new();
     let names: Vec<String> = (0..bodies.len())
         .map(|frame| format!("fields/frame-{frame:05}.vtu"))
         .collect();
     for (frame, (mesh, name)) in bodies.iter().zip(&names).enumerate() {
-        let u = vec![[apart * frame as f64, 0.0, 0.0]; mesh.points.len()];
+        let u: Vec<[f64; 3]> = mesh.points.iter().map(|place| u(frame, *place)).collect();
         let of_tets: Vec<f64> = (0..mesh.tets.len()).map(|tet| tet as f64).collect();
         let grid = Grid {
             point_data: vec![Array::of_vectors("displacement", &u)],
@@ -96,6 +101,29 @@ fn the_frames_of_a_run_become_a_clip() {
         (ends - begins).abs_diff(10 * size) < 12,
         "{begins} {ends} {size}"
     );
+}
+
+#[test]
+fn each_node_has_its_own_displacement() {
+    let folder = folder_of(&[cube(), cube()], |frame, [x, _, _]| {
+        [frame as f64 * x, 0.0, 0.0]
+    });
+    let clip = clip(&folder, "tissue").expect("a clip");
+    let look = look("front", (300, 200), Colouring::tissue());
+    let film = Film::new(clip, Vec::new(), &look).expect("a film");
+    // Twice as wide and as high as before.
+    let size = |t: f64| {
+        let picture = film.picture(t);
+        let background = picture.at(0, 100);
+        let is_seen = |x: usize, y: usize| picture.at(x, y) != background;
+        let wide = (0..300).filter(|x| is_seen(*x, 100)).count();
+        let column = (0..300).find(|x| is_seen(*x, 100)).expect("a body") + 5;
+        let high = (20..180).filter(|y| is_seen(column, *y)).count();
+        [wide, high]
+    };
+    let ([wide, high], [wider, same]) = (size(0.0), size(1.0));
+    assert!(wide > 50 && wider.abs_diff(2 * wide) <= 3, "{wide} {wider}");
+    assert!(high > 50 && high.abs_diff(same) <= 2, "{high} {same}");
 }
 
 #[test]
@@ -166,7 +194,7 @@ fn frames_of_the_surface_alone_look_like_those_of_the_whole_body() {
         point_data: vec![Array::of_vectors("displacement", &rest)],
         cell_data: Vec::new(),
     };
-    let mut whole = folder(&[mesh.clone()], 0.0);
+    let mut whole = folder(std::slice::from_ref(&mesh), 0.0);
     let look = look("iso", (200, 160), Colouring::tissue());
     let seen = |folder: &Folder| {
         let clip = clip(folder, "tissue").expect("a clip");

@@ -210,8 +210,10 @@ impl Maker<'_> {
 }
 
 fn in_words(timing: Timing) -> String {
-    let (count, fps) = (timing.pictures(), timing.fps());
-    format!("{count} pictures, {fps} a second")
+    match (timing.pictures(), timing.fps()) {
+        (1, _) => "a picture".to_owned(),
+        (count, fps) => format!("{count} pictures, {fps} a second"),
+    }
 }
 
 /// The progress on a terminal.
