@@ -35,6 +35,8 @@ pub struct Field {
     pub name: String,
     /// Numbers at each point or cell: 1, 3 for a vector, 6 for a symmetric tensor.
     pub components: usize,
+    /// True if its numbers are those of cells.
+    pub of_cells: bool,
 }
 
 /// The one number that is made of a field's components.
@@ -79,6 +81,7 @@ impl Colouring {
         let field = Field {
             name,
             components: 1,
+            of_cells: false,
         };
         Self {
             shown: Some(Shown {
@@ -114,7 +117,7 @@ impl Colouring {
         let (unit, words) = known.map_or(("", own_name.as_str()), |known| (known.1, known.2));
         let title = match (measure, component) {
             (Measure::VonMises, _) => "von Mises stress".to_owned(),
-            (Measure::LargestPrincipal, _) => "largest principal strain".to_owned(),
+            (Measure::LargestPrincipal, _) => "largest strain".to_owned(),
             (_, Some(component)) => format!("{words} {component}"),
             (_, None) => words.to_owned(),
         };
@@ -131,6 +134,13 @@ impl Colouring {
     /// The field; `None` for tissue.
     pub(crate) fn field(&self) -> Option<&Shown> {
         self.shown.as_ref()
+    }
+
+    /// True if single values may be far beyond all others, as those of cells at a corner.
+    pub(crate) fn has_peaks(&self) -> bool {
+        self.shown
+            .as_ref()
+            .is_some_and(|shown| shown.field.of_cells)
     }
 
     /// Its name on the bar.
@@ -222,6 +232,7 @@ mod tests {
         let field = |name: &str, components| Field {
             name: name.to_owned(),
             components,
+            of_cells: components == 6,
         };
         vec![
             field("displacement", 3),

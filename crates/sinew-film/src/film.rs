@@ -100,7 +100,7 @@ impl Film {
         if field.is_none() && look.range.is_some() {
             return Err(FilmError::RangeOfTissue);
         }
-        let range = Range::of(&clip, look.range, look.colouring.unit())?;
+        let range = Range::of(&clip, look.range, &look.colouring)?;
         let scale = Scale::of(&clip);
         let solids = tools.iter().map(|tool| {
             let parts = tool

@@ -13,6 +13,9 @@ const FROM_RIGHT: f32 = 0.145;
 const ROWS: [f32; 2] = [0.24, 0.76];
 const WIDTH: f32 = 1.3;
 
+/// The share of the width that a title takes at most.
+const LONGEST: f32 = 0.5;
+
 /// What a field's colours stand for.
 #[derive(Debug, Clone)]
 pub(crate) struct Bar {
@@ -62,12 +65,17 @@ impl Bar {
             let place = (right + gap, row + 0.5 * ink.height);
             text::write(picture, mark, place, Anchor::Left, ink);
         }
-        let most = width - left - 0.8 * ink.height;
-        let lines = [(&self.unit, 1.4), (&self.title, 3.1)];
-        for (line, above) in lines {
-            let line = text::shortened(line, most, pale);
-            let place = (left, top - above * ink.height);
-            text::write(picture, &line, place, Anchor::Left, pale);
+        let end = width - 0.8 * ink.height;
+        for (line, above) in [(&self.unit, 1.4), (&self.title, 3.1)] {
+            let row = top - above * ink.height;
+            // A long title begins before the bar, and ends with the picture.
+            match text::width(line, pale) <= end - left {
+                true => text::write(picture, line, (left, row), Anchor::Left, pale),
+                false => {
+                    let line = text::shortened(line, LONGEST * width, pale);
+                    text::write(picture, &line, (end, row), Anchor::Right, pale);
+                }
+            }
         }
     }
 }

@@ -26,6 +26,7 @@ pub(super) struct Ink {
 pub(super) enum Anchor {
     Left,
     Middle,
+    Right,
 }
 
 /// The width (pixels) of a line of writing.
@@ -64,6 +65,7 @@ pub(super) fn write(
     let mut left = match anchor {
         Anchor::Left => x,
         Anchor::Middle => x - 0.5 * wide,
+        Anchor::Right => x - wide,
     };
     let pen = 0.5 * (PEN * scale).max(THINNEST);
     for letter in text.chars() {

@@ -120,20 +120,16 @@ impl Cells {
 
 /// The fields of a frame: all its arrays.
 pub(super) fn fields_of(mesh: &Mesh) -> Vec<Field> {
-    let of_points = mesh
-        .point_data
-        .iter()
-        .map(|data| (&data.name, data.components));
-    let of_cells = mesh
-        .cell_data
-        .iter()
-        .map(|data| (&data.name, data.components));
-    let all = of_points.chain(of_cells);
-    all.map(|(name, components)| Field {
+    let field = |name: &String, components, of_cells| Field {
         name: name.clone(),
         components,
-    })
-    .collect()
+        of_cells,
+    };
+    let of_points = mesh.point_data.iter();
+    let of_points = of_points.map(|data| field(&data.name, data.components, false));
+    let of_cells = mesh.cell_data.iter();
+    let of_cells = of_cells.map(|data| field(&data.name, data.components, true));
+    of_points.chain(of_cells).collect()
 }
 
 /// Displacements (m) of nodes.
