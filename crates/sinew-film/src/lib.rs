@@ -35,15 +35,15 @@
 //!
 //! # What was kept from others, and what was not
 //!
-//! * `png` (MIT or Apache-2.0; image-rs, which `image` is built on) writes PNG and animated PNG. `image` would add no more
-//!   for that than readers of formats that nobody gives us.
-//! * Animated WebP would be smaller, but `image-webp`, the encoder in Rust, writes single pictures only, and `webp` binds
-//!   libwebp, which is C to compile. GIF has neither soft edges in full colour nor smaller files.
-//! * `euc` draws triangles by shaders, but has hardly been released since 2021, knows no four points of a pixel, draws by
-//!   one thread, and leaves light, shadows and cameras to its user: what stands here beside a filler of 100 lines.
-//!   `wgpu` with an adapter in software is two hundred crates and a driver that other computers do not have, and does not
-//!   promise the same bits. `tiny-skia` fills paths in the plane; all that is drawn in it here are labels.
-//! * `ab_glyph` and `fontdue` need a font to come along, with its licence. Labels are short, and strokes of a pen for
+//! * `png` 0.18 (MIT or Apache-2.0), which `image` is built on, writes PNG and animated PNG; with `flate2`, which is here
+//!   anyway, it brings seven crates. `image` would add readers and writers of formats that nobody asks for.
+//! * Animated WebP: `image-webp` 0.2 writes single pictures, and `webp` binds libwebp, which is C to compile. GIF has the
+//!   same 256 colours and packs them by LZW, which is worse than deflate.
+//! * `euc` 0.5 draws triangles by shaders, with one point a pixel, and leaves light, shadows, cameras and clipping to its
+//!   user: that is what stands here beside a filler of a hundred lines. The state after 0.5, which smooths edges, asked for
+//!   a nightly compiler. `wgpu` needs a driver, in software too, which other computers do not have, and does not promise the
+//!   same bits. `tiny-skia` (BSD) fills paths in the plane; all that is drawn in it here are labels.
+//! * `ab_glyph` and `fontdue` need a font to come along, with its licence. Labels are short, and strokes of a pen for a
 //!   hundred letters fit in one file.
 //! * mp4 needs an encoder that nobody would write anew; who has `ffmpeg` pipes the pictures to it.
 

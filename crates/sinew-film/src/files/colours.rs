@@ -22,6 +22,9 @@ const THRESHOLDS: [[i8; 4]; 4] = [
     [4, -1, 3, -2],
 ];
 
+/// How far components are apart in what counts as grey: the floor and its shadows, and steel.
+const GREY: u8 = 24;
+
 /// Colours, and the nearest of them to any other.
 pub(crate) struct Colours {
     table: Vec<[u8; 3]>,
@@ -73,13 +76,19 @@ impl Colours {
         &self.table
     }
 
-    /// The number of the colour that stands for one at a column and a row: the nearest to it after it was made somewhat
-    /// brighter or darker there, so that slopes of few colours look smooth from afar.
+    /// The number of the colour that stands for one at a column and a row: the nearest to it; of a grey one, after it was
+    /// made somewhat brighter or darker there, so that shadows of few colours look smooth from afar.
     pub(crate) fn number(&self, colour: [u8; 3], (column, row): (usize, usize)) -> u8 {
         if colour == BACKGROUND {
             return 0;
         }
-        let more = THRESHOLDS[row % 4][column % 4];
+        let least = colour.iter().copied().fold(u8::MAX, u8::min);
+        let most = colour.iter().copied().fold(0, u8::max);
+        // What moves has colours, and its grain hides steps: dithered it would take a third more bytes.
+        let more = match most - least <= GREY {
+            true => THRESHOLDS[row % 4][column % 4],
+            false => 0,
+        };
         self.nearest[bin(colour.map(|component| component.saturating_add_signed(more)))]
     }
 }
