@@ -1,5 +1,6 @@
 //! Where pictures and films go.
 
+use std::ffi::OsStr;
 use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -35,7 +36,7 @@ impl Goal {
             Some(out) => out.clone(),
             None => named_after(&arguments.run),
         };
-        let ending = out.extension().map(|ending| ending.to_ascii_lowercase());
+        let ending = out.extension().map(OsStr::to_ascii_lowercase);
         let ending = ending.as_ref().and_then(|ending| ending.to_str());
         let is_file = !out.is_dir();
         let goal = match (ending, arguments.at) {

@@ -19,3 +19,27 @@ pub(super) fn read_within(folder: &Path, name: &str) -> io::Result<Vec<u8>> {
     }
     std::fs::read(&path)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_that_lead_out_of_the_folder_are_refused() {
+        let place = tempfile::tempdir().expect("a folder");
+        let folder = place.path().join("run");
+        std::fs::create_dir_all(folder.join("fields")).expect("a folder");
+        std::fs::write(place.path().join("secret"), "own").expect("a file");
+        std::fs::write(folder.join("fields/a"), "frame").expect("a file");
+        let read = |name: &str| read_within(&folder, name).map_err(|error| error.kind());
+        assert_eq!(read("fields/a"), Ok(b"frame".to_vec()));
+        assert_eq!(read("../secret"), Err(ErrorKind::InvalidInput));
+        assert_eq!(read("fields/b"), Err(ErrorKind::NotFound));
+        #[cfg(unix)]
+        {
+            let link = folder.join("link");
+            std::os::unix::fs::symlink(place.path().join("secret"), link).expect("a link");
+            assert_eq!(read("link"), Err(ErrorKind::InvalidInput));
+        }
+    }
+}
