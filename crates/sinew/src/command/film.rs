@@ -204,7 +204,7 @@ impl Maker<'_> {
                 .or(instants.last())
                 .copied()
                 .unwrap_or_default(),
-            remedy: "; nothing was written".to_owned(),
+            remedy: String::new(),
         }
     }
 }
