@@ -33,6 +33,8 @@ enum Command {
     /// Estimate the error of a scene's mesh: the scene again on a refined one, beside the error of its
     /// step.
     Converge(command::converge::Arguments),
+    /// Draw a run: a picture of an instant, or a film of all of it, with its tools, as tissue or coloured by a field.
+    Film(command::film::Arguments),
     /// Show the law of each region: its curves in tension, shear and of sheets, where they are stable, and measured points
     /// beside them.
     Law(command::law::Arguments),
@@ -66,6 +68,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
         Command::Resume(arguments) => command::resume::run(&arguments),
         Command::Compare(arguments) => command::compare::run(&arguments),
         Command::Converge(arguments) => command::converge::run(&arguments),
+        Command::Film(arguments) => command::film::run(&arguments),
         Command::Law(arguments) => command::law::run(&arguments),
         #[cfg(feature = "implicit")]
         Command::Modes(arguments) => command::modes::run(&arguments),

@@ -19,6 +19,7 @@ pub(super) const PURE: &[&str] = &[
     "crates/sinew-tools/src",
     "crates/sinew-haptics/src",
     "crates/sinew-cutting/src",
+    "crates/sinew-film/src",
 ];
 
 /// Modules of the standard library that reach outside the program.

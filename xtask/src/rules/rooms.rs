@@ -20,6 +20,7 @@ pub(super) const ROOMS: &[(&str, &[&str])] = &[
         &["sinew-core", "sinew-cnn", "sinew-sparse"],
     ),
     ("sinew-draw", &[]),
+    ("sinew-film", &["sinew-draw", "sinew-mesh"]),
     ("sinew-tools", &["sinew-core", "sinew-sparse"]),
     ("sinew-cutting", &["sinew-mesh"]),
     (
@@ -151,6 +152,7 @@ pub(super) const ROOMS: &[(&str, &[&str])] = &[
             "sinew-record",
             "sinew-live",
             "sinew-draw",
+            "sinew-film",
         ],
     ),
     (

@@ -1,17 +1,16 @@
 //! `sinew compare`.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use comfy_table::CellAlignment;
 use serde_json::json;
 use sinew_record::{Comparison, Difference, compare};
 use sinew_scene::output::say;
-use tempfile::TempDir;
 
 use super::Failure;
 use super::interruption::Interruption;
+use super::results::Results;
 use super::ruled;
-use super::run::run_for_comparison;
 use super::share_of::share_of;
 
 /// Two results and the difference that they may have.
@@ -45,37 +44,6 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
             count: comparison.left_out.len(),
         }),
         _ => Ok(()),
-    }
-}
-
-/// The results of a run.
-enum Results {
-    /// Results in a folder of the user.
-    Kept(PathBuf),
-    /// Results in a temporary folder, which is deleted with this value.
-    Passing(TempDir),
-}
-
-impl Results {
-    /// The results in a folder, or those of a scene, which is run.
-    fn of(path: &Path, interruption: &Interruption) -> Result<Self, Failure> {
-        let is_scene = path
-            .extension()
-            .is_some_and(|extension| extension == "toml");
-        if path.is_dir() || !(path.is_file() || is_scene) {
-            return Ok(Self::Kept(path.to_owned()));
-        }
-        let folder = tempfile::Builder::new().prefix("sinew-compare-").tempdir();
-        let folder = folder.map_err(Failure::TemporaryFolder)?;
-        run_for_comparison(path, folder.path(), interruption.clone())?;
-        Ok(Self::Passing(folder))
-    }
-
-    fn folder(&self) -> &Path {
-        match self {
-            Self::Kept(path) => path,
-            Self::Passing(folder) => folder.path(),
-        }
     }
 }
 

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 use sinew_core::{OptionError, SimulateError};
+use sinew_film::FilmError;
 use sinew_measure::advice::AdviceError;
 use sinew_measure::convergence::ConvergeError;
 use sinew_mesh::vtu::WriteVtuError;
@@ -16,6 +17,8 @@ use sinew_scene::{CuttingError, RefusedLoad, SceneError, Simulation, Warning};
 #[cfg(feature = "live")]
 use sinew_world::JournalError;
 use sinew_world::{AdvanceError, LogError, ReplayError, ReportError, WorldError, WorldStepError};
+
+use super::mp4::Mp4Error;
 
 /// Exit code for input that cannot be used.
 const REFUSED: u8 = 2;
@@ -235,6 +238,31 @@ pub(crate) enum Failure {
     /// Results that cannot be compared.
     #[error(transparent)]
     Compare(#[from] CompareError),
+    /// A run of which no picture can be made, or a wish that none fulfils.
+    #[error("{}: {source}", run.display())]
+    Film {
+        /// The folder or the scene.
+        run: PathBuf,
+        /// The reason.
+        source: FilmError,
+    },
+    /// An output that is neither a picture nor a film.
+    #[error("--out {}: expected a name that ends in .png for a picture or a film that browsers play, in .mp4 for one by ffmpeg, or a folder for pictures", path.display())]
+    FilmFormat {
+        /// The path.
+        path: PathBuf,
+    },
+    /// One instant where many pictures are wanted.
+    #[error("--at {t} is one picture, and {} is for many: name a file that ends in .png", path.display())]
+    OnePicture {
+        /// The instant (s).
+        t: f64,
+        /// The path.
+        path: PathBuf,
+    },
+    /// A film that ffmpeg does not make.
+    #[error(transparent)]
+    Mp4(#[from] Mp4Error),
     /// Laws without curves.
     #[error(transparent)]
     LawCurves(LawCurvesError),
@@ -419,6 +447,13 @@ impl Failure {
             #[cfg(feature = "live")]
             Self::Live(_) => FAILED,
             Self::Compare(_) => REFUSED,
+            Self::FilmFormat { .. } | Self::OnePicture { .. } => REFUSED,
+            Self::Film { source, .. } => match source {
+                FilmError::Png(_) | FilmError::Stopped => FAILED,
+                _ => REFUSED,
+            },
+            Self::Mp4(Mp4Error::Missing(_)) => REFUSED,
+            Self::Mp4(_) => FAILED,
             Self::Converge { source, .. } => match source {
                 ConvergeError::Refinement(_)
                 | ConvergeError::Options(_)

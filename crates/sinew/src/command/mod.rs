@@ -3,6 +3,7 @@
 pub(crate) mod compare;
 pub(crate) mod converge;
 mod failure;
+pub(crate) mod film;
 pub(crate) mod integrators;
 mod interruption;
 pub(crate) mod law;
@@ -12,10 +13,12 @@ mod memory_left;
 pub(crate) mod mesh;
 #[cfg(feature = "implicit")]
 pub(crate) mod modes;
+mod mp4;
 pub(crate) mod new;
 mod onlooker;
 mod own_file;
 pub(crate) mod plan;
+mod results;
 pub(crate) mod resume;
 mod ruled;
 pub(crate) mod run;

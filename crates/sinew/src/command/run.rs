@@ -145,8 +145,8 @@ fn onlooker(simulation: &Simulation, interruption: Interruption) -> Onlooker {
     Onlooker::new(interruption, steps, duration)
 }
 
-/// Runs a scene into an empty folder, which nobody reads but a comparison.
-pub(crate) fn run_for_comparison(
+/// Runs a scene into an empty folder, which nobody reads but the command that has it run.
+pub(crate) fn run_for_reader(
     scene: &Path,
     folder: &Path,
     interruption: Interruption,

@@ -4,6 +4,7 @@ mod basics;
 mod converge;
 #[cfg(feature = "implicit")]
 mod factor_memory;
+mod film;
 mod law;
 #[cfg(feature = "implicit")]
 mod limits;

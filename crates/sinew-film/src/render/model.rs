@@ -1,0 +1,34 @@
+//! What is drawn: triangles, and what they are made of.
+
+use crate::vector::V3;
+
+/// What a triangle is made of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Paint {
+    /// Tissue of a region, by its number from 1 on.
+    Tissue(u8),
+    /// A face that was cut.
+    Cut,
+    /// A colour for the value at each point.
+    Field,
+    /// An instrument.
+    Steel,
+}
+
+/// A corner of triangles, in units of the body's radius about its middle.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Vertex {
+    pub(crate) place: V3,
+    pub(crate) normal: V3,
+    /// Its place at rest, to which the tissue's grain keeps.
+    pub(crate) rest: V3,
+    /// Its value, as a share of the range.
+    pub(crate) value: f32,
+}
+
+/// What is drawn.
+#[derive(Debug, Default)]
+pub(crate) struct Model {
+    pub(crate) vertices: Vec<Vertex>,
+    pub(crate) triangles: Vec<([u32; 3], Paint)>,
+}

@@ -1,0 +1,9 @@
+//! Pictures and films, as users see them.
+
+#![cfg(test)]
+
+mod common;
+mod field_colours;
+mod films;
+mod run_folders;
+mod silhouettes;
