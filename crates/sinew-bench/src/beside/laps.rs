@@ -191,7 +191,7 @@ impl Contender {
     }
 }
 
-/// Relative L2 difference over all samples; infinite where they are not the same in number.
+/// Relative L2 difference over all samples; infinite if they are not the same in number.
 fn apart(a: &[Vec<f64>], b: &[Vec<f64>]) -> f64 {
     if a.len() != b.len() || a.iter().zip(b).any(|(a, b)| a.len() != b.len()) {
         return f64::INFINITY;

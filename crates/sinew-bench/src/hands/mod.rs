@@ -23,7 +23,7 @@ impl HandsBench {
     /// Measures every case on one thread. A method that tools cannot push is listed with its reason.
     ///
     /// # Errors
-    /// [`BenchError`] where no scene can be read.
+    /// [`BenchError`] if no scene can be read.
     pub fn run(
         &self,
         revision: String,

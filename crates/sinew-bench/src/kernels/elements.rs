@@ -102,7 +102,7 @@ const SOURCE: usize = 0;
 const OUT: usize = 1;
 
 impl<T: ElementPrecision> Of<T> {
-    /// The sweep of a model about a displacement; `None` where it is no force law.
+    /// The sweep of a model about a displacement; `None` if it is no force law.
     fn new(model: &Model, u: &[f64], set: InstructionSet) -> Option<Self> {
         let Equations::Forces(law) = model.equations() else {
             return None;

@@ -44,6 +44,6 @@ pub struct KernelRow {
     pub share_of_bandwidth: f64,
     /// Templates, where rows are stored once.
     pub templates: Option<usize>,
-    /// Allocations of the calling thread in a step; `None` where nothing counts them.
+    /// Allocations of the calling thread in a step; `None` if nothing counts them.
     pub allocations_per_step: Option<f64>,
 }

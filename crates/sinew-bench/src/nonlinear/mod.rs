@@ -32,7 +32,7 @@ impl NonlinearBench {
     /// all is listed with its reason.
     ///
     /// # Errors
-    /// [`BenchError`] where no scene can be read.
+    /// [`BenchError`] if no scene can be read.
     pub fn run(
         &self,
         revision: String,

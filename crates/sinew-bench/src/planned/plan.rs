@@ -39,7 +39,7 @@ impl Plan {
     /// Measures every case on one thread, then the marks, which see the rows and tell what they begin.
     ///
     /// # Errors
-    /// [`BenchError`] where no scene can be read.
+    /// [`BenchError`] if no scene can be read.
     pub(crate) fn run(
         &self,
         results: BenchResults,

@@ -84,7 +84,7 @@ fn member(group: &[&Row], above: Option<f64>) -> FrontMember {
     }
 }
 
-/// A sentence on the paper's network beyond forward Euler's limit; `None` where it did not run there.
+/// A sentence on the paper's network beyond forward Euler's limit; `None` if it did not run there.
 #[must_use]
 pub fn paper_sentence(results: &BenchResults, case: &CaseInfo) -> Option<String> {
     let rows = || {

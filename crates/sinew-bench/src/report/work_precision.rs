@@ -85,7 +85,7 @@ fn point(row: &Row, ringed: bool) -> Point {
     }
 }
 
-/// The error as drawn: infinite where it has no place in the frame, minus infinity below it.
+/// The error as drawn: infinite if it has no place in the frame, minus infinity below it.
 fn shown_error(row: &Row) -> f64 {
     match (row.outcome, row.error_at_most()) {
         (RowOutcome::Finished, Some(error)) if row.bounded && error <= LARGEST_SHOWN_ERROR => {

@@ -11,7 +11,7 @@ use sinew_measure::Gap;
 pub struct Missing {
     /// Id of the case or the map; the file where a scene could not be read.
     pub scene: String,
-    /// The run, or the value of a map's parameter; none where it concerns the scene as a whole.
+    /// The run, or the value of a map's parameter; none if it concerns the scene as a whole.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub row: Option<String>,
     /// The number's field; none where more than a number is missing.

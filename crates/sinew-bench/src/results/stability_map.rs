@@ -27,7 +27,7 @@ pub struct MapPanel {
     /// The method with its options.
     pub method: String,
     /// The largest stable step (s) at each value of the parameter, as the method computes it from
-    /// the matrices; none where it is stable at any step or cannot tell.
+    /// the matrices; none if it is stable at any step or cannot tell.
     pub stable_steps: Vec<Option<f64>>,
     /// True if there is a value at which the method cannot tell its stable step.
     #[serde(default)]

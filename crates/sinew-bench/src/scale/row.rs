@@ -19,7 +19,7 @@ pub struct ScaleBody {
     pub critical_step_s: f64,
     /// Wall time (s) in which mesh and matrices were made.
     pub build_wall_s: f64,
-    /// Memory (bytes per tetrahedron) of mesh and matrices; none where no allocator counts it.
+    /// Memory (bytes per tetrahedron) of mesh and matrices; none if no allocator counts it.
     pub bytes_per_tet: Option<f64>,
     /// Description of the method of the reference and its check.
     pub reference: String,
@@ -78,7 +78,7 @@ pub struct ScaleRow {
     pub setup_cpu_s: f64,
     /// Wall time (s) of the set-up.
     pub setup_wall_s: f64,
-    /// Memory (bytes per tetrahedron) that the method keeps besides mesh and matrices; none where no
+    /// Memory (bytes per tetrahedron) that the method keeps besides mesh and matrices; none if no
     /// allocator counts it.
     pub bytes_per_tet: Option<f64>,
 }
