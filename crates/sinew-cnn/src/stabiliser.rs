@@ -223,7 +223,8 @@ impl Stabiliser {
         parts
     }
 
-    /// The slowest elastic motion and by how much steps slow it down, by the inertia that it has in P instead of M; `None` where nothing is added or nothing strained.
+    /// The slowest elastic motion and by how much steps slow it down, by the inertia that it has in P instead of M;
+    /// `None` if nothing is added or nothing strained.
     /// Its first request takes some hundred sweeps.
     #[must_use]
     pub fn slowing(&self) -> Option<Slowing> {
