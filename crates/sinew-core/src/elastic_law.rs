@@ -94,7 +94,7 @@ pub trait ElasticLaw: Send + Sync {
     /// displacement: Newton's method adds it to the exact tangent.
     ///
     /// # Errors
-    /// [`EvaluationError`] where `out` has no block for a coupling; its entries are then unspecified.
+    /// [`EvaluationError`] if `out` has no block for a coupling; its entries are then unspecified.
     fn add_load_stiffness(
         &self,
         _trial: &Trial<'_>,

@@ -173,7 +173,7 @@ pub enum VelocityTime {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct DampedAt {
-    /// Offset for cells, after the velocity's own time: more than 0 where a state keeps the acceleration of the last
+    /// Offset for cells, after the velocity's own time: more than 0 if a state keeps the acceleration of the last
     /// kick, and damping does not lag by a whole step.
     pub cells: f64,
     /// Offset for moving supports, after the displacement's time: -1/2 means their displacement over the last step, 1/2
