@@ -122,7 +122,7 @@ impl CuttableBody {
     /// The body of a mesh, uncut.
     ///
     /// # Errors
-    /// [`CutError`] where a face has more than two tetrahedra, or a tetrahedron names a node twice.
+    /// [`CutError`] if a face has more than two tetrahedra, or a tetrahedron names a node twice.
     pub fn new(mesh: &TetMesh, properties: Box<dyn TetProperties>) -> Result<Self, CutError> {
         let (nodes, tets) = (mesh.points.len(), mesh.tets.len());
         let spare = spare_nodes(nodes);
