@@ -14,7 +14,7 @@ pub struct Table {
     pub rows: Vec<TableRow>,
     /// True if a click on a head sorts the rows.
     pub is_sortable: bool,
-    /// A name for rules of style; none where it is empty.
+    /// A name for rules of style; none if it is empty.
     pub class: String,
 }
 
