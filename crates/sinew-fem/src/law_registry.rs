@@ -1,4 +1,4 @@
-//! The laws that scenes and [`crate::Law`] know by their ids: ours, and those that a program adds.
+//! Registry of the laws that scenes and [`crate::Law`] know by their ids: ours, and those that a program adds.
 
 use std::fmt;
 use std::sync::{Arc, PoisonError, RwLock};

@@ -40,7 +40,7 @@ pub struct LoadState {
     pub is_stable: bool,
 }
 
-/// An end of the stable range about rest, and what else happens on that side.
+/// An end of the stable range about rest, with other limits on that side.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct End {
     /// The last stable amount, if the curve continues beyond it.

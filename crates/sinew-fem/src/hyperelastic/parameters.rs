@@ -91,7 +91,7 @@ pub enum Presence {
     Required,
     /// Exactly one of these parameters is given.
     OneOf(&'static [&'static str]),
-    /// These numbers: one, or those of a list.
+    /// A number, or several as a list.
     Default(&'static [f64]),
 }
 

@@ -84,7 +84,7 @@ impl Row {
         &mut self.blocks[place]
     }
 
-    /// Clears what couples components of a cell that are held.
+    /// Clears the coupling of the fixed components of a cell.
     fn clear_held(&mut self, cell: u32, pinned: &[bool]) {
         for (column, block) in self.columns.iter().zip(&mut self.blocks) {
             for (k, entry) in block.iter_mut().enumerate() {
@@ -191,7 +191,7 @@ impl Gathering {
         }
     }
 
-    /// Adds what couples a node to those that were split.
+    /// Adds the coupling of a node to the nodes that were split.
     fn add_split(&mut self, of: &Source<'_>, node: u32, touched: &Touched) -> Result<(), FemError> {
         for tet in of.tets_at(node) {
             let nodes = of.body.tets()[tet as usize];

@@ -115,7 +115,7 @@ impl Model {
     }
 
     /// The springs of a region (0-based place in the problem), one for each edge, calibration included;
-    /// computed on each call. `None` where the region is not a network of springs or does not exist.
+    /// computed on each call. `None` if the region is not a network of springs or does not exist.
     ///
     /// An edge between two regions is in both: the springs of all regions together make K.
     #[must_use]
