@@ -41,10 +41,10 @@ impl std::fmt::Display for OptionDefault {
 }
 
 impl OptionHelp {
-    /// Reads the option by `read`, where its kind of values fits; `None` where it is absent.
+    /// Reads the option by `read`, where its kind of values fits; `None` if it is absent.
     ///
     /// # Errors
-    /// [`OptionError::Value`] where the value does not fit.
+    /// [`OptionError::Value`] if the value does not fit.
     pub fn read<T>(
         &self,
         options: &Options,
@@ -59,7 +59,7 @@ impl OptionHelp {
     /// The number that is given, if one is.
     ///
     /// # Errors
-    /// [`OptionError::Value`] where the value does not fit.
+    /// [`OptionError::Value`] if the value does not fit.
     pub fn number(&self, options: &Options, integrator: &str) -> Result<Option<f64>, OptionError> {
         self.read(options, integrator, OptionValue::number)
     }

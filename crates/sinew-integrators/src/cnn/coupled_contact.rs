@@ -38,9 +38,9 @@ pub(super) struct CoupledContact {
     /// u and v of contact's cells without the answer, three components each.
     u: Vec<f64>,
     v: Vec<f64>,
-    /// Rows of contact's cells; none where no rigid motion moves them.
+    /// Rows of contact's cells; none if no rigid motion moves them.
     rows: Vec<Option<Row>>,
-    /// Place of a cell among those of contact, and one more; 0 where it is none of them.
+    /// Place of a cell among those of contact, and one more; 0 if it is none of them.
     place_of: Vec<u32>,
     /// c, and f there.
     answer: Vec<f64>,
@@ -217,7 +217,7 @@ impl CoupledContact {
         }
     }
 
-    /// Finds the improvement by the slopes; `None` where they are singular.
+    /// Finds the improvement by the slopes; `None` if they are singular.
     fn find_step(&mut self) -> Option<()> {
         let count = self.active.len();
         for (step, at) in self.step.iter_mut().zip(&self.active) {
@@ -343,7 +343,8 @@ impl CoupledContact {
     }
 }
 
-/// Replaces x by the solution with a matrix, row by row, by Gauss's elimination with pivots in each column; `None` where it is singular.
+/// Replaces x by the solution with a matrix, row by row, by Gauss's elimination with pivots in each column; `None` if
+/// it is singular.
 fn solve(matrix: &mut [f64], x: &mut [f64]) -> Option<()> {
     let n = x.len();
     for k in 0..n {

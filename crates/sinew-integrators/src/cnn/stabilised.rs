@@ -273,7 +273,7 @@ impl Scheme for CnnStabilised {
     }
 }
 
-/// The step as a program; `None` where none expresses how P is solved with.
+/// The step as a program; `None` if none expresses how P is solved with.
 fn program(stabiliser: &Stabiliser, physics: &Physics, dt: f64) -> Option<Program> {
     let (u, v, a) = (Register::U, Register::V, Register::A);
     let mut program = Program::new(VelocityTime::MiddleOfStep);

@@ -44,7 +44,7 @@ impl Factor {
     /// Orders and analyses the pattern of the matrices.
     ///
     /// # Errors
-    /// [`FactorError::Memory`] where the factor takes more than this computer has left, before it is taken.
+    /// [`FactorError::Memory`] if the factor takes more than this computer has left, before it is taken.
     pub fn analyse<'m>(matrices: impl Into<Matrices<'m>>) -> Result<Self, FactorError> {
         let matrices = matrices.into();
         let elimination = cell_order(matrices.shape().0)?;

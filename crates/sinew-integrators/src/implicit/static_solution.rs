@@ -53,7 +53,8 @@ pub enum StaticError {
 /// singular matrix whose factor rounding can let pass; its residual is near 1.
 const BALANCED: f64 = 1e-6;
 
-/// Solves `K u = force` (N) for the displacement (m), or `dW/du = force` where the system is an elastic law. Held components
+/// Solves `K u = force` (N) for the displacement (m), or `dW/du = force` where the system is an elastic law. Fixed
+/// components
 /// of cells stay zero; supports are where they are at t = 0.
 ///
 /// The load on a nonlinear law grows from nothing in steps that are chosen on the way, each solved by Newton's

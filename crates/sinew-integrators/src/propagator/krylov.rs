@@ -364,7 +364,7 @@ impl Krylov {
     }
 
     /// The m-th column of the Hessenberg matrix and the next basis vector by modified Gram-Schmidt;
-    /// returns the entry below the diagonal, 0 where the space is complete.
+    /// returns the entry below the diagonal, 0 if the space is complete.
     fn expand(&mut self, operators: &LinearOperators, m: usize) -> f64 {
         let mass = operators.mass();
         let n = mass.len();

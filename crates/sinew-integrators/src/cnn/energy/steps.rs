@@ -47,7 +47,7 @@ pub struct EnergySteps {
 
 /// Result of an attempt.
 struct Attempt {
-    /// Energy (J) that is left for the velocity; below 0 where the displacement alone takes more than there is.
+    /// Energy (J) that is left for the velocity; below 0 if the displacement alone takes more than there is.
     room: f64,
     found: Found,
 }
@@ -277,7 +277,7 @@ impl EnergySteps {
         Ok(Attempt { room, found })
     }
 
-    /// Work of contact (J) in the step from a state on; 0 where nothing touches the body.
+    /// Work of contact (J) in the step from a state on; 0 if nothing touches the body.
     fn work_of_contact(&self, contact: &dyn Contact, state: &State) -> f64 {
         let after = self.touched.as_ref().map(Touched::shown);
         after.map_or(0.0, |after| contact.work(after) - contact.work(state))

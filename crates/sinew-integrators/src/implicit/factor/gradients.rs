@@ -74,7 +74,7 @@ impl Gradients {
                         *entry += combination.mass * matrices.mass[cell * layers + layer];
                     }
                     if *entry == 0.0 {
-                        // A held component: no force, no displacement.
+                        // A fixed component: no force, no displacement.
                         *entry = 1.0;
                     }
                 }

@@ -17,7 +17,7 @@ enum Kind {
     Factor(Box<Factor>),
     Gradients {
         gradients: Box<Gradients>,
-        /// Bytes of the factor that they replace; 0 where none was considered.
+        /// Bytes of the factor that they replace; 0 if none was considered.
         instead_of: u64,
     },
 }

@@ -12,9 +12,9 @@ use crate::implicit::factor_error::FactorError;
 #[derive(Debug)]
 pub(super) struct Inverse {
     factor: Factor,
-    /// s^2 (1/s^2); 0 where the body is held, so that K has an inverse.
+    /// s^2 (1/s^2); 0 if the body has supports, so that K has an inverse.
     pub(super) shift: f64,
-    /// Square roots of the masses, 0 where a component is held.
+    /// Square roots of the masses, 0 for fixed components.
     pub(super) root: Vec<f64>,
     pub(super) solves: u64,
     pub(super) factorizations: u64,
@@ -82,7 +82,7 @@ impl Inverse {
         norm(&force) <= SOLVED * size
     }
 
-    /// Sets held components to zero.
+    /// Sets fixed components to zero.
     pub(super) fn mask(&self, x: &mut [f64]) {
         for (value, root) in x.iter_mut().zip(&self.root) {
             if *root == 0.0 {

@@ -98,7 +98,7 @@ pub struct ModalSteps {
     breakpoints: Vec<f64>,
     modes: Vec<Mode>,
     linear: Vec<Response>,
-    /// For each load case, empty where its ramp is never sinusoidal.
+    /// For each load case, empty if its ramp is never sinusoidal.
     harmonic: Vec<Vec<Response>>,
     pieces: Vec<Piece>,
     exponential: Exponential,

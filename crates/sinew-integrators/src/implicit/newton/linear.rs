@@ -54,7 +54,7 @@ pub(super) struct Linear {
 }
 
 impl Linear {
-    /// Analyses the pattern if a factor is always used, and otherwise looks at the derivative at rest, where there is one.
+    /// Analyses the pattern if a factor is always used, and otherwise looks at the derivative at rest, if any.
     pub(super) fn set_up(
         (law, layers): (&dyn ElasticLaw, Layers),
         weights: &[f64],

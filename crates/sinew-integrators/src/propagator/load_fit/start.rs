@@ -81,7 +81,7 @@ impl Fitted<'_> {
         evaluate(self.g, x * self.interval, self.interval)
     }
 
-    /// `w dt`, `w^2 = lambda - alpha^2/4`; 0 where a mode creeps.
+    /// `w dt`, `w^2 = lambda - alpha^2/4`; 0 if a mode creeps.
     fn turn(&self, x: f64) -> f64 {
         let squared = x * self.interval - self.alpha * self.alpha / 4.0;
         squared.max(0.0).sqrt() * self.dt
