@@ -59,7 +59,7 @@ struct List {
 pub(crate) struct Clients(Mutex<List>);
 
 impl Clients {
-    /// A new client: its number, and the messages for it; `None` where there are too many.
+    /// A new client: its number, and the messages for it; `None` if there are too many.
     pub(crate) fn enter(&self) -> Option<(u32, Receiver<Message>)> {
         let mut list = self.lock();
         if list.clients.len() >= MOST_CLIENTS {

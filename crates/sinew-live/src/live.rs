@@ -169,7 +169,7 @@ impl Live {
     /// Keeps a file for each pane up to date with its commands, so that a session that is killed can be repeated. Commands reach it within a second.
     ///
     /// # Errors
-    /// [`JournalError`] where a file cannot be written.
+    /// [`JournalError`] if a file cannot be written.
     pub fn keep_logs(&mut self, journals: Vec<Journal>) -> Result<(), JournalError> {
         self.engine.keep_logs(journals)
     }
@@ -177,7 +177,7 @@ impl Live {
     /// Serves the page and simulates until `ends` says so.
     ///
     /// # Errors
-    /// [`LiveError::Serve`] where the system refuses a thread or a connection.
+    /// [`LiveError::Serve`] if the system refuses a thread or a connection.
     pub fn run(self, ends: impl Fn() -> bool) -> Result<Ended, LiveError> {
         let Self {
             runtime,

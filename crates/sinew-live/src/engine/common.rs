@@ -48,7 +48,8 @@ impl Common {
         Arc::ptr_eq(a, &own.mesh) && Arc::ptr_eq(b, &other.mesh)
     }
 
-    /// The largest component of a displacement (m) of the first body, and the largest distance (m) along an axis between places of both; `None` where nothing is
+    /// The largest component of a displacement (m) of the first body, and the largest distance (m) along an axis
+    /// between places of both; `None` if nothing is
     /// left that both have.
     pub(super) fn largest(&self, own: impl Fn(usize) -> f64, other: &[f64]) -> Option<[f64; 2]> {
         let mut largest = [0.0_f64; 2];

@@ -278,7 +278,7 @@ impl Pane {
         self.options = options::facts(id, options);
     }
 
-    /// The limit of velocities (m/s), where there is one.
+    /// The limit of velocities (m/s), if any.
     fn limit(&self) -> Option<f64> {
         let guard = self.options.iter().find(|option| option.key == GUARD)?;
         guard.value.filter(|_| guard.word.is_none())

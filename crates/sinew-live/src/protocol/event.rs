@@ -184,7 +184,7 @@ pub(crate) struct IntegratorFacts {
 pub(crate) struct StepFacts {
     /// Kind of stability.
     pub(crate) stability: Stability,
-    /// The largest stable step (s), where there is one: 0 for none at all.
+    /// The largest stable step (s), if any: 0 for none at all.
     pub(crate) stable_step: Option<f64>,
 }
 
