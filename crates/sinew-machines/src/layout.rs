@@ -25,7 +25,7 @@ struct General<T>(Arc<Layout<T>>);
 /// The layout beside the elements of a force law.
 struct BesideElements<T>(Arc<Layout<T>>);
 
-/// The layout of a lattice, where there is one.
+/// The layout of a lattice, if any.
 struct Repeated<T>(Option<Arc<Layout<T>>>);
 
 /// Work of a batch (microseconds, about) below which threads are not begun.

@@ -32,7 +32,7 @@ impl Settings {
     /// Checks that what they ask for can be had on a system.
     ///
     /// # Errors
-    /// [`Unfit`] where it cannot.
+    /// [`Unfit`] if it cannot.
     pub fn check(&self, system: &dyn System) -> Result<(), Unfit> {
         let known = self.kind.known();
         (known.check)(self, system)?;
