@@ -19,7 +19,7 @@ pub struct Forecast {
     pub sweeps_per_step: f64,
     /// Solutions of a linear system of a step, the mean over the run.
     pub solves_per_step: f64,
-    /// Time (s) that set-up took by the clock on the wall; next to none where the integrator was set up already.
+    /// Time (s) that set-up took by the clock on the wall; next to none if the integrator was set up already.
     pub setup_s: f64,
     /// Time (s) of a step by the clock on the wall.
     pub step_s: f64,
@@ -160,7 +160,7 @@ impl Forecast {
         Ok((forecast.run_s() > seconds).then_some(forecast))
     }
 
-    /// The part of the motion (s) that was measured; `None` where that is all of it.
+    /// The part of the motion (s) that was measured; `None` if that is all of it.
     #[must_use]
     pub fn seen_s(&self) -> Option<f64> {
         (self.seen < self.steps).then_some(self.seen as f64 * self.dt)

@@ -44,7 +44,7 @@ pub struct CaseInfo {
     /// Half the range of the reference's worst dof over the last fifth of the run (m).
     #[serde(deserialize_with = "gaps::null_is_nan")]
     pub late_amplitude_m: f64,
-    /// Critical step `2 / omega_max` of the undamped system (s); none where there is no omega_max.
+    /// Critical step `2 / omega_max` of the undamped system (s); none if there is no omega_max.
     #[serde(default)]
     pub critical_step_s: Option<f64>,
     /// The largest stable step of each method that ran and has one (s), by its label.
@@ -120,7 +120,8 @@ pub struct Row {
     pub guarded: bool,
     /// Inverted elements in the last state.
     pub inverted: u64,
-    /// Depth (m) to which parts or surfaces of the body were in each other at instants spread over the run; none where they were not.
+    /// Depth (m) to which parts or surfaces of the body were in each other at instants spread over the run; none if
+    /// they were not.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub overlap: Option<f64>,
     /// Work counts over the run; they reproduce, seconds do not.
@@ -287,7 +288,7 @@ impl Row {
     }
 
     /// The error in per cent without the sign, as in `1.23`, or as in `< 4.5e-8` where the reference can
-    /// say no more; none where there is no error.
+    /// say no more; none if there is no error.
     #[must_use]
     pub fn error_in_percent(&self) -> Option<String> {
         match self.error_is_below {

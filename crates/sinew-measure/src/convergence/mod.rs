@@ -147,7 +147,7 @@ fn distance(a: &[f64], b: &[f64]) -> f64 {
     norm(&difference)
 }
 
-/// A difference over a size; 0 where nothing differs.
+/// A difference over a size; 0 if nothing differs.
 fn share(difference: f64, size: f64) -> f64 {
     match difference == 0.0 {
         true => 0.0,

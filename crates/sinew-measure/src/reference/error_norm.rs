@@ -65,7 +65,7 @@ impl Squares {
         }
     }
 
-    /// The square root of the sum; NaN where a number was.
+    /// The square root of the sum; NaN if a number was.
     fn norm(self) -> f64 {
         let tiny = self.tiny.sqrt() / SCALE;
         let huge = self.huge.sqrt() * SCALE;

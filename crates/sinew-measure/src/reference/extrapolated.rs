@@ -138,7 +138,7 @@ struct Converged<'a> {
 /// as well. Bodies with stiffness damping are followed by implicit methods, those that tools touch by the two methods of order 1.
 ///
 /// # Errors
-/// [`ReferenceError`] where neither converges, or the two solutions differ by more than 1 %.
+/// [`ReferenceError`] if neither converges, or the two solutions differ by more than 1 %.
 pub(super) fn by_extrapolation<'a>(
     system: &dyn System,
     start: &'a State,

@@ -12,7 +12,8 @@ pub struct Track {
     pub times: Vec<f64>,
     /// Displacement (m) at each instant.
     pub displacements: Vec<Vec<f64>>,
-    /// The impulses (N s) until each instant of the things that touch the body, x, y, z of each; empty where nothing does.
+    /// The impulses (N s) until each instant of the things that touch the body, x, y, z of each; empty if nothing
+    /// does.
     pub impulses: Vec<Vec<f64>>,
     /// Largest |component| (m) over the run.
     pub max_u: f64,

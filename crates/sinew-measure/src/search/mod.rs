@@ -297,7 +297,7 @@ impl<P: Pilots> Search<P> {
         trail.candidate.factorises && trail.runs().next().is_none() && self.runs().any(costly)
     }
 
-    /// Measures a candidate in `parts` parts of the interval; false where no time is left for it.
+    /// Measures a candidate in `parts` parts of the interval; false if no time is left for it.
     fn follow(&mut self, index: usize, parts: u32) -> bool {
         let trail = &mut self.trails[index];
         let price = trail.price(parts, self.span.duration, self.pilots.least_step_cpu_s());
@@ -315,7 +315,7 @@ impl<P: Pilots> Search<P> {
     }
 }
 
-/// A method in single precision; `None` where no machine runs it, or where its options say what does.
+/// A method in single precision; `None` if no machine runs it, or where its options say what does.
 fn in_single_precision(method: &MethodChoice) -> Option<MethodChoice> {
     let entry = sinew_integrators::entry(&method.integrator)?;
     let chosen = ["precision", "machine"];

@@ -138,7 +138,7 @@ impl Trail {
         new.then_some(parts)
     }
 
-    /// The step to try next; none where the candidate has done what it can for this aim.
+    /// The step to try next; none if the candidate has done what it can for this aim.
     pub(super) fn next(&self, aim: &Aim) -> Option<Next> {
         let met = |(_, pilot): &(&u32, &Pilot)| {
             let error = pilot.row.sound_error_over_scene();
@@ -220,7 +220,7 @@ impl Trail {
 }
 
 /// The step between a run that falls short and one that is accurate enough, where the errors of
-/// both put the goal; none where there is nothing to gain.
+/// both put the goal; none if there is nothing to gain.
 fn between(short: (u32, &Row), enough: (u32, &Row), aim: &Aim) -> Option<Next> {
     let (low, high) = (short.0, enough.0);
     let least = low + 1;
