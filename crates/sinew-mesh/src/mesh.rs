@@ -142,7 +142,7 @@ pub struct PointData {
     pub time: f64,
     /// Values per point.
     pub components: usize,
-    /// `components` values for each point in turn; NaN where the file gives none.
+    /// `components` values for each point in turn; NaN if the file gives none.
     pub values: Vec<f64>,
 }
 
@@ -157,7 +157,7 @@ pub struct CellData {
     pub time: f64,
     /// Values per cell.
     pub components: usize,
-    /// For each block of [`Mesh::cells`]: `components` values for each cell in turn; NaN where the file gives none.
+    /// For each block of [`Mesh::cells`]: `components` values for each cell in turn; NaN if the file gives none.
     pub blocks: Vec<Vec<f64>>,
 }
 
@@ -172,7 +172,8 @@ pub struct CellNodeData {
     pub time: f64,
     /// Values per node of a cell.
     pub components: usize,
-    /// For each block of [`Mesh::cells`]: `components` values for each node (VTK order) of each cell in turn; NaN where the
+    /// For each block of [`Mesh::cells`]: `components` values for each node (VTK order) of each cell in turn; NaN if
+    /// the
     /// file gives none.
     pub blocks: Vec<Vec<f64>>,
 }

@@ -150,7 +150,7 @@ impl TetMesh {
         }
     }
 
-    /// The first tetrahedron that has each of some triangles; `None` where one has none.
+    /// The first tetrahedron that has each of some triangles; `None` if one has none.
     #[must_use]
     pub fn first_tets_of(&self, triangles: &[[u32; 3]]) -> Option<Vec<u32>> {
         let owners = Owners::new(self, triangles.iter().map(|part| part_key(part)));
