@@ -473,7 +473,7 @@ impl Balance {
         Ok(a)
     }
 
-    /// The energy (J) that the method takes in a step between two rows, 0 where that is not known.
+    /// The energy (J) that the method takes in a step between two rows, 0 if that is not known.
     fn taken_by_method(&self, last: &LastRow, here: &LastRow, inputs: &Inputs) -> f64 {
         let (Some(form), Some(operators)) = (self.form, self.operators()) else {
             return 0.0;

@@ -26,11 +26,11 @@ pub(crate) struct Snapshot {
     pub(crate) u: Vec<f64>,
     /// Velocity (m/s).
     pub(crate) v: Vec<f64>,
-    /// Acceleration (m/s^2); empty where none is asked for.
+    /// Acceleration (m/s^2); empty if none is asked for.
     pub(crate) a: Vec<f64>,
     /// Internal variables.
     pub(crate) internal: Vec<f64>,
-    /// Forces (N) of contact; empty where nothing touches the body.
+    /// Forces (N) of contact; empty if nothing touches the body.
     pub(crate) contact: Vec<f64>,
 }
 
@@ -89,9 +89,9 @@ pub(crate) struct Fields {
     settings: OutputSettings,
     u: Vec<[f64; 3]>,
     v: Vec<[f64; 3]>,
-    /// Accelerations; empty where none are asked for.
+    /// Accelerations; empty if none are asked for.
     a: Vec<[f64; 3]>,
-    /// None where nothing touches the body.
+    /// None if nothing touches the body.
     contact: Option<ContactFields>,
     tets: Tets,
     /// Region of each tetrahedron, counted from 1.

@@ -34,7 +34,7 @@ pub struct NaturalMode {
     /// phi of modal mass 1 and e moving all as one (Bathe, Finite Element Procedures, section 9.3).
     pub effective_mass: [f64; 3],
     /// Share of the elastic energy under all loads at their full value, at rest: `(phi' F)^2 / omega^2` over the sum of
-    /// all modes found; NaN where the scene has no loads or the motion is rigid.
+    /// all modes found; NaN if the scene has no loads or the motion is rigid.
     pub of_loads: f64,
     /// Its shape (kg^-1/2) over the degrees of freedom.
     shape: Vec<f64>,

@@ -52,7 +52,7 @@ pub(crate) struct ToolRows {
 }
 
 impl ToolRows {
-    /// `None` where there is no tool.
+    /// `None` if there is no tool.
     pub(crate) fn of(body: &SceneBody) -> Option<Self> {
         let tools = Arc::clone(body.model().tools()?);
         Some(Self { tools })

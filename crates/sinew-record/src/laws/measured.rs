@@ -47,7 +47,7 @@ pub(crate) struct Misfit {
 pub struct MeasuredError {
     /// The file.
     pub path: PathBuf,
-    /// The line, from 1 on; `None` where the fault is that of the whole file.
+    /// The line, from 1 on; `None` if the fault is that of the whole file.
     pub line: Option<usize>,
     /// The fault.
     pub fault: MeasuredFault,
@@ -155,7 +155,7 @@ impl Measured {
         amounts
     }
 
-    /// The misfit of a curve; `None` where nothing was measured under its load.
+    /// The misfit of a curve; `None` if nothing was measured under its load.
     pub(crate) fn misfit(&self, curve: &Curve) -> Option<Misfit> {
         let largest = self.of(curve.load).map(|(_, stress)| stress.abs());
         let largest = largest.fold(0.0, f64::max);
