@@ -119,7 +119,7 @@ impl ProbeRows {
         let nodes = self.probes.iter().flat_map(|probe| &probe.nodes);
         let dofs = nodes.flat_map(|node| &node.dofs);
         let dofs: Vec<u32> = dofs.flatten().map(|dof| *dof as u32).collect();
-        // Steps are shown to those who watch something; where all is held or moved, anything will do.
+        // Steps are shown to those who watch something; where all is fixed or moved, anything will do.
         if dofs.is_empty() { vec![0] } else { dofs }
     }
 
@@ -156,7 +156,7 @@ impl ProbeRows {
     /// A row of a moment, as [`ProbeRows::of_watched`].
     ///
     /// # Errors
-    /// [`ProbeRowError`] where the system refuses the state.
+    /// [`ProbeRowError`] if the system refuses the state.
     pub fn of_moment(&mut self, moment: &Moment<'_>) -> Result<&str, ProbeRowError> {
         let (t, u) = (moment.state.t(), &moment.state.u);
         self.begin(t);

@@ -85,7 +85,7 @@ pub(crate) struct KeyDescription {
     pub(crate) name: &'static str,
     /// Its meaning, in sentences.
     pub(crate) meaning: String,
-    /// Its unit; empty where it has none.
+    /// Its unit; empty if it has none.
     pub(crate) unit: &'static str,
     /// Description of the values that fit.
     pub(crate) expected: String,

@@ -186,7 +186,7 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// The table that a key holds, or the tables of its list; none where it is left out.
+    /// The table that a key holds, or the tables of its list; none if it is left out.
     pub(crate) fn table_or_list<P>(
         &self,
         key: &Key<Inner, P>,

@@ -92,7 +92,7 @@ impl SceneError {
         self.0.scene.text()
     }
 
-    /// The bytes of the text at fault; `None` where the fault is that of the whole document.
+    /// The bytes of the text at fault; `None` if the fault is that of the whole document.
     #[must_use]
     pub fn span(&self) -> Option<Range<usize>> {
         self.0.span.clone()

@@ -18,7 +18,7 @@ impl MotionTableError {
         &self.path
     }
 
-    /// The line, counted from 1; `None` where the fault is that of the whole file.
+    /// The line, counted from 1; `None` if the fault is that of the whole file.
     #[must_use]
     pub fn line(&self) -> Option<usize> {
         self.line

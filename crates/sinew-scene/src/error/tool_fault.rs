@@ -25,7 +25,7 @@ pub enum ToolFault {
         /// Tag of the tetrahedron that holds the middle of the tool.
         tet: u64,
     },
-    /// A tool for which all nodes are held or moved.
+    /// A tool for which all nodes are fixed or moved.
     #[error("the tool can touch no node: all {nodes} are held or moved")]
     NothingToTouch {
         /// Number of the nodes.

@@ -92,7 +92,8 @@ impl OverlapSearch {
         }
     }
 
-    /// The deepest point where nodes are at these places (m); none where no surface is in a part, and of a state that is not finite.
+    /// The deepest point where nodes are at these places (m); none if no surface is in a part, and of a state that is
+    /// not finite.
     pub(super) fn deepest(&mut self, places: &[Vector]) -> Option<Inside> {
         let points = self.mesh.points.iter();
         let moved = points.zip(places).map(|(rest, place)| {

@@ -34,7 +34,7 @@ pub(super) fn proposed(mesh: &TetMesh, parts: &Parts, stiffness: Option<&str>) -
     format!("{force:.0e}").parse().unwrap_or(force)
 }
 
-/// The largest component of displacement (m) at rest under a force (N); `None` where it is not found.
+/// The largest component of displacement (m) at rest under a force (N); `None` if it is not found.
 fn displacement(mesh: &TetMesh, parts: &Parts, stiffness: Option<&str>, force: f64) -> Option<f64> {
     let modulus = stiffness.map_or(YOUNGS_MODULUS, |_| 1.0);
     let moduli = FromMesh {

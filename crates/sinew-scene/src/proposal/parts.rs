@@ -34,7 +34,7 @@ pub(super) enum Part {
 /// Parts of a body in a first scene.
 #[derive(Debug)]
 pub(super) struct Parts {
-    /// The groups of the regions; `None` where the whole body is one.
+    /// The groups of the regions; `None` if the whole body is one.
     pub(super) regions: Option<Vec<String>>,
     /// True if some tetrahedra are in none of these groups.
     pub(super) rest: bool,
@@ -128,7 +128,7 @@ fn at_an_end(mesh: &TetMesh, place: impl Fn(f64, f64, f64) -> Part) -> Part {
     places.find(holds).unwrap_or_else(|| of_share(0.5))
 }
 
-/// The groups of tetrahedra that can be regions, and whether they leave some; none where they overlap.
+/// The groups of tetrahedra that can be regions, and whether they leave some; none if they overlap.
 fn regions(mesh: &TetMesh) -> (Option<Vec<String>>, bool) {
     let mut taken = vec![false; mesh.tets.len()];
     let mut names = Vec::new();

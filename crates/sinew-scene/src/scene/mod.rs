@@ -204,7 +204,7 @@ impl Scene {
         Self::read(&Table::document(&source, document.get_ref(), &DOCUMENT)?)
     }
 
-    /// The title; empty where the scene has none.
+    /// The title; empty if the scene has none.
     #[must_use]
     pub fn title(&self) -> &str {
         &self.title

@@ -262,7 +262,8 @@ impl Cutter {
         self.changed_since(epoch, body, state, inputs)
     }
 
-    /// The state before the last [`Cutter::follow`] or [`Cutter::cut`], where that may have changed it; `None` where it has not.
+    /// The state before the last [`Cutter::follow`] or [`Cutter::cut`], where that may have changed it; `None` if it
+    /// has not.
     #[must_use]
     pub fn state_before(&self) -> Option<&State> {
         self.before.is_taken.then_some(&self.before.state)

@@ -19,7 +19,7 @@ pub struct HeldPlace {
     pub centre: [f64; 3],
 }
 
-/// A table of a scene by which components are held or moved, by its place in the list (0-based).
+/// A table of a scene by which components are fixed or moved, by its place in the list (0-based).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum ReactionOf {
     /// `[[fixed]]`.

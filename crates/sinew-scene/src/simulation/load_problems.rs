@@ -35,7 +35,7 @@ pub enum LoadRemedy {
     Chebyshev,
     /// The propagator's Chebyshev form with this step (s).
     ChebyshevWithStep(f64),
-    /// An exact integrator that takes loads that jump anywhere, by its id; `None` where this program has
+    /// An exact integrator that takes loads that jump anywhere, by its id; `None` if this program has
     /// none.
     Integrator(Option<&'static str>),
 }

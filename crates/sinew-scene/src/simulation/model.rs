@@ -73,7 +73,7 @@ impl SceneModel {
         }
     }
 
-    /// The tools that touch a body, where there are any.
+    /// The tools that touch a body, if any.
     #[must_use]
     pub fn tools(&self) -> Option<&Arc<Tools>> {
         self.body()?.scene_tools()
@@ -87,7 +87,7 @@ impl SceneModel {
 }
 
 impl BodyModel {
-    /// The tools of the scene, where there are any.
+    /// The tools of the scene, if any.
     #[must_use]
     pub fn scene_tools(&self) -> Option<&Arc<Tools>> {
         let tools = self.tools.as_ref();
@@ -113,7 +113,7 @@ impl BodyModel {
         }
     }
 
-    /// Subtracts from the forces (N) of supports on all nodes the forces of tools in held directions in a state: the
+    /// Subtracts from the forces (N) of supports on all nodes the forces of tools in fixed directions in a state: the
     /// supports bear them.
     pub fn subtract_contact(&self, state: &State, reactions: &mut [[f64; 3]]) {
         let Some(tools) = &self.tools else {

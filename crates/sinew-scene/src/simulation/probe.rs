@@ -70,7 +70,7 @@ impl ProbeNode {
         }
     }
 
-    /// The displacement (m) that is prescribed in a direction at time `t` (s); 0 where none is.
+    /// The displacement (m) that is prescribed in a direction at time `t` (s); 0 if none is.
     pub(crate) fn prescribed(&self, axis: usize, t: f64) -> f64 {
         let courses = self.courses.get(axis).into_iter().flatten();
         // A scene has no inputs.

@@ -35,7 +35,8 @@ pub enum ReactionError {
 }
 
 impl SceneBody {
-    /// The parts of the body that are held or moved, in the order of the scene; none for an oscillator. They are found
+    /// The parts of the body that are fixed or moved, in the order of the scene; none for an oscillator. They are
+    /// found
     /// at the first request.
     ///
     /// # Errors
@@ -124,7 +125,7 @@ impl SceneBody {
     }
 }
 
-/// The parts of a body that are held or moved, with the forces on all nodes at one instant. It keeps its buffers.
+/// The parts of a body that are fixed or moved, with the forces on all nodes at one instant. It keeps its buffers.
 #[derive(Debug)]
 pub struct HeldParts {
     body: Arc<BodyModel>,
@@ -136,7 +137,7 @@ pub struct HeldParts {
 }
 
 impl HeldParts {
-    /// The parts of a body that are held or moved; `None` if there are none.
+    /// The parts of a body that are fixed or moved; `None` if there are none.
     ///
     /// # Errors
     /// [`ReactionError`] as [`SceneBody::held_parts`].

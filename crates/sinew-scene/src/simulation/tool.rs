@@ -223,7 +223,7 @@ pub(super) fn touchable(
     }
 }
 
-/// The nodes of a tool's surface or group that it meets, and those that it does not, since they are held or moved.
+/// The nodes of a tool's surface or group that it meets, and those that it does not, since they are fixed or moved.
 pub(super) fn nodes_of(
     tool: &Tool,
     built: &BodyModel,

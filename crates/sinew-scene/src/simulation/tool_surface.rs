@@ -89,7 +89,7 @@ fn without_moved(built: &BodyModel) -> Vec<[u32; 3]> {
         .collect()
 }
 
-/// The longest edge (m) of the triangles within reach of a tool in a time (s); 0 where there is none.
+/// The longest edge (m) of the triangles within reach of a tool in a time (s); 0 if there is none.
 fn longest_edge(
     tool: &Tool,
     surface: &[[u32; 3]],
@@ -208,7 +208,7 @@ fn instants(tool: &Tool, duration: f64) -> Vec<f64> {
     times
 }
 
-/// The box (m) that a tool passes through in a time (s); `None` where that is not known, or has no bounds.
+/// The box (m) that a tool passes through in a time (s); `None` if that is not known, or has no bounds.
 fn reach(tool: &Tool, duration: f64) -> Option<[[f64; 3]; 2]> {
     if matches!(tool.motion, Motion::Steered(..)) {
         return None;

@@ -13,7 +13,7 @@ pub struct Warning {
     pub kind: WarningKind,
     /// The fact, with its numbers.
     pub what: String,
-    /// A way to mend it; empty where there is none to name.
+    /// A way to mend it; empty if there is none to name.
     pub mend: String,
     /// The numbers of the fact by names that end in their units, for programs.
     pub numbers: Vec<(&'static str, f64)>,
@@ -95,7 +95,7 @@ pub enum WarningKind {
     Locking,
     /// A law that fails in motions that tissue undergoes.
     WeakLaw,
-    /// An initial displacement of held components, which stay where they are.
+    /// An initial displacement of fixed components, which stay where they are.
     HeldInitial,
     /// A prescribed position that jumps.
     MotionJumps,
