@@ -153,8 +153,8 @@ impl BlockMatrix {
     /// Takes the entries of a matrix of the same layers whose pattern is a part of this one's, and 0 elsewhere.
     ///
     /// # Errors
-    /// [`AssemblyError::NotNeighbours`] where it has a block that is not in the pattern of this one, and
-    /// [`AssemblyError::CellOutOfRange`] where it has more cells. The entries are unspecified then.
+    /// [`AssemblyError::NotNeighbours`] if it has a block that is not in the pattern of this one, and
+    /// [`AssemblyError::CellOutOfRange`] if it has more cells. The entries are unspecified then.
     pub fn set_to(&mut self, other: &Self) -> Result<(), AssemblyError> {
         if Arc::ptr_eq(&self.pattern, &other.pattern) && self.layers == other.layers {
             self.values.copy_from_slice(&other.values);
@@ -260,7 +260,7 @@ impl BlockMatrix {
         self.pattern.cells() * self.layers.count()
     }
 
-    /// The block at (`row`, `column`), row-major; `None` where the two cells are not neighbours.
+    /// The block at (`row`, `column`), row-major; `None` if the two cells are not neighbours.
     #[must_use]
     pub fn block(&self, row: usize, column: usize) -> Option<&[f64]> {
         let len = self.layers.block_len();

@@ -33,9 +33,9 @@ pub(crate) trait Lanes<T: Real>: Copy {
     unsafe fn mul_add(self, factor: Self, other: Self) -> Self;
     /// The number of the same sign whose size is `limit` at most; not a number stays so.
     unsafe fn clamp(self, limit: Self) -> Self;
-    /// 0 where the size is below `tiny`.
+    /// 0 if the size is below `tiny`.
     unsafe fn flush(self, tiny: Self) -> Self;
-    /// One bit for each lane that is at most `other`; none where one of them is not a number.
+    /// One bit for each lane that is at most `other`; none if one of them is not a number.
     unsafe fn at_most(self, other: Self) -> u32;
     /// `then` where `a` is at most `b`, else `otherwise`, also where one of the two is not a number.
     unsafe fn select_le(a: Self, b: Self, then: Self, otherwise: Self) -> Self;

@@ -97,7 +97,7 @@ vectors!(f64);
 vectors!(f32);
 
 impl InstructionSet {
-    /// Does work with vectors of f64; `None` where this machine lacks the instructions.
+    /// Does work with vectors of f64; `None` if this machine lacks the instructions.
     pub fn with_f64<W: WithNumber>(self, work: W) -> Option<W::Output> {
         self.is_available().then(|| match self {
             Self::Portable => work.run::<Vector<f64, Array<f64, 8>>>(),
@@ -112,7 +112,7 @@ impl InstructionSet {
         })
     }
 
-    /// Does work with vectors of f32; `None` where this machine lacks the instructions.
+    /// Does work with vectors of f32; `None` if this machine lacks the instructions.
     pub fn with_f32<W: WithNumber>(self, work: W) -> Option<W::Output> {
         self.is_available().then(|| match self {
             Self::Portable => work.run::<Vector<f32, Array<f32, 16>>>(),

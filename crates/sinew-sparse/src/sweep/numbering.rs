@@ -77,7 +77,7 @@ impl Numbering {
         &self.position
     }
 
-    /// The cell at a position, where there is one.
+    /// The cell at a position, if any.
     #[must_use]
     pub fn cell(&self, position: usize) -> Option<u32> {
         let cell = self.cell[position];

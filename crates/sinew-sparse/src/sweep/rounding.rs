@@ -33,7 +33,7 @@ impl Units {
         self.0.is_empty()
     }
 
-    /// The unit of the block between two cells, the larger of theirs; 0 where there are none.
+    /// The unit of the block between two cells, the larger of theirs; 0 if there are none.
     pub(super) fn between(&self, cell: usize, other: usize) -> f64 {
         let of = |cell: usize| self.0.get(cell).copied().unwrap_or(0.0);
         of(cell).max(of(other))
@@ -99,7 +99,7 @@ pub(super) fn round_row<'a, T: Real>(
     }
 }
 
-/// The power of two of which the entries of a cell's row are made multiples; 0 where there are no others.
+/// The power of two of which the entries of a cell's row are made multiples; 0 if there are no others.
 fn unit<T: Real>(matrix: &BlockMatrix, cell: usize) -> f64 {
     let entries = matrix.row_blocks(cell).flat_map(|(_, block)| block);
     let largest = entries.fold(0.0, |most: f64, entry| entry.abs().max(most));

@@ -47,7 +47,7 @@ pub struct Grid {
 }
 
 impl Grid {
-    /// The lattice of cells at these points, for kernels with `lanes` lanes; `None` where they are on none, or too far
+    /// The lattice of cells at these points, for kernels with `lanes` lanes; `None` if they are on none, or too far
     /// apart.
     #[must_use]
     pub fn find(points: &[[f64; 3]], lanes: usize) -> Option<Self> {
@@ -104,7 +104,7 @@ impl Grid {
         self.extent
     }
 
-    /// Distance between neighbours on the lattice; `None` where they are not next to each other.
+    /// Distance between neighbours on the lattice; `None` if they are not next to each other.
     fn offset(&self, cell: usize, neighbour: usize) -> Option<i32> {
         let (from, to) = (self.place[cell], self.place[neighbour]);
         let step = [0, 1, 2].map(|axis| to[axis] - from[axis]);
@@ -120,7 +120,7 @@ impl Grid {
     }
 }
 
-/// Place of each point along an axis, in equal steps from the first; `None` where they are not.
+/// Place of each point along an axis, in equal steps from the first; `None` if they are not.
 fn places(points: &[[f64; 3]], axis: usize) -> Option<Vec<i32>> {
     let mut sorted: Vec<f64> = points.iter().map(|point| point[axis]).collect();
     sorted.sort_unstable_by(f64::total_cmp);
