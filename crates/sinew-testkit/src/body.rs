@@ -41,7 +41,7 @@ impl Body {
         Model::build(&self.mesh, &self.problem).unwrap()
     }
 
-    /// The first state: displacements up to `u` and velocities up to `v`, none where a component
+    /// The first state: displacements up to `u` and velocities up to `v`, none if a component
     /// is held.
     pub fn state(&self, model: &Model, u: f64, v: f64) -> State {
         let of = |which: usize, size: f64| {
