@@ -36,7 +36,7 @@ pub(super) enum Rule {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Link {
     nodes: [LinkedNode; NODES],
-    /// The share (m) of held corners in the point of contact.
+    /// The share (m) of fixed corners in the point of contact.
     still: Vector,
     pub(super) tool: usize,
     /// The part of the tool.
@@ -365,7 +365,7 @@ impl Link {
         link
     }
 
-    /// The share (m) of held corners in the point of contact.
+    /// The share (m) of fixed corners in the point of contact.
     pub(super) fn still(&self) -> Vector {
         self.still
     }

@@ -42,7 +42,7 @@ pub(super) struct Lips {
 pub(super) struct LipLink {
     /// Its place among the pairs.
     pub(super) pair: u32,
-    /// Places of both nodes among the touched cells; `None` where one is held.
+    /// Indices of both nodes among the touched cells; `None` for a fixed one.
     pub(super) nodes: [Option<u32>; 2],
     compliances: [Compliance; 2],
     /// The unit normal, from the one to the other.

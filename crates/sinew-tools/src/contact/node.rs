@@ -5,7 +5,8 @@ use crate::vector::{Vector, add, dot, length, scaled, sub};
 /// Most constraints at a node that are solved together; more are left to the next step.
 pub(super) const MOST: usize = 8;
 
-/// Share of a node's largest response below which it counts as held in the direction of a normal: a normal that is all but along a held axis leaves 1e-3 of itself, and would
+/// Share of a node's largest response below which it counts as held in the direction of a normal: a normal that is
+/// all but along a fixed axis leaves 1e-3 of itself, and would
 /// have to be answered with a force a million times as large.
 pub(super) const HELD: f64 = 1e-6;
 
@@ -317,7 +318,7 @@ fn sum_of(constraints: &[Constraint], active: [usize; 3], lambda: Vector) -> Vec
     sum
 }
 
-/// `A^-1 b` of a symmetric positive definite matrix by its Cholesky factor; `None` where it is singular.
+/// `A^-1 b` of a symmetric positive definite matrix by its Cholesky factor; `None` if it is singular.
 fn solved(a: [Vector; 3], b: Vector) -> Option<Vector> {
     Some(Factor::of(a)?.solve(b))
 }
@@ -325,7 +326,7 @@ fn solved(a: [Vector; 3], b: Vector) -> Option<Vector> {
 /// Forces by displacements: the inverse of a compliance.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Stiffness {
-    /// `None` where it is singular.
+    /// `None` if it is singular.
     factor: Option<Factor>,
     free: [bool; 3],
 }
@@ -353,7 +354,7 @@ enum Factor {
 }
 
 impl Factor {
-    /// `None` where the matrix is singular.
+    /// `None` if the matrix is singular.
     fn of(a: [Vector; 3]) -> Option<Self> {
         let positive = |pivot: f64, of: f64| (pivot > 1e-13 * of).then(|| pivot.sqrt());
         if [a[1][0], a[2][0], a[2][1]] == [0.0; 3] {

@@ -44,7 +44,7 @@ pub struct ToolReport {
     pub largest_residual: f64,
     /// Number of cells that it has seized since the motion began.
     pub seized: usize,
-    /// A tool that had hold of a cell which this one would have seized; `None` where there was none.
+    /// A tool that had hold of a cell which this one would have seized; `None` if there was none.
     pub rival: Option<usize>,
     /// Its own motion where it is a body; `None` before the first step.
     pub body: Option<BodyReport>,
@@ -176,7 +176,8 @@ impl Tools {
         numbers.as_chunks::<OF_CELL>().0.iter().copied()
     }
 
-    /// The cell, or triangle, that is nearest to a tool in a pose, or deepest in it, with the displacement `u` (m); `None` where the tool may touch none.
+    /// The cell, or triangle, that is nearest to a tool in a pose, or deepest in it, with the displacement `u` (m);
+    /// `None` if the tool may touch none.
     #[must_use]
     pub fn deepest(&self, u: &[f64], pose: &Pose, tool: usize) -> Option<Depth> {
         let Self { tools, cells, .. } = self;

@@ -21,7 +21,7 @@ const MOST_PASSES: u32 = 100;
 #[derive(Debug)]
 pub(super) struct Room {
     pub(super) steps: Vec<ToolStep>,
-    /// A box (m) outside of which no way meets any tool; `None` where a tool has no bounds.
+    /// A box (m) outside of which no way meets any tool; `None` if a tool has no bounds.
     bounds: Option<[Vector; 2]>,
     /// Places of the cells that may meet a tool in the step.
     pub(super) near: Vec<u32>,

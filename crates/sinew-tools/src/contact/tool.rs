@@ -105,7 +105,7 @@ impl Corner {
         }
     }
 
-    /// The place of a cell among the touched ones; `None` where the corner is held.
+    /// The index of a cell among the touched ones; `None` if the corner is fixed.
     pub(super) fn place(self) -> Option<u32> {
         match self {
             Self::Cell(place) => Some(place),
@@ -115,7 +115,7 @@ impl Corner {
 }
 
 impl ToolsError {
-    /// The name of the tool at fault; `None` where it is none alone.
+    /// The name of the tool at fault; `None` if it is none alone.
     #[must_use]
     pub fn tool(&self) -> Option<&str> {
         match self {
