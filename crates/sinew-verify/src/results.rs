@@ -50,7 +50,7 @@ pub struct VerifiedRow {
     pub figure: String,
     /// Requirement for the figure.
     pub asked: Asked,
-    /// The figure; none where it could not be computed or is not finite.
+    /// The figure; none if it could not be computed or is not finite.
     pub got: Option<f64>,
     /// Reason why there is none.
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -144,7 +144,7 @@ impl Specimen {
     }
 }
 
-/// Error of displacements at all instants over the size of exact ones; infinite where there are fewer.
+/// Error of displacements at all instants over the size of exact ones; infinite if there are fewer.
 pub fn relative_error(found: &[Vec<f64>], exact: &[Vec<f64>]) -> f64 {
     if found.len() != exact.len() {
         return f64::INFINITY;

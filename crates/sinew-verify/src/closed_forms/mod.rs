@@ -53,7 +53,7 @@ impl ClosedForms {
 ///
 /// # Errors
 ///
-/// [`LabError`] where one cannot be computed; wrong figures are no error.
+/// [`LabError`] if one cannot be computed; wrong figures are no error.
 pub(crate) fn all() -> Result<Vec<ClosedForm>, LabError> {
     let mut list = ClosedForms(Vec::new());
     uniaxial(&mut list)?;

@@ -120,7 +120,7 @@ fn chain(cells: usize, is_free: bool) -> Result<LinearModel, LabError> {
     Ok(LinearModel::new(operators))
 }
 
-/// A narrow hump off the middle, continued beyond the ends by reflection: odd at a held end, even at a free one.
+/// A narrow hump off the middle, continued beyond the ends by reflection: odd at a fixed end, even at a free one.
 fn hump(x: f64, is_free: bool) -> f64 {
     let there_and_back = 2.0 * LENGTH;
     let (turned, inside) = match x.rem_euclid(2.0 * there_and_back) {
