@@ -87,7 +87,7 @@ impl World {
         Ok(model.to_nodes(&self.field, out)?)
     }
 
-    /// Kinetic and elastic energy (J); `None` where the model has none.
+    /// Kinetic and elastic energy (J); `None` if the model has none.
     ///
     /// # Errors
     /// [`ReportError::State`].
