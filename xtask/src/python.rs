@@ -37,7 +37,7 @@ impl Python {
     ///
     /// # Errors
     ///
-    /// [`Failure::Input`] where there is no Python 3 or no pip, [`Failure::Chore`] where pip fails.
+    /// [`Failure::Input`] if there is no Python 3 or no pip, [`Failure::Chore`] where pip fails.
     pub(crate) fn with(packages: &Packages, target: &Path) -> Result<Self, Failure> {
         let (program, version) = find().ok_or_else(|| {
             Failure::Input(format!(

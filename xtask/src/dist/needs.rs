@@ -32,7 +32,7 @@ impl fmt::Display for Needs {
 /// Reads what a program for this target needs from its symbols.
 ///
 /// # Errors
-/// [`Failure::Chore`] where it cannot be read.
+/// [`Failure::Chore`] if it cannot be read.
 pub(super) fn of(program: &Path, target: &str) -> Result<Needs, Failure> {
     if !target.contains("linux") {
         return Ok(Needs::System);

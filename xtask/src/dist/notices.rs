@@ -33,7 +33,7 @@ struct Package {
 /// The text of all notices for a target, whose C library is linked or not, and the number of packages: each licence text once, with the packages that have it.
 ///
 /// # Errors
-/// [`Failure::Chore`] where cargo fails, and for a package without any licence.
+/// [`Failure::Chore`] if cargo fails, and for a package without any licence.
 pub(super) fn of(target: &str, has_libc: bool) -> Result<(String, usize), Failure> {
     let mut cargo = Command::new(env!("CARGO"));
     cargo

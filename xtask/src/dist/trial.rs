@@ -13,7 +13,7 @@ const SCENE: &str = "scenes/ready/held-cube.toml";
 /// Unpacks the archive in a new temporary folder and runs what its README tells there.
 ///
 /// # Errors
-/// [`Failure::Chore`] where the command fails or does not say what it should.
+/// [`Failure::Chore`] if the command fails or does not say what it should.
 pub(super) fn run(archive: &Path, name: &str) -> Result<(), Failure> {
     let folder = std::env::temp_dir().join(format!("sinew-trial-{}", std::process::id()));
     fs::create_dir(&folder).map_err(Failure::chore)?;

@@ -46,7 +46,7 @@ pub(crate) fn check(root: &Path) -> Result<(), RuleError> {
 ///
 /// # Errors
 ///
-/// [`RuleError`] where cargo cannot tell.
+/// [`RuleError`] if cargo cannot tell.
 pub(crate) fn published(root: &Path) -> Result<Vec<String>, RuleError> {
     let packages = workspace::packages(root)?.into_iter();
     let published = packages.filter(|package| package.is_published);
