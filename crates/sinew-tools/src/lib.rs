@@ -1,7 +1,8 @@
-//! Rigid surgical tools on tissue: what they push, hold and feel in a step, and where they are and what shape they have.
+//! Rigid surgical tools on tissue: contact, grasping and forces in a step, with their motion and shape.
 //!
-//! [`Tools`] are what a step of a body meets: each [`Tool`] presses on the cells that it touches, with friction, may
-//! seize them, and may be a body of its own ([`ToolBody`]) on a coupling; the faces of cuts ([`CutFace`]) push each
+//! [`Tools`] are the contact of a step of a body: each [`Tool`] presses on the cells that it touches, with friction,
+//! may grasp them, and may be a body of its own ([`ToolBody`]) on a coupling; the faces of cuts ([`CutFace`]) push
+//! each
 //! other. [`ToolReport`] reports the results of a step.
 //!
 //! A [`Shape`] is a union of [`Convex`] shapes, each with a [`Pose`] in the tool's own frame. A [`Motion`] says where

@@ -10,7 +10,7 @@ use crate::vector::scaled;
 /// Pose of a tool as a function of time.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Motion {
-    /// A tool that stays where it is.
+    /// A tool at rest.
     Held(Pose),
     /// A tool that moves at constant velocity and does not turn.
     Steady {

@@ -1,4 +1,4 @@
-//! The motion of a part of a tool over a step, and what it meets.
+//! The motion of a part of a tool over a step, and its contacts.
 
 use crate::pose::Pose;
 use crate::shape::{Convex, Hull, Part, Touch, Triangle, TriangleTouch};
@@ -130,7 +130,7 @@ impl Stroke {
         Hull::of(&self.part.convex)?.overlap(&own)
     }
 
-    /// Half the width (m) of the part where it is thinnest; infinite for a plane.
+    /// Half the smallest width (m) of the part; infinite for a plane.
     pub(crate) fn half_width(&self) -> f64 {
         self.part.convex.half_width()
     }

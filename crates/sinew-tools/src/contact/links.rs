@@ -41,7 +41,7 @@ pub(super) struct Link {
     pub(super) tool: usize,
     /// The part of the tool.
     pub(super) part: usize,
-    /// The triangle, where it is none of a node alone.
+    /// The triangle; `None` for a contact of a node.
     pub(super) triangle: Option<u32>,
     /// The place (m) of the contact in the tool's frame.
     own: Vector,
@@ -118,7 +118,7 @@ impl Links {
         }
     }
 
-    /// Forgets the contacts of the last pass, but for what they have moved.
+    /// Drops the contacts of the last pass, but keeps the displacements they caused.
     pub(super) fn begin_pass(&mut self) {
         for place in &self.places {
             let place = *place as usize;
@@ -346,7 +346,8 @@ impl Link {
         }
     }
 
-    /// A contact of a triangle with a tool: the same of its first node, with all nodes by their weights, of which it has one, and the share (m) of corners that are held.
+    /// A contact of a triangle with a tool, made from that of its first node: all nodes with their weights, and the
+    /// share (m) of fixed corners.
     pub(super) fn of_triangle(
         self,
         triangle: u32,

@@ -14,7 +14,8 @@ const FACING: f64 = 0.5;
 /// The two faces that a cut made of one, which lie on each other at rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CutFace {
-    /// The corners of each: those of the first counter-clockwise as seen from outside the tissue behind it, those of the second in the same order.
+    /// The corners of each: those of the first face counter-clockwise as seen from outside its tissue, those of the
+    /// second in the same order.
     pub corners: [[Corner; 3]; 2],
 }
 
@@ -23,7 +24,7 @@ pub struct CutFace {
 pub(super) struct Pair {
     /// The one, and the other.
     pub(super) nodes: [Corner; 2],
-    /// The faces around them, by their places, and whether the one belongs to the first face.
+    /// The faces around them, by index, each with a flag: true if the first node belongs to its first face.
     faces: Vec<(u32, bool)>,
     /// Largest offset (m) along the faces at which the two nodes still act on each other: the longest edge of these
     /// faces at rest.
@@ -125,7 +126,8 @@ impl Lips {
         }));
     }
 
-    /// A pair that comes together on its way between places (m) of its nodes, in spite of what has moved them, with the way (m) from one to the other as the step before began.
+    /// The contact of a pair that closes along the paths (m) of its nodes in spite of contact displacements so far.
+    /// `earlier` is the vector (m) from one to the other at the beginning of the step before.
     pub(super) fn meet(
         &self,
         pair: u32,

@@ -33,9 +33,10 @@ pub struct ToolReport {
     pub depth: f64,
     /// Contacts in which it pushed: nodes at each of its surfaces, and triangles.
     pub contacts: usize,
-    /// Pieces in which its way was followed: where it turns, and where triangles might get round it.
+    /// Pieces into which its path was divided because it turns, or so that no triangle is missed.
     pub passes: u32,
-    /// The most passes that a step since the motion began would have needed so that no triangle gets round it, where more than are made; 0 elsewhere.
+    /// The most passes that a step since the motion began would have needed so that no triangle is missed, if more
+    /// than are made; else 0.
     pub needed_passes: f64,
     /// Residual of the iteration for contacts that act on each other: the largest change of a displacement in the last
     /// sweep, relative to the largest displacement by a contact.
@@ -44,9 +45,9 @@ pub struct ToolReport {
     pub largest_residual: f64,
     /// Number of cells that it has seized since the motion began.
     pub seized: usize,
-    /// A tool that had hold of a cell which this one would have seized; `None` if there was none.
+    /// A tool that grasped a cell which this one would have grasped; `None` if there was none.
     pub rival: Option<usize>,
-    /// Its own motion where it is a body; `None` before the first step.
+    /// Its own motion if it is a body; `None` before the first step.
     pub body: Option<BodyReport>,
 }
 

@@ -22,9 +22,10 @@ pub struct Tool {
     pub friction: f64,
     /// The cells that it may touch, by their places among the touched cells of [`crate::Tools`], increasing.
     pub cells: Vec<u32>,
-    /// The triangles that it may touch besides, by their places among those of [`crate::Tools`]: for a tip that would pass between nodes.
+    /// Indices, among those of [`crate::Tools`], of the triangles that it may touch in addition to nodes: for a tool
+    /// smaller than the triangles.
     pub triangles: Vec<u32>,
-    /// Time during which it holds what it touches; `None` if it never does.
+    /// Time during which it grasps the tissue it touches; `None` if it never does.
     pub grasp: Option<Grasp>,
 }
 
@@ -92,7 +93,7 @@ pub struct TouchedTriangle {
 pub enum Corner {
     /// A touched cell, by its place among them.
     Cell(u32),
-    /// A place (m) that is held.
+    /// A fixed place (m).
     Held([f64; 3]),
 }
 

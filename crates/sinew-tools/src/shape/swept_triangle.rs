@@ -13,7 +13,7 @@ const OVERLAPS: f64 = 0.1;
 /// Depth, as a share of a hull's radius, up to which a triangle is pushed out however little it moves.
 const LEFT: f64 = 1e-3;
 
-/// Most advances towards a first contact; what is still on its way then counts as touching.
+/// Most advances towards a first contact; a triangle that is still approaching then counts as touching.
 const MOST_ADVANCES: usize = 200;
 
 /// The contact of a triangle with a shape.
@@ -30,7 +30,8 @@ pub(crate) struct TriangleTouch {
 }
 
 impl Hull {
-    /// The first contact with a triangle whose corners move straight from one place to another (m), and that is met from outside.
+    /// The first contact with a triangle whose corners move straight from one place to another (m), from its outer
+    /// side.
     ///
     /// By conservative advancement: as the nearest points show a plane between triangle and core, none of the corners can be in contact before that which approaches
     /// the plane fastest has come as near as the radius.
@@ -61,7 +62,8 @@ impl Hull {
         None
     }
 
-    /// The contact with a triangle that is deep in the shape (m), as seen with its radius: what is less the next step finds.
+    /// The contact with a triangle that is deep in the shape (m), its radius included; the next step finds less deep
+    /// ones.
     pub(crate) fn overlap(&self, triangle: &Triangle) -> Option<TriangleTouch> {
         let (gap, touch) = self.look(triangle)?;
         (gap < -OVERLAPS * self.radius).then_some(touch)
@@ -73,7 +75,7 @@ impl Hull {
         (2.0 * OVERLAPS * self.radius).min(way + LEFT * self.radius)
     }
 
-    /// The gap (m) to a triangle that is seen from outside, and where it is smallest.
+    /// The gap (m) to a triangle from its outer side, and the nearest points.
     pub(crate) fn look(&self, triangle: &Triangle) -> Option<(f64, TriangleTouch)> {
         let outward = doubled_area(triangle);
         let size = dot(outward, outward).sqrt();
