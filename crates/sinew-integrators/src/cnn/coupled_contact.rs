@@ -10,27 +10,29 @@ const MOST_ROUNDS: usize = 40;
 /// Residual of the rigid motions' equation, relative to its terms, at which they count as found.
 const FOUND: f64 = 1e-11;
 
-/// The same where it falls no further, as rounding of places lets it.
+/// The same if it falls no further because of rounded positions.
 const ROUNDED: f64 = 1e-7;
 
 /// Change of an answer, as a share of it, by which slopes are found.
 const NUDGE: f64 = 1e-7;
 
-/// Halvings of an improvement, and steps of the alternating minimisation where none helps.
+/// Halvings of an improvement, and steps of the alternating minimisation if none helps.
 const HALVINGS: usize = 6;
 const PLAIN_STEPS: usize = 3;
 
-/// Share of what is left to which slopes lower it that serve again.
+/// Reduction of the residual below which slopes are reused.
 const MUCH: f64 = 0.25;
 
-/// Share of what is left by which a whole improvement lowers it at least.
+/// Minimum reduction, as a share of the residual, by a whole improvement.
 const LOWERED: f64 = 1e-4;
 
 /// Finds the forces lambda of contact in a step of `P (v+ - v-) = dt F` with the matrix P of a [`Deflation`], `P^-1 = B^-1 + U G^-1 U'`.
 ///
-/// With the rigid motions' answer `c = G^-1 U' lambda` known, contact pushes cells from `v + U c` by their own blocks B alone, as it does in other methods. As
-/// `U' lambda = R'S d`, d being what it changes their velocities by, c is where `f(c) = R'S d(c) - G c` vanishes: a few numbers for each part. f is linear but for contacts that
-/// begin, end, stick or slip, and Newton's method finds c in a few rounds, with slopes by differences (Qi and Sun, Math. Program. 58, 1993). Where none of its steps
+/// With the rigid motions' response `c = G^-1 U' lambda` known, contact pushes cells from `v + U c` by their own
+/// blocks B alone, as it does in other methods. As `U' lambda = R'S d`, d being the change of their velocities by it,
+/// c is the root of `f(c) = R'S d(c) - G c`: a few numbers for each part. f is linear but for contacts that begin,
+/// end, stick or slip, and Newton's method finds c in a few rounds, with slopes by differences (Qi and Sun, Math.
+/// Program. 58, 1993). If none of its steps
 /// helps, `c + f` is followed: an alternating minimisation over cells and rigid motions, which converges where contact is the least of a convex function. So
 /// all laws of contact hold as in one block for each cell.
 #[derive(Debug, Default)]
@@ -40,7 +42,7 @@ pub(super) struct CoupledContact {
     v: Vec<f64>,
     /// Rows of contact's cells; none if no rigid motion moves them.
     rows: Vec<Option<Row>>,
-    /// Place of a cell among those of contact, and one more; 0 if it is none of them.
+    /// Index of a cell among those of contact, plus one; 0 for other cells.
     place_of: Vec<u32>,
     /// c, and f there.
     answer: Vec<f64>,
@@ -79,7 +81,7 @@ pub(super) struct Coupled<'a> {
 }
 
 impl CoupledContact {
-    /// Scratch space for contact on a body, beside `motions` rigid motions.
+    /// Scratch space for contact on a body with `motions` rigid motions.
     pub(super) fn new(contact: &dyn Contact, dofs: usize, motions: usize) -> Self {
         let cells = contact.cells();
         let mut place_of = vec![0; dofs / 3];
@@ -104,7 +106,7 @@ impl CoupledContact {
         }
     }
 
-    /// Pushes the cells of a trial state, and what moves with them: changes u and v, and what contact keeps.
+    /// Resolves contact on a trial state, rigid motions included: changes u, v and the contact variables.
     pub(super) fn meet(&mut self, coupled: Coupled<'_>, state: &mut State, pushed: &mut Vec<u32>) {
         self.look(coupled, state);
         self.answer.fill(0.0);
@@ -145,8 +147,8 @@ impl CoupledContact {
         }
     }
 
-    /// Asks contact with an improved answer, from one that leaves something; the size of the terms of f there, or nothing where no share of the improvement helps. Slopes serve again for as long as
-    /// they help much.
+    /// Improves a response that leaves a residual; returns the size of the terms of f there, or `None` if no share of
+    /// the improvement helps. Slopes are reused as long as they reduce the residual enough.
     fn improve(
         &mut self,
         coupled: Coupled<'_>,
@@ -243,7 +245,7 @@ impl CoupledContact {
         self.ask(coupled, state, pushed)
     }
 
-    /// Lets contact push the cells beside the answer that is asked for, and finds f; the size of its terms.
+    /// Resolves contact of the cells at the given response, and computes f; returns the size of its terms.
     fn ask(&mut self, coupled: Coupled<'_>, state: &mut State, pushed: &mut Vec<u32>) -> f64 {
         let Coupled {
             contact,
@@ -325,7 +327,7 @@ impl CoupledContact {
         shift
     }
 
-    /// Moves all cells by the answer of the rigid motions, but for those of contact, which have it.
+    /// Moves all cells by the response of the rigid motions, except those of contact, which already have it.
     fn carry(&self, coupled: Coupled<'_>, state: &mut State) {
         let dt = coupled.meeting.dt;
         coupled.deflation.for_each_cell(|cell, first, _, moved| {

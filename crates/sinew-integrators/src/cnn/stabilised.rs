@@ -59,7 +59,7 @@ impl CnnStabilised {
         }
     }
 
-    /// The matrix that was added to M for the current system and step; `None` before set-up and where
+    /// The matrix that was added to M for the current system and step; `None` before set-up and if
     /// none was needed.
     #[must_use]
     pub fn stabiliser(&self) -> Option<&Stabiliser> {

@@ -11,7 +11,7 @@ use super::resolution::{HIGHEST_DEGREE, ID, Resolution};
 use crate::StepByHand;
 use crate::exponential::Exponential;
 
-/// Columns beyond the Hessenberg matrix that hold e1 and the chain of the phi functions.
+/// Columns beyond the Hessenberg matrix: e1 and the chain of the phi functions.
 const CHAIN: usize = 3;
 /// Number of columns by which the space grows between two error estimates.
 const EVERY: usize = 3;
@@ -291,10 +291,10 @@ impl Krylov {
         }
     }
 
-    /// The part theta of the change, at most 1, that brings no energy in under constant loads.
+    /// The factor theta of the change, at most 1, under which it adds no energy under constant loads.
     ///
     /// With `P = v'M v/2 + u'K u/2 - F'u` and a change c, `P(y + theta c) - P(y) = theta p + theta^2 q`, where
-    /// `q = dv'M dv/2 + du'K du/2`; exactly moved, `p + q` is what damping takes, at most 0. Where it is above,
+    /// `q = dv'M dv/2 + du'K du/2`; for the exact motion `p + q` is minus the dissipation, at most 0. If it is above,
     /// theta = -p/q. K du follows from the Arnoldi relation, `-M (L c)_v = K du + D dv`, without a sweep.
     fn part_without_gain(
         &mut self,

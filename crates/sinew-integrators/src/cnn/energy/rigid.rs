@@ -59,7 +59,8 @@ impl Rigid {
         }
     }
 
-    /// Turns what a velocity moves in `dt` (s) from `u` (m) on, `way` (m), by its finite rotations.
+    /// Replaces the rigid part of `way` (m), the displacement in a step from `u` (m) on by a velocity, by finite
+    /// rotations.
     pub(super) fn turn(&mut self, u: &[f64], masses: &[f64], way: &mut [f64]) {
         for ((pull, mass), way) in self.pull.iter_mut().zip(masses).zip(&*way) {
             *pull = mass * way;

@@ -83,7 +83,7 @@ impl Cholesky {
         })
     }
 
-    /// Numbers that the factor holds, zeros inside its panels included.
+    /// Number of stored entries of the factor, zeros inside its panels included.
     pub(super) fn stored(&self) -> usize {
         self.values.len()
     }

@@ -25,7 +25,7 @@ pub enum Vectors {
     /// Modes, the most excited of a Lanczos basis.
     #[default]
     Eigen,
-    /// Ritz vectors of the loads: the most excited of such a basis, and what is left of the static responses.
+    /// Ritz vectors of the loads: the most excited of such a basis, and the rest of the static responses.
     Ritz,
 }
 

@@ -7,7 +7,7 @@ use super::columns::{add, orthogonalise, project};
 use crate::implicit::factor::{Combination, Factor, symmetric_eigen};
 use crate::implicit::factor_error::FactorError;
 
-/// `A = M^1/2 (K + shift M)^-1 M^1/2` on the components that are not held. Its eigenvectors are
+/// `A = M^1/2 (K + shift M)^-1 M^1/2` on the free components. Its eigenvectors are
 /// M^1/2 times the modes, its eigenvalues 1/(omega^2 + shift).
 #[derive(Debug)]
 pub(super) struct Inverse {
@@ -174,7 +174,7 @@ impl Inverse {
     }
 }
 
-/// Marks components that are held at cells whose other components move: their rows of K are zero.
+/// Marks fixed components of cells whose other components move: their rows of K are zero.
 /// A cell without any stiffness floats.
 pub(super) fn held(operators: &LinearOperators) -> Vec<bool> {
     let stiffness = operators.stiffness();

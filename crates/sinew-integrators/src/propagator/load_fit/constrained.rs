@@ -10,7 +10,7 @@ use crate::propagator::series::evaluate;
 /// Points per coefficient at which the fit is kept within its bounds.
 const GUARDS_PER_TERM: usize = 8;
 
-/// Squared weight of the whole spectrum beside that of the loads: it says what the polynomial does where loads
+/// Squared weight of the whole spectrum relative to that of the loads: it determines the polynomial where loads
 /// excite nothing.
 const BACKGROUND: f64 = 1e-8;
 

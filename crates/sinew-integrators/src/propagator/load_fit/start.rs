@@ -17,7 +17,7 @@ const POINTS_PER_TERM: usize = 8;
 /// |cos theta| of a turning point from which on theta counts as passing 0 or pi there.
 const TURNS: f64 = 0.8;
 
-/// Weight of the error under loads beside that of amplitudes.
+/// Weight of the error under loads relative to that of amplitudes.
 const LOADED: f64 = 1e6;
 
 /// Points per coefficient at which the largest amplitude is sought.
