@@ -20,7 +20,8 @@ const TISSUE: f64 = 2.0;
 
 /// The loop that renders forces at the rate of a device, from the data that a slower simulation publishes.
 ///
-/// It never waits and reads no clock: each tick takes the position of the device and returns the force that is held
+/// It never waits and reads no clock: each tick takes the position of the device and returns the force that is
+/// rendered
 /// until the next. Between two steps the tool is where the tissue of the last step, as a spring, and the coupling are
 /// in equilibrium. Changes by a new step are blended in linearly, over the time of one step.
 ///
@@ -129,7 +130,7 @@ impl ForceLoop {
 
     /// The largest force (N) until the next tick that the energy allows, if the device moves along it by up to 1.5
     /// times its last displacement (m). A force that resists a motion may be as large as that of the damper, whose
-    /// energy the motion itself supplies: so a debt, as after a force that was held for too long, is paid back.
+    /// energy the motion itself supplies: so a debt, as after a late update of the force, is paid back.
     fn affordable(&self, resists: bool, moved: f64) -> f64 {
         let Self { device, energy, .. } = self;
         let way = MOST_FASTER * moved + device.resolution;
@@ -143,7 +144,7 @@ impl ForceLoop {
         }
     }
 
-    /// The force (N) that is held now.
+    /// The force (N) that is rendered now.
     #[must_use]
     pub fn force(&self) -> [f64; 3] {
         self.force
