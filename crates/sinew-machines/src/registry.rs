@@ -1,4 +1,5 @@
-//! The kinds of machines that [`Settings`] and scenes know by their ids: ours, and those that a program adds.
+//! Registry of the kinds of machines that [`Settings`] and scenes know by their ids: ours, and those that a program
+//! adds.
 
 use std::sync::{PoisonError, RwLock};
 
@@ -29,7 +30,7 @@ impl Kind {
 }
 
 impl Settings {
-    /// Checks that what they ask for can be had on a system.
+    /// Checks that a machine with these settings can run a system.
     ///
     /// # Errors
     /// [`Unfit`] if it cannot.

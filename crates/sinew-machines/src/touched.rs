@@ -10,7 +10,8 @@ const NOWHERE: f64 = 1e30;
 /// A position at which no cell is touched.
 const NONE: u32 = u32::MAX;
 
-/// The cells that contact reads, and the blocks of positions that hold any, so that a box is compared with whole vectors of them.
+/// The cells that contact reads, and the blocks of positions that contain any, so that a box is compared with whole
+/// vectors of them.
 #[derive(Debug)]
 pub(crate) struct Touched<T> {
     cells: Vec<u32>,
@@ -44,7 +45,7 @@ impl<T: Precision> Touched<T> {
         }
     }
 
-    /// Takes cells that rest at these places (m), where they are not the same already.
+    /// Sets the cells and their rest places (m), unless they are the same already.
     pub(crate) fn take(&mut self, numbering: &Numbering, cells: &[u32], rest: &[[f64; 3]]) {
         if self.cells == cells && self.rest == rest {
             return;
@@ -133,8 +134,9 @@ impl<T: Precision> Touched<T> {
         places.for_each(|place| self.show(place, &layers, state));
     }
 
-    /// Lists the places of those whose ways in the step may meet a box (m), increasing. No component of a displacement
-    /// is larger than `largest` (m) at either end of a way: where all of a block stays away from the box then, its ways
+    /// Lists the indices of the cells whose paths in the step may meet a box (m), increasing. No component of a
+    /// displacement is larger than `largest` (m) at either end of a path: if a whole block stays away from the box
+    /// then, its paths
     /// are not checked.
     pub(crate) fn list_near(
         &self,
@@ -169,7 +171,8 @@ impl<T: Precision> Touched<T> {
         }
     }
 
-    /// A box wider by more than ways are rounded by in this precision: what is listed in vain is left out by contact.
+    /// A box widened by more than the rounding of paths in this precision; contact ignores cells that are listed in
+    /// vain.
     fn with_roundings(&self, [low, high]: [[f64; 3]; 2]) -> [[f64; 3]; 2] {
         let sizes = self.extent.iter().chain([&low, &high]).flatten();
         let largest = sizes.fold(0.0_f64, |largest, x| largest.max(x.abs()));
