@@ -1,6 +1,6 @@
 //! The other keys with which a key goes.
 
-/// A condition that must hold where a key is given.
+/// A condition that must be met if a key is given.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Condition {
     /// Requirement for the other keys.
@@ -89,7 +89,7 @@ impl Condition {
         Self::new(Goes::Never, reason)
     }
 
-    /// Adds a remedy for a condition that does not hold.
+    /// Adds a remedy for a condition that is not met.
     pub(crate) const fn help(self, help: &'static str) -> Self {
         Self {
             help: Some(help),

@@ -1,4 +1,4 @@
-//! Errors of scenes: what is wrong, and where.
+//! Errors of scenes, with their place in the text.
 
 mod fault;
 mod hint;
@@ -121,7 +121,7 @@ impl SceneError {
         Some(self.0.scene.position(span.start))
     }
 
-    /// A hint at what to do, if there is one.
+    /// A remedy, if one is known.
     #[must_use]
     pub fn help(&self) -> Option<&str> {
         self.0.help.as_deref()

@@ -22,7 +22,7 @@ pub enum ToolFault {
         "the tool begins inside the body, in tetrahedron {tet}, and holds no node that it could push out"
     )]
     Within {
-        /// Tag of the tetrahedron that holds the middle of the tool.
+        /// Tag of the tetrahedron that contains the middle of the tool.
         tet: u64,
     },
     /// A tool for which all nodes are fixed or moved.

@@ -41,7 +41,7 @@ pub enum OutputError {
         /// The path.
         path: PathBuf,
     },
-    /// A folder that holds other things than an earlier result of the same kind.
+    /// A folder with other content than an earlier result of the same kind.
     #[error("cannot write into {}: it holds {}; name a new folder", path.display(), others(names))]
     Foreign {
         /// The path.
@@ -49,7 +49,7 @@ pub enum OutputError {
         /// Names of the others in it.
         names: Vec<String>,
     },
-    /// A folder that holds a file which this run reads.
+    /// A folder with a file that this run reads.
     #[error("cannot write into {}: this run reads {} in it; name a new folder", path.display(), input.display())]
     InputWithin {
         /// The path.
@@ -73,7 +73,7 @@ pub enum OutputError {
         /// The folder of the other result.
         holder: PathBuf,
     },
-    /// A complete result that cannot be kept beside its folder: something else has that name.
+    /// A complete result that cannot be kept next to its folder: something else has that name.
     #[error("cannot write into {}: its results would be kept as {} until new ones are complete, and that is there already; rename it, or name a new folder", path.display(), kept.display())]
     NoRoomAside {
         /// The path.

@@ -1,4 +1,4 @@
-//! The file that says whose a folder is and what was written into it.
+//! The manifest of a folder: its owner and the files that were written into it.
 
 use std::collections::HashSet;
 use std::fs;

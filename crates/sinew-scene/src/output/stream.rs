@@ -23,7 +23,7 @@ impl Stream {
         Self::on(Sink::StandardOutput(io::stdout()))
     }
 
-    /// Opens what the path names; a pipe waits for its reader.
+    /// Opens the file, device or pipe of the path; a pipe waits for its reader.
     pub(super) fn open(path: &Path) -> io::Result<Self> {
         let file = File::options().append(true).open(path)?;
         Ok(Self::on(Sink::Path(file)))

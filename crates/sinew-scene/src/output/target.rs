@@ -1,4 +1,4 @@
-//! The kind of thing that a path names, and whether it may be written.
+//! The kind of a path's target, and permission to write it.
 
 use std::fs::{self, File, FileType, Metadata};
 use std::io::ErrorKind;

@@ -26,7 +26,7 @@ pub struct Overlap {
     pub t: f64,
     /// The point (m).
     pub at: [f64; 3],
-    /// The tag of the node at the point, or next to it where no node is inside.
+    /// The tag of the node at the point, or next to it if no node is inside.
     pub node: u64,
     /// The parts, by groups of tetrahedra: that of the node, and that in which it is.
     pub parts: [String; 2],

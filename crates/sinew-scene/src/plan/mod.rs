@@ -20,7 +20,7 @@ use crate::scene::Subject;
 use crate::simulation::{Simulation, Warning};
 use matrices::Matrices;
 
-/// A description of a simulation: what was built, what was left out and why, and warnings. It prints
+/// A description of a simulation: its parts, omissions with their reasons, and warnings. It prints
 /// one paragraph for each section, in lines of at most 100 characters.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Plan {

@@ -15,7 +15,7 @@ pub(super) const YOUNGS_MODULUS: f64 = 10e3;
 pub(super) const POISSONS_RATIO: f64 = 0.4;
 
 /// The displacement of a body at rest under its first load, as a share of the longest edge of its bounding box: well
-/// within what a linear theory describes.
+/// within the range of a linear theory.
 const SHARE: f64 = 0.02;
 
 /// Acceleration of free fall (m/s^2).

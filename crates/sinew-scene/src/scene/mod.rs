@@ -106,7 +106,7 @@ pub struct Body {
     pub initial: Vec<Initial>,
     /// Points whose motion is written down.
     pub probes: Vec<ProbePoint>,
-    /// Parts chosen by where they lie. They become groups of the mesh, by whose names the lists above call them.
+    /// Parts chosen by position. They become groups of the mesh, whose names the lists above use.
     pub selected: Vec<Selected>,
 }
 

@@ -31,7 +31,7 @@ pub struct Tool {
     pub touches: Option<String>,
     /// Treatment of a tool that begins inside the body.
     pub starts_inside: StartsInside,
-    /// The time for which it seizes what it touches.
+    /// The time for which it grasps the tissue it touches.
     pub grasp: Option<Grasp>,
     /// The rigid body that its path draws along; `None` for a tool that is on its path.
     pub body: Option<ToolBody>,
@@ -285,7 +285,7 @@ impl Values for True {
     }
 }
 
-/// The place of a tool's table, and of those that hold the sizes of its parts.
+/// The place of a tool's table, and of those with the sizes of its parts.
 #[derive(Debug, Clone)]
 pub(crate) struct ToolPlace {
     pub(crate) table: Place,

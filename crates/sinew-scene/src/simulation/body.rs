@@ -103,7 +103,7 @@ fn way_key(body: &Body, index: usize) -> &'static str {
     motion.map_or("group", |motion| motion.way.key())
 }
 
-/// The error at the place of what the model was refused for.
+/// The error at the key for which the model was refused.
 fn refused(error: FemError, body: &Body, places: &Places) -> SceneError {
     let whole = &places.document;
     let place = match error.item() {

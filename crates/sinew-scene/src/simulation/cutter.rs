@@ -262,8 +262,7 @@ impl Cutter {
         self.changed_since(epoch, body, state, inputs)
     }
 
-    /// The state before the last [`Cutter::follow`] or [`Cutter::cut`], where that may have changed it; `None` if it
-    /// has not.
+    /// The state before the last [`Cutter::follow`] or [`Cutter::cut`], if that may have changed it.
     #[must_use]
     pub fn state_before(&self) -> Option<&State> {
         self.before.is_taken.then_some(&self.before.state)
@@ -312,7 +311,8 @@ impl Cutter {
         }
     }
 
-    /// Continues from what [`Cutter::save`] kept of the same scene, whose uncut body is `uncut`; returns the body to
+    /// Continues from a result of [`Cutter::save`] of the same scene, whose uncut body is `uncut`; returns the body
+    /// to
     /// continue with, if it was cut.
     ///
     /// # Errors
@@ -353,7 +353,7 @@ impl Cutter {
         Ok(())
     }
 
-    /// Begins a cut, and keeps the rest positions of the nodes that they hold, which are
+    /// Begins a cut, and fixes the rest positions of the nodes that tools grasp, which are
     /// not snapped onto the cut; returns the epoch of the body.
     fn begin(&mut self, body: &SceneBody, state: &State) -> u64 {
         let before = &mut self.before;
@@ -397,7 +397,7 @@ impl Cutter {
         Ok(Some(cut))
     }
 
-    /// Nodes of the body that tools have hold of, and their new copies.
+    /// Nodes of the body that tools grasp, and their new copies.
     fn held_with_copies(&self) -> Vec<u32> {
         let held: HashSet<u32> = self.before.held.iter().copied().collect();
         if held.is_empty() {
@@ -408,7 +408,7 @@ impl Cutter {
             .collect()
     }
 
-    /// The node of the body before what is cut at the moment that a node is, or is a copy of.
+    /// The node of the body before the current cut that a node is, or is a copy of.
     fn before_copies(&self, mut node: u32) -> u32 {
         while node as usize >= self.before.nodes {
             node = self.cut.body().copied_from(node);
@@ -499,11 +499,11 @@ fn edge(tools: &Tools, blade: usize, t: f64, inputs: &Inputs) -> Option<[[f64; 3
 struct Before {
     /// Number of nodes of the body, removed ones included.
     nodes: usize,
-    /// Its state, where that may have been changed.
+    /// Its state, if that may have been changed.
     state: State,
     /// True if it may.
     is_taken: bool,
-    /// Nodes of the body that tools held.
+    /// Nodes of the body that tools grasped.
     held: Vec<u32>,
 }
 
@@ -527,7 +527,7 @@ impl Default for Before {
     }
 }
 
-/// The nodes in the body of the cells that tools hold in a state.
+/// The nodes in the body of the cells that tools grasp in a state.
 fn held_by_tools(body: &SceneBody, state: &State) -> Vec<u32> {
     let tools = body.model().tools().into_iter();
     let held = tools.flat_map(|tools| tools.held(&state.contact));

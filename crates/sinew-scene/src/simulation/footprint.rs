@@ -18,7 +18,7 @@ pub struct Footprint {
     pub blocks: usize,
     /// Memory (bytes) of the matrices.
     pub matrix_bytes: usize,
-    /// Memory (bytes) of mesh, matrices, what a machine keeps of them, and motion; factors apart.
+    /// Memory (bytes) of mesh, matrices, their copies in a machine, and motion, without factors.
     pub bytes: usize,
 }
 

@@ -1,18 +1,19 @@
-//! The parts of a body that a scene's supports and motions hold.
+//! The parts of a body that a scene's supports and motions fix or move.
 
 use std::fmt;
 
 use serde::{Deserialize, Serialize};
 use sinew_fem::On;
 
-/// A part of the body that a table of the scene holds or moves.
+/// A part of the body that a table of the scene fixes or moves.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct HeldPlace {
     /// The table.
     pub by: ReactionOf,
     /// The part of the body.
     pub on: On,
-    /// Its nodes (0-based) with the components that it holds or moves and no part before it does, so that the forces of
+    /// Its nodes (0-based) with the components that it fixes or moves and no part before it does, so that the forces
+    /// of
     /// all parts add up to that of the whole.
     pub nodes: Vec<(u32, [bool; 3])>,
     /// Mean (m) of the places at rest of its nodes before all cuts.

@@ -25,13 +25,13 @@ pub struct BodyModel {
     pub mesh: Arc<TetMesh>,
     /// Warnings of the reader of the mesh file.
     pub mesh_warnings: Vec<String>,
-    /// Parts chosen by where they lie, in the order of the scene.
+    /// Parts chosen by position, in the order of the scene.
     pub selected: Vec<SelectedPart>,
     /// The problem as a whole, prescribed motions included.
     pub problem: sinew_fem::Problem,
     /// The system to integrate.
     pub model: sinew_fem::Model,
-    /// The tools and the cut faces that touch it, which the model knows too; `None` if there are none.
+    /// The tools and the cut faces in contact with it, which the model shares; `None` if there are none.
     pub tools: Option<Arc<Tools>>,
     /// Origin of its parts, once it was cut.
     pub cut: Option<Arc<CutFrom>>,
@@ -127,8 +127,8 @@ impl BodyModel {
         }
     }
 
-    /// The cells of the nodes of a group, or of the whole body where no group is named, and the number
-    /// of these nodes including held ones.
+    /// The cells of the nodes of a group, or of the whole body if no group is named, and the number
+    /// of these nodes, fixed ones included.
     pub(crate) fn cells_of(
         &self,
         group: Option<&str>,

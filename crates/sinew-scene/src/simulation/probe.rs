@@ -32,7 +32,7 @@ pub struct Probe {
 /// A node of a probe, or the mass of an oscillator.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ProbeNode {
-    /// Its share of the mean: those of a probe add up to 1.
+    /// Its weight in the mean: the weights of a probe add up to 1.
     pub share: f64,
     /// Index in the mesh, from 0.
     pub index: u32,
@@ -135,7 +135,7 @@ impl Probe {
     }
 
     /// The displacement (m) in each of its directions at time `t` (s), with that of the degrees of freedom then: 0
-    /// where it is held, the prescribed one where it is moved.
+    /// in fixed directions, the prescribed one in moved ones.
     pub fn displacement<'a>(&'a self, t: f64, u: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
         let own = move |dof: usize| u.get(dof).copied().unwrap_or(f64::NAN);
         (0..self.axes()).map(move |axis| {

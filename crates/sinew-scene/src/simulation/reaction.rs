@@ -12,14 +12,14 @@ use super::model::BodyModel;
 use super::scene_body::SceneBody;
 use crate::scene::Subject;
 
-/// The force that holds or moves a part of the body.
+/// The force that fixes or moves a part of the body.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Reaction {
     /// The table of the scene that asks for it.
     pub by: ReactionOf,
     /// The part of the body.
     pub on: On,
-    /// The force (N) on the body at the nodes of the part, of components that no part before it holds or moves.
+    /// The force (N) on the body at the nodes of the part, of components that no part before it fixes or moves.
     pub force: [f64; 3],
     /// The moment (N m) of these forces about the mean of the part's nodes at rest.
     pub moment: [f64; 3],

@@ -45,7 +45,8 @@ fn all_faces(mesh: &TetMesh) -> Vec<[u32; 3]> {
     mesh.tets.iter().flat_map(of_tet).collect()
 }
 
-/// Assigns to small tools the triangles of the surface whose corners they touch (`nodes_of` each) or are held; returns
+/// Assigns to small tools the triangles of the surface whose corners they touch (`nodes_of` each) or are fixed;
+/// returns
 /// all triangles that any of them touches, whose corners are indices into `touched`.
 pub(super) fn under_tips(
     tools: &mut [Tool],
@@ -229,7 +230,8 @@ fn reach(tool: &Tool, duration: f64) -> Option<[[f64; 3]; 2]> {
     })?
 }
 
-/// The nodes of which some component is moved, increasing: where they are is no matter of the degrees of freedom alone.
+/// The nodes of which some component is moved, increasing: their position does not follow from the degrees of freedom
+/// alone.
 pub(super) fn moved_nodes(built: &BodyModel) -> Vec<u32> {
     let mut moved = Vec::new();
     for motion in &built.problem.moves {

@@ -1,4 +1,4 @@
-//! Parts of the body that no support holds.
+//! Parts of the body without supports.
 
 use super::{Warning, WarningKind};
 use crate::number::{count, short, vector};

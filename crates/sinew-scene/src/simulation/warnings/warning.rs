@@ -6,7 +6,7 @@ use serde::{Serialize, Serializer};
 
 use crate::number::short;
 
-/// Something about a scene that runs, and may not be what its author meant. It prints as one line.
+/// A warning about a scene that runs but may not be intended so. It prints as one line.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Warning {
     /// Its kind.
@@ -73,7 +73,7 @@ impl fmt::Display for Warning {
 pub enum WarningKind {
     /// A remark of the reader of the mesh file.
     MeshFile,
-    /// Parts of the body that touch and do not hold together.
+    /// Parts of the body that touch without being joined.
     TouchingParts,
     /// Faces of elements that lie on others without being the same.
     MismatchedFaces,
