@@ -335,7 +335,7 @@ impl BlockMatrix {
 
     /// Sets the scalar rows and columns of the marked degrees of freedom to zero.
     ///
-    /// `pinned` has length [`BlockMatrix::dofs`]. A component held fixed at a cell whose other
+    /// `pinned` has length [`BlockMatrix::dofs`]. A fixed component of a cell whose other
     /// components move keeps its place in the vectors and simply never feels a force.
     pub fn clear_pinned(&mut self, pinned: &[bool]) {
         let layers = self.layers.count();

@@ -1,4 +1,4 @@
-//! Addresses that know, in debug builds, what may be used through them.
+//! Addresses that carry, in debug builds, the bounds of the memory that may be used through them.
 
 #![allow(unsafe_code, reason = "the contract stands at `At`")]
 
@@ -10,7 +10,7 @@ use super::real::Real;
 /// written through it is checked against them first.
 ///
 /// # Safety
-/// As for pointers: what a method reads or writes has to lie within the array that the address was made from,
+/// As for pointers: all that a method reads or writes has to lie within the array that the address was made from,
 /// which is still there, and which no other thread writes meanwhile. Vectors need the instruction set of their type.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct At<T> {

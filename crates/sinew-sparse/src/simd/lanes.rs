@@ -37,7 +37,7 @@ pub(crate) trait Lanes<T: Real>: Copy {
     unsafe fn flush(self, tiny: Self) -> Self;
     /// One bit for each lane that is at most `other`; none if one of them is not a number.
     unsafe fn at_most(self, other: Self) -> u32;
-    /// `then` where `a` is at most `b`, else `otherwise`, also where one of the two is not a number.
+    /// `then` in lanes where `a` is at most `b`, else `otherwise`, also if one of the two is not a number.
     unsafe fn select_le(a: Self, b: Self, then: Self, otherwise: Self) -> Self;
     /// One bit for each lane whose size is at least `limit`.
     unsafe fn reaches(self, limit: Self) -> u32;

@@ -8,7 +8,7 @@ use std::ops::Range;
 
 use super::aligned::Aligned;
 
-/// Numbers that threads write in different places at the same time.
+/// Numbers that threads write at the same time, each in places of its own.
 pub struct Shared<T> {
     first: *mut T,
     /// The memory that `first` points to, used only through that pointer.

@@ -47,7 +47,7 @@ pub trait WithReal<T: Real> {
         self.run::<N>()
     }
 
-    /// [`Self::run_on_avx2`] with those of AVX-512.
+    /// [`Self::run_on_avx2`] with the instructions of AVX-512.
     ///
     /// # Safety
     /// The instructions are available.
@@ -64,7 +64,7 @@ pub trait WithReal<T: Real> {
 
 /// Numbers that there are vectors of.
 pub trait Vectors: Real + Number<Real = Self> {
-    /// Does work with vectors, or with plain numbers where there are only the instructions of the build.
+    /// Does work with vectors, or with plain numbers if only the instructions of the build are available.
     fn with_vectors_or_numbers<W: WithReal<Self>>(set: InstructionSet, work: W) -> W::Output;
 }
 

@@ -85,7 +85,7 @@ pub struct Update<T> {
     pub watched: bool,
 }
 
-/// A bound, counted where it is reached.
+/// A bound; values that reach it are counted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Clamp<T> {
     /// Bounds each component to this size.

@@ -322,8 +322,8 @@ fn find(matrix: &BlockMatrix, units: &Units, grid: &Grid) -> Option<(Vec<Templat
     Some((templates, of_cell))
 }
 
-/// Gives a row that lacks neighbours the template of rows that have them, where what it lacks is empty
-/// and adds nothing: rows beside held cells.
+/// Gives a row that lacks neighbours the template of rows that have them, if the missing positions are empty
+/// and add nothing: rows next to fixed cells.
 fn merge(templates: &[Template], grid: &Grid, of_cell: &mut [u32]) {
     let mut frequent: Vec<usize> = (0..templates.len()).collect();
     frequent.sort_by_key(|number| std::cmp::Reverse(templates[*number].rows));
@@ -360,7 +360,7 @@ impl Template {
         places.zip(self.blocks.chunks_exact(len))
     }
 
-    /// The offsets that this has and `small` has not, where all else is the same.
+    /// The offsets that this has and `small` has not; `None` if anything else differs.
     fn more_than(&self, small: &Self) -> Option<Vec<i32>> {
         if self.offsets.len() <= small.offsets.len() {
             return None;
