@@ -50,6 +50,13 @@ pub(crate) enum Breach {
     },
     #[error("ARCHITECTURE.md names {name}, which does not exist")]
     NoSuchPath { name: String },
+    #[error("{path}:{line}: a doc comment says \"{words}\"; better: {better}")]
+    DocWord {
+        path: String,
+        line: usize,
+        words: &'static str,
+        better: &'static str,
+    },
 }
 
 /// Reasons why the rules are not known to be kept.

@@ -5,6 +5,7 @@ mod breach;
 mod code;
 mod components;
 mod dev_cycles;
+mod doc_words;
 mod file_circles;
 mod files;
 mod light_trees;
@@ -31,6 +32,7 @@ pub(crate) fn check(root: &Path) -> Result<(), RuleError> {
         pure_sources::check(root, pure_sources::PURE)?,
         file_circles::check(root)?,
         architecture_paths::check(root)?,
+        doc_words::check(root)?,
     ]
     .into_iter()
     .flatten()
