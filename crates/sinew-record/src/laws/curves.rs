@@ -21,12 +21,12 @@ const ROOM: f64 = 0.1;
 /// The curves that are asked for.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AskedCurves {
-    /// The number (from 1 on) or the group of the only region that is shown; all where there is none.
+    /// The number (from 1 on) or the group of the only region that is shown; `None` shows all.
     pub region: Option<String>,
-    /// The axis of the pull; where there is none x, or for directions by data of the mesh that between them.
+    /// The axis of the pull; `None` for x, or for the direction between the fibre directions given by data of the mesh.
     pub along: Option<[f64; 3]>,
-    /// The second axis of sheets and shears, as far as it is at right angles to the first; where there is none the second
-    /// of the material's axes by data of the mesh, or the mesh's axis after the one that the first is nearest to.
+    /// The second axis of sheets and shears, made perpendicular to the first; `None` for the second of the material's axes by
+    /// data of the mesh, or else the mesh's axis after the one that the first is nearest to.
     pub across: Option<[f64; 3]>,
     /// The least and the largest stretch; an amount of shear is a stretch less 1. `None`: the range of the measured
     /// points with a margin, or else from .7 to 2.
