@@ -17,7 +17,7 @@ pub(crate) struct Arguments {
     /// Folder of the wheel
     #[arg(long, value_name = "DIR", default_value = "target/wheel")]
     out: PathBuf,
-    /// Make a source distribution too, and build the wheel from it: all is compiled anew
+    /// Make a source distribution too, and build the wheel from it: all is compiled again
     #[arg(long)]
     sdist: bool,
 }
