@@ -5,7 +5,7 @@ use std::fmt::{self, Display};
 use crate::markup::{attribute, escape, prose};
 use crate::style::Colour;
 
-/// A table, which scrolls within the page where it is wider.
+/// A table, which scrolls within the page if it is wider.
 #[derive(Clone, Debug, Default)]
 pub struct Table {
     /// Its columns.
