@@ -1,4 +1,4 @@
-//! The kinds of cells a gmsh file can hold, under meshio's names.
+//! The cell types of gmsh files, under meshio's names.
 
 use std::fmt;
 

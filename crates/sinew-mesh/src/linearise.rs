@@ -18,7 +18,7 @@ pub struct Linearised {
     /// Nodes that only these cells had, away from their corners; they are dropped.
     pub dropped_nodes: usize,
     /// The greatest distance of a mid-edge node of a second-order line, triangle or tetrahedron from the middle of the straight
-    /// edge, in the mesh's unit: about what a curved boundary loses.
+    /// edge, in the mesh's unit: about the error of a curved boundary.
     pub farthest_from_straight: f64,
 }
 

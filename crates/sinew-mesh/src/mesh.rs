@@ -1,4 +1,4 @@
-//! A mesh as a file holds it: all cell types, tags, groups and data, in meshio's arrangement.
+//! A mesh as in a file: all cell types, tags, groups and data, in meshio's arrangement.
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
@@ -13,7 +13,7 @@ use crate::warning::Warning;
 /// connectivity. Node and element tags, every physical group of a cell and a name table keyed by dimension *and* tag, which
 /// meshio drops, are kept as well.
 ///
-/// To build one by hand, start from [`Mesh::default`] and fill the fields in.
+/// To build one in a program, start from [`Mesh::default`] and fill the fields in.
 #[derive(Debug, Clone, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Mesh {

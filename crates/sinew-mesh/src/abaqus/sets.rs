@@ -360,7 +360,7 @@ impl<'r> Resolver<'r> {
         }
     }
 
-    /// Adds members, and those of the sets that they name.
+    /// Adds members, and the members of sets that are named.
     fn add<I: Iterator<Item = u64>>(
         &mut self,
         members: &[Member],

@@ -1,4 +1,4 @@
-//! Checks whether a mesh is fit for simulation: its cells, nodes and groups.
+//! Checks of a mesh's fitness for simulation: its cells, nodes and groups.
 
 mod fixes;
 
@@ -292,7 +292,7 @@ impl MeshCheck {
 }
 
 impl fmt::Display for MeshCheck {
-    /// One line for each fact; those that need attention start with `!`.
+    /// One line for each fact; lines that need attention start with `!`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(
             f,
@@ -339,7 +339,7 @@ impl fmt::Display for MeshCheck {
     }
 }
 
-/// Every cell of the blocks for which `matters` holds.
+/// Every cell of the blocks for which `matters` is true.
 fn cells_of<'m>(
     mesh: &'m Mesh,
     matters: impl Fn(&CellBlock) -> bool + 'm,

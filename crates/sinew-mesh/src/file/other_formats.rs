@@ -4,7 +4,8 @@ use std::path::Path;
 
 use crate::advice::meshio_command;
 
-/// Extensions of formats that can hold tetrahedra, that this crate does not read, and that meshio 5.3.5 reads without other packages.
+/// Extensions of formats for tetrahedra that this crate does not read, and that meshio 5.3.5 reads without other
+/// packages.
 const READ_BY_MESHIO: [&str; 17] = [
     "f3grid", "mdpa", "avs", "xml", "meshb", "bdf", "fem", "nas", "vol", "post", "dato", "su2",
     "dat", "tec", "ele", "node", "ugrid",

@@ -59,7 +59,7 @@ enum BlockNumber {
 }
 
 impl BlockPlace {
-    /// A fault in one of the block's elements; `cell` counts from 0, `section` holds the elements.
+    /// A fault in one of the block's elements; `cell` counts from 0, `section` is that of the elements.
     pub(super) fn fault(
         &self,
         section: &str,

@@ -14,7 +14,7 @@ use crate::reading::cursor::{Cursor, LONGEST, quoted};
 use crate::reading::fault::Fault;
 use crate::reading::remarks::Remarks;
 
-/// The kind of file, as far as its sections have shown it.
+/// The kind of file, as known from the sections read so far.
 #[derive(Clone, Copy)]
 enum Kind {
     Unknown,
@@ -116,7 +116,7 @@ fn is_known(name: &str) -> bool {
     KNOWN.contains(&name)
 }
 
-/// The reason for which a known section is refused, and what is expected in its place.
+/// The reason for which a known section is refused, and the expected section in its place.
 type Reason = (&'static str, &'static str);
 
 const BEFORE_FORMAT: Reason = ("the section comes before $MeshFormat", "$MeshFormat first");

@@ -9,7 +9,7 @@ use super::{Group, GroupMembers, TetMesh};
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum AddGroupError {
-    /// The name is empty or has a line break, so that no file could hold it.
+    /// The name is empty or has a line break, so that no file can store it.
     #[error("{name:?} is no name for a group; one line of text is needed")]
     BadName {
         /// The name.
