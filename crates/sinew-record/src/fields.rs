@@ -138,7 +138,7 @@ impl Fields {
         &self.u
     }
 
-    /// Writes a frame, and sees what is largest in it.
+    /// Writes a frame, and updates the extremes.
     pub(crate) fn write(
         &mut self,
         folder: &OwnedFolder,
@@ -226,7 +226,7 @@ impl Fields {
         fields
     }
 
-    /// Makes the fields on tetrahedra of the displacement, and sees what is largest.
+    /// Computes the fields on tetrahedra from the displacement, and updates the extremes.
     fn deform(&mut self, t: f64, internal: &[f64], seen: &mut Seen) -> Result<(), RecordRunError> {
         let (mesh, tets) = (self.body.model.mesh(), &mut self.tets);
         tets.clear();

@@ -1,4 +1,4 @@
-//! Energy that comes from nothing, where no table of energies is written.
+//! Unphysical growth of energy, if no table of energies is written.
 
 use std::sync::Arc;
 
@@ -15,7 +15,7 @@ const MOST_LOOKS: usize = 16;
 /// Steps per check: a check costs about two evaluations of forces.
 const STEPS_FOR_A_LOOK: usize = 100;
 
-/// Energy, as a multiple of what start and loads account for, from which on a motion is wrong.
+/// Energy, as a multiple of that of the start and the work of loads, above which a motion is wrong.
 const FAR_BEYOND: f64 = 2.0;
 
 /// A recorder that checks the energy of a body in large deformation some times in a run, and reports it if it is far
@@ -69,7 +69,7 @@ impl EnergyGrowth {
         }
     }
 
-    /// A sentence about the energy, where there is too much of it.
+    /// A sentence about the energy, if there is too much of it.
     #[must_use]
     pub fn in_words(&self) -> Option<&str> {
         self.grown.as_deref()

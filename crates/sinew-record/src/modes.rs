@@ -205,7 +205,7 @@ mod tests {
         scene.build().unwrap()
     }
 
-    /// A bar that is held at one end and moves along itself alone: omega_k = (2k - 1) pi/2 sqrt(E/rho)/L for nu = 0
+    /// A bar that is fixed at one end and moves along itself alone: omega_k = (2k - 1) pi/2 sqrt(E/rho)/L for nu = 0
     /// (Rao, Vibration of Continuous Systems, section 9.2).
     #[test]
     fn a_bar_has_the_frequencies_of_the_wave_equation() {

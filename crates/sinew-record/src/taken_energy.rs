@@ -7,7 +7,7 @@ use crate::balance::Energies;
 use crate::fast_loads::unseen;
 use crate::made_energy::{THERMAL, keeper};
 
-/// Share of what was put in from which on it is reported.
+/// Share of the supplied energy above which it is reported.
 const MUCH: f64 = 0.1;
 
 /// The most that was taken (J), and the most that was put in, over all checks.

@@ -81,7 +81,7 @@ impl ToolRows {
         columns
     }
 
-    /// Lines that say what is in the columns, and the line of their names.
+    /// Lines that describe the columns, and the line of their names.
     pub(crate) fn head(&self) -> String {
         let mut text = String::new();
         for Tool { name, body, .. } in self.tools.tools() {
@@ -103,7 +103,7 @@ impl ToolRows {
         text
     }
 
-    /// A row, since what tools had received at the one before.
+    /// A row of the mean forces since the row before.
     pub(crate) fn row(&self, out: &mut String, moment: &Moment<'_>, received: &mut Received) {
         out.clear();
         let Moment { state, inputs, .. } = moment;

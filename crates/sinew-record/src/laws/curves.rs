@@ -46,7 +46,7 @@ pub struct RegionCurves {
     pub lame: (f64, f64),
     /// True if it has fibres, which the constants at rest are without.
     pub has_fibres: bool,
-    /// Sentences about what the curves are of.
+    /// Sentences about the material of the curves.
     pub notes: Vec<String>,
     /// One curve for each load.
     pub curves: Vec<Curve>,
@@ -158,8 +158,8 @@ fn with_room([low, high]: [f64; 2]) -> [f64; 2] {
     [(low - room).max(0.5 * low), high + room]
 }
 
-/// A region with the properties of one place where the mesh's data give them, and sentences about what its curves are
-/// of. `moduli` are the least and the largest of its tetrahedra (Pa).
+/// A region with the properties of one place if the mesh's data give them, and sentences about the material of its
+/// curves. `moduli` are the least and the largest of its tetrahedra (Pa).
 fn at_a_point(
     (given, stated): (&Region, &Region),
     moduli: Option<[f64; 2]>,

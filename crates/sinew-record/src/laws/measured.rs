@@ -1,4 +1,4 @@
-//! Measured points beside the curves of laws.
+//! Measured points for comparison with the curves of laws.
 
 use std::fs;
 use std::io;
@@ -41,7 +41,7 @@ pub(crate) struct Misfit {
     pub(crate) largest: f64,
 }
 
-/// A file of measured points that cannot be used: the file, the line, and what is wrong.
+/// A file of measured points that cannot be used: the file, the line, and the fault.
 #[derive(Debug, thiserror::Error)]
 #[error("{}{}: {fault}", path.display(), line.map_or_else(String::new, |line| format!(":{line}")))]
 pub struct MeasuredError {
