@@ -57,7 +57,7 @@ enum Results {
 }
 
 impl Results {
-    /// The results in a folder, or those of a scene, which is run.
+    /// The results in a folder, or those of a run of a scene.
     fn of(path: &Path, interruption: &Interruption) -> Result<Self, Failure> {
         let is_scene = path
             .extension()

@@ -1,4 +1,4 @@
-//! Failures of commands: one message each, with the line of the scene where there is one.
+//! Failures of commands: one message each, with the line of the scene if there is one.
 
 use std::env::var_os;
 use std::io::{self, IsTerminal, stderr};
@@ -75,7 +75,7 @@ pub(crate) enum Failure {
     /// An option that the scene's integrator refuses.
     #[error(transparent)]
     Option(#[from] OptionError),
-    /// Warnings where none are wanted.
+    /// Warnings that the command refuses.
     #[error("{count} {}, which --strict makes {}", plural(*count, "warning"), if *count == 1 { "an error" } else { "errors" })]
     Warnings {
         /// Number of warnings.
@@ -128,7 +128,7 @@ pub(crate) enum Failure {
         /// The reason.
         source: TetMeshError,
     },
-    /// A file that is there already and holds something else.
+    /// An existing file with other content.
     #[error("{} exists, holds something else and stays as it is; name another file, or write over it with --force", path.display())]
     Exists {
         /// The file.
@@ -164,7 +164,7 @@ pub(crate) enum Failure {
         /// The reason.
         source: RefineError,
     },
-    /// A mesh that a .msh file cannot hold.
+    /// A mesh that a .msh file cannot represent.
     #[error("cannot write {}: {source}", path.display())]
     WriteMsh {
         /// The path.
@@ -172,7 +172,7 @@ pub(crate) enum Failure {
         /// The reason.
         source: WriteMshError,
     },
-    /// A mesh that a .vtu file cannot hold.
+    /// A mesh that a .vtu file cannot represent.
     #[error("cannot write {}: {source}", path.display())]
     WriteVtu {
         /// The path.
@@ -271,7 +271,7 @@ pub(crate) enum Failure {
         "{count} parts of the results could not be compared, so that a tolerance says nothing of them"
     )]
     NotCompared {
-        /// Number of sentences about what was left out.
+        /// Number of sentences about omissions.
         count: usize,
     },
     /// A run that leaves no result in its folder.
@@ -356,7 +356,7 @@ impl Failure {
         }
     }
 
-    /// An error where there are warnings.
+    /// An error if there are warnings.
     pub(crate) fn of_warnings(warnings: &[Warning]) -> Result<(), Self> {
         match warnings.len() {
             0 => Ok(()),
