@@ -1,4 +1,4 @@
-//! Runs whose time is taken, and which count only where they came to their end.
+//! Timed runs, which count only if they were completed.
 
 use std::time::Instant;
 

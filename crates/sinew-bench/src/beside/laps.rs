@@ -61,7 +61,7 @@ impl Pair {
     }
 }
 
-/// Our methods beside another program.
+/// Our methods compared with another program.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Beside {
     /// The other program.

@@ -1,4 +1,5 @@
-//! Hands on tissue: what tools press, draw along and lift, by every method that can, with the errors of motion and of force.
+//! Tools on tissue: pressing, dragging and lifting, by every method that supports it, with the errors of motion and
+//! of force.
 
 mod cases;
 mod marks;

@@ -1,4 +1,4 @@
-//! Forces of hyperelastic elements, beside those of plain tetrahedra and beside plain numbers.
+//! Forces of hyperelastic elements, compared with those of plain tetrahedra and with scalar code.
 
 use serde::Serialize;
 use sinew_core::{

@@ -156,7 +156,7 @@ pub(super) fn central_difference(
     Ok(method.program().map(|program| (Arc::new(program), dt)))
 }
 
-/// Floating-point operations of a step: two for each entry of a matrix, in whatever way it is stored, and those
+/// Floating-point operations of a step: two for each entry of a matrix, independent of its storage, and those
 /// of the cells' own maps.
 fn operations(program: &Program, model: &dyn LinearSystem) -> f64 {
     let stiffness = model.operators().stiffness();

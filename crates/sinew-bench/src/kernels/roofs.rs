@@ -22,7 +22,7 @@ pub struct Roofs {
 /// The rate at which one thread reads a number of bytes over and over.
 #[derive(Clone, Debug, Serialize)]
 pub struct ReadRate {
-    /// The memory that holds them: "L2", "L3" or "DRAM".
+    /// The memory that contains them: "L2", "L3" or "DRAM".
     pub memory: &'static str,
     /// The bytes.
     pub bytes: usize,
@@ -48,7 +48,7 @@ const CACHES: [usize; 2] = [1 << 20, 32 << 20];
 const MOST: usize = 1 << 30;
 
 impl Roofs {
-    /// Measures all rates; a quick measurement leaves out what is large.
+    /// Measures all rates; a quick measurement leaves out large sizes.
     pub(super) fn measure(quick: bool) -> Self {
         let l2 = cache(2).unwrap_or(CACHES[0]);
         let l3 = cache(3).unwrap_or(CACHES[1]);

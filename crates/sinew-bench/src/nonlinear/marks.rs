@@ -88,11 +88,12 @@ fn steps_follow_the_stiffness(rows: &[Row]) -> Mark {
     }
 }
 
-/// Errors at 10 ms of an independent implementation, of the methods of a quick run behind the yardstick, and whether
-/// that takes the same steps: its sweeps set out from rest, and those here from the displacement by the velocity.
+/// Errors at 10 ms of an independent implementation, for the methods of a quick run after the yardstick, each with a
+/// flag: true if it takes the same steps. Its sweeps set out from rest, and those here from the displacement by the
+/// velocity.
 const OF_OTHERS: [(f64, bool); 2] = [(0.0044, true), (0.0178, false)];
 
-/// The pushed cube at 10 ms, beside an independent implementation.
+/// The pushed cube at 10 ms, compared with an independent implementation.
 fn errors_are_those_of_others(rows: &[Row]) -> Mark {
     let asked = mark(
         "errors are those of an independent implementation",

@@ -36,7 +36,7 @@ impl Plan {
         file_names(&ids, &[])
     }
 
-    /// Measures every case on one thread, then the marks, which see the rows and tell what they begin.
+    /// Measures every case on one thread, then the marks, which receive the rows and announce their runs.
     ///
     /// # Errors
     /// [`BenchError`] if no scene can be read.

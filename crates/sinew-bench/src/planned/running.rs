@@ -13,7 +13,7 @@ use super::methods::yardstick;
 use crate::results::{BenchResults, Skipped};
 use sinew_verify::Progress;
 
-/// A body of a case: its law and element where the case has several, and what its scene changes to have them.
+/// A body of a case: its law and element, if the case has several, and the changes of its scene for them.
 struct Body {
     material: Option<String>,
     law: Option<&'static str>,

@@ -11,7 +11,7 @@ use crate::results::BenchResults;
 
 /// The paper's network.
 const PAPER: &str = Cnn::ID;
-/// The method that knows the whole body, against which local ones are held.
+/// The global method with which local ones are compared.
 const NON_LOCAL: &str = Modal::ID;
 /// Errors below which they are compared (fraction).
 const COMPARED_BELOW: f64 = 0.01;

@@ -9,7 +9,7 @@ use sinew_measure::{Row, RowOutcome, RowVerdict};
 pub struct StabilityMap {
     /// Name for files and anchors.
     pub id: String,
-    /// Description of the scene and of what is varied.
+    /// Description of the scene and of the varied parameter.
     pub title: String,
     /// The parameter that is varied, with its unit.
     pub parameter: String,
@@ -39,7 +39,7 @@ pub struct MapPanel {
 /// The part of a run that a map keeps.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct MapRun {
-    /// Relative error (fraction); none where diverged.
+    /// Relative error (fraction); `None` if diverged.
     pub error: Option<f64>,
     /// End of the run.
     pub outcome: RowOutcome,

@@ -7,7 +7,7 @@ use serde::Serialize;
 pub struct ScaleBody {
     /// Its name, by the nodes on an edge.
     pub mesh: String,
-    /// Its nodes, held ones too.
+    /// Number of its nodes, fixed ones included.
     pub nodes: usize,
     /// Its tetrahedra.
     pub tets: usize,
@@ -38,7 +38,7 @@ pub struct ScaleBody {
 pub struct ScaleRow {
     /// The cube, by the nodes on an edge.
     pub mesh: String,
-    /// Its nodes, held ones too.
+    /// Number of its nodes, fixed ones included.
     pub nodes: usize,
     /// Its tetrahedra.
     pub tets: usize,
@@ -62,8 +62,8 @@ pub struct ScaleRow {
     pub simulated_s: f64,
     /// Relative L2 error of the displacement (fraction); none of a run that diverged.
     pub error: Option<f64>,
-    /// Bound (fraction) below which the error lies, where it is too small for the reference; `error` is no
-    /// figure to quote then.
+    /// Bound (fraction) below which the error lies, if it is too small for the reference; `error` must not be
+    /// quoted then.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub error_is_below: Option<f64>,
     /// The reference's own estimated relative error (fraction).
