@@ -12,7 +12,7 @@ pub struct Ended {
     pub scene: Scene,
     /// Values that are set in its file to get it, as `KEY=VALUE`.
     pub values: Vec<String>,
-    /// Files of [`Live::keep_logs`](crate::Live::keep_logs) that do not hold their logs to the end.
+    /// Files of [`Live::keep_logs`](crate::Live::keep_logs) with incomplete logs.
     pub unkept: Vec<JournalError>,
     /// The log of each pane.
     pub logs: Vec<Log>,

@@ -25,7 +25,7 @@ use crate::scene_values::SceneValues;
 use crate::server::{Guests, Shared, Standing, Token, router};
 use crate::tool_facts::tools_of;
 
-/// Time between two checks of whether the page shall end.
+/// Time between two checks for a request to end.
 const LOOK: Duration = Duration::from_millis(50);
 
 /// Time that the simulation has to end: it does so between steps and orders, and to set up a method may take minutes.
@@ -53,7 +53,7 @@ pub struct Settings {
     pub values: Vec<String>,
     /// The panes to begin with, one or two.
     pub panes: Vec<PaneChoice>,
-    /// The second pane, where it is asked for later.
+    /// The second pane, if it is opened later.
     pub second: PaneChoice,
     /// Loads by which the user pulls; they are 0 at the beginning.
     pub hand: Option<Hand>,

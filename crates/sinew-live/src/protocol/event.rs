@@ -105,7 +105,7 @@ pub(crate) struct ToolFacts {
     pub(crate) start: [f64; 6],
 }
 
-/// A part of a tool: its kind, its sizes, where it is in the tool.
+/// A part of a tool: its kind, its sizes, its pose in the tool.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct PartFacts {
     /// "sphere", "capsule", "plane" or "box".
@@ -218,11 +218,11 @@ pub(crate) struct OptionFacts {
     pub(crate) words: Vec<&'static str>,
     /// The numbers that it takes.
     pub(crate) number: Option<NumberFacts>,
-    /// True if it takes a word and a number at once.
+    /// True if it takes a word and a number together.
     pub(crate) has_both: bool,
-    /// The word that holds.
+    /// The current word.
     pub(crate) word: Option<String>,
-    /// The number that holds.
+    /// The current number.
     pub(crate) value: Option<f64>,
 }
 

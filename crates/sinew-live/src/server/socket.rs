@@ -73,7 +73,7 @@ async fn exchange(stream: WebSocket, shared: &Shared, id: u32, mut messages: Rec
     select(speak, listen).await;
 }
 
-/// Takes a message of a page; `false` where it says good-bye.
+/// Handles a message of a page; returns false if it closes the connection.
 fn hear(shared: &Shared, id: u32, message: &Message) -> bool {
     let refuse = |reason: String| shared.clients.tell(id, &Event::Refused { reason });
     match message {
