@@ -34,8 +34,8 @@ impl CostSince {
     }
 }
 
-/// Thread CPU time since some fixed instant: what other processes do does not count. Wall time
-/// where the platform has no such clock.
+/// Thread CPU time since some fixed instant, without that of other processes. Wall time if the platform has no
+/// such clock.
 #[must_use]
 pub fn thread_cpu_time() -> Duration {
     #[cfg(unix)]

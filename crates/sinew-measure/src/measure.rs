@@ -184,7 +184,7 @@ pub fn measure_with(
     })
 }
 
-/// The reason for which a step was refused, where that is why a run ended.
+/// The reason for which a step was refused, if that ended the run.
 fn refusal(error: &SimulateError) -> Option<String> {
     match error {
         SimulateError::Step(
@@ -218,7 +218,7 @@ fn work(report: &RunReport, setup_factorizations: u64) -> Work {
     }
 }
 
-/// Most checks of a run for surfaces that may overlap: a check costs as much as some steps.
+/// Most checks of a run for overlapping surfaces: a check costs as much as some steps.
 const LOOKS: usize = 10;
 
 /// Compares each state with the reference as it comes; keeps no copies.
@@ -272,7 +272,7 @@ impl Comparison<'_> {
         self.step == self.steps || self.step > 0 && looks(self.step) > looks(self.step - 1)
     }
 
-    /// Compares what has been received since the last instant: the mean forces of that time.
+    /// Compares the impulses received since the last instant, as mean forces.
     fn compare_impulses(&mut self, moment: &Moment<'_>) {
         let reference = self.track.impulses.get(self.step / self.stride);
         let (Some(contact), Some(reference)) = (moment.system.contact(), reference) else {

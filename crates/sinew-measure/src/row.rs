@@ -108,9 +108,9 @@ pub struct Row {
     /// of the scene was compared.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub expected_error: Option<f64>,
-    /// Largest |component| of the displacement over the run (m); none where not finite.
+    /// Largest |component| of the displacement over the run (m); `None` if not finite.
     pub max_u: Option<f64>,
-    /// Half the range of the worst dof over the last fifth of the steps (m); none where not finite.
+    /// Half the range of the worst dof over the last fifth of the steps (m); `None` if not finite.
     pub late_amplitude: Option<f64>,
     /// Share of the (dof, step) pairs that were saturated (fraction).
     #[serde(deserialize_with = "gaps::null_is_nan")]
@@ -161,7 +161,7 @@ pub struct Row {
     /// The smallest ratio of an element's volume to that at rest, over all steps; of bodies that follow a force law.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub smallest_volume_ratio: Option<f64>,
-    /// Relative L2 error (fraction) of the mesh and its element, without any error in time, where it is known.
+    /// Relative L2 error (fraction) of the mesh and its element, without any error in time, if known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mesh_error: Option<f64>,
     /// CPU time of the steps over that of the case's run to which costs are compared.
@@ -278,7 +278,7 @@ impl Row {
         label(&self.integrator, &self.options)
     }
 
-    /// The method, and the law and element where they tell runs apart.
+    /// The method, with the law and the element if they distinguish runs.
     #[must_use]
     pub fn label(&self) -> String {
         match &self.material {
@@ -297,13 +297,13 @@ impl Row {
         }
     }
 
-    /// The largest error (fraction) that the run may have by what the reference can tell.
+    /// The largest error (fraction) that the run may have, within the reference's accuracy.
     #[must_use]
     pub fn error_at_most(&self) -> Option<f64> {
         self.error_is_below.or(self.error)
     }
 
-    /// The error, where it means something: of a run that finished bounded with nothing saturated.
+    /// The error, if it is meaningful: of a run that finished bounded with nothing saturated.
     #[must_use]
     pub fn sound_error(&self) -> Option<f64> {
         match self.verdict() {
@@ -344,7 +344,7 @@ impl Row {
     }
 }
 
-/// `Some` where the value is finite, for the fields that JSON must be able to hold.
+/// `Some` if the value is finite, for fields that JSON must represent.
 #[must_use]
 pub fn finite(value: f64) -> Option<f64> {
     value.is_finite().then_some(value)

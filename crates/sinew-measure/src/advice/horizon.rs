@@ -76,7 +76,7 @@ fn longest_part(whole: Span, seconds: f64, cost: f64) -> Result<Span, AdviceErro
     })
 }
 
-/// Tells what a reference costs from its first steps.
+/// Estimate of a reference's cost from its first steps.
 struct ReferenceCost<'a> {
     simulation: &'a Simulation,
     spectrum: Option<Spectrum>,

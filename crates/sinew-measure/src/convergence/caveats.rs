@@ -184,7 +184,7 @@ pub(super) fn of_scene(simulation: &Simulation, levels: usize) -> Vec<Caveat> {
     caveats
 }
 
-/// The size of each place that the scene chose by where it lies: an area (m^2), or a volume (m^3).
+/// The size of each part that the scene chose by position: an area (m^2), or a volume (m^3).
 pub(super) fn hits(simulation: &Simulation) -> Vec<(String, f64, bool)> {
     let parts = simulation.model().body();
     let parts = parts.into_iter().flat_map(|body| &body.selected);

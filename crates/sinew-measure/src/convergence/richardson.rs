@@ -19,13 +19,13 @@ const SAME: f64 = 1e-6;
 pub struct Estimate {
     /// The differences between neighbouring meshes, the scene's first, over the size of the quantity (fraction).
     pub differences: Vec<f64>,
-    /// The order of the last two differences; none for two meshes, and where no difference is above 1e-6.
+    /// The order of the last two differences; `None` for two meshes, or if no difference is above 1e-6.
     pub observed_order: Option<f64>,
     /// The order that the errors are taken from: the observed one, at most that of smooth solutions, or else that.
     pub order: f64,
-    /// The error on the scene's mesh (fraction); none where differences do not fall.
+    /// The error on the scene's mesh (fraction); `None` if differences do not fall.
     pub error: Option<f64>,
-    /// The error on the finest mesh (fraction); none where differences do not fall.
+    /// The error on the finest mesh (fraction); `None` if differences do not fall.
     pub error_of_finest: Option<f64>,
 }
 

@@ -5,7 +5,7 @@ use sinew_core::{State, System};
 
 use super::peak::peak_between;
 
-/// A reference solution at some instants, with what the verdicts need of the whole run.
+/// A reference solution at some instants, with the data of the whole run that verdicts need.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Track {
     /// Instants (s).

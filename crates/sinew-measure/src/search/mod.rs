@@ -35,7 +35,7 @@ const MOST_PILOTS: usize = 16;
 /// Most runs that are made again for one goal.
 const MOST_AGAIN: usize = 4;
 
-/// A search over candidates; what it has measured for one goal serves the next.
+/// A search over candidates; measurements for one goal are reused for the next.
 #[derive(Debug)]
 pub struct Search<P> {
     pilots: P,
@@ -149,8 +149,8 @@ impl<P: Pilots> Search<P> {
         })
     }
 
-    /// Makes the cheapest runs for a goal again in single precision, where that may serve: kernels then take half
-    /// the memory, and errors are measured as ever.
+    /// Repeats the cheapest runs for a goal in single precision, if its rounding error may be accepted: kernels then
+    /// take half the memory, and errors are measured as usual.
     pub fn try_single_precision(&mut self, goal: Goal) {
         // Errors of rounding add to the method's own.
         if goal.error < 2.0 * LEAST_F32_ROUNDING {
@@ -315,7 +315,7 @@ impl<P: Pilots> Search<P> {
     }
 }
 
-/// A method in single precision; `None` if no machine runs it, or where its options say what does.
+/// A method in single precision; `None` if no machine runs it, or if its options name one.
 fn in_single_precision(method: &MethodChoice) -> Option<MethodChoice> {
     let entry = sinew_integrators::entry(&method.integrator)?;
     let chosen = ["precision", "machine"];
