@@ -41,7 +41,7 @@ pub const EDGES: Element = Element::FbarEdge {
     patch: None,
 };
 
-/// A body that stands on its bottom, which is held.
+/// A body on its fixed bottom.
 pub fn standing(law: Law, element: Element) -> Problem {
     Problem {
         fixed: vec![held("bottom", [true; 3])],
@@ -130,7 +130,7 @@ impl Specimen {
         Ok(self.track(&mut integrator, dt, steps, instants)?.0)
     }
 
-    /// A vector at each free node by its place (m); components that are held are 0.
+    /// A vector at each free node by its place (m); fixed components are 0.
     pub fn field(&self, of: impl Fn([f64; 3]) -> [f64; 3]) -> Vec<f64> {
         let points = &self.model.mesh().points;
         let nodes = self.model.nodes().iter();

@@ -14,7 +14,7 @@ pub enum MarkVerdict {
 }
 
 impl MarkVerdict {
-    /// The verdict for a condition that holds or does not.
+    /// The verdict for a condition: pass if `holds`.
     #[must_use]
     pub fn of(holds: bool) -> Self {
         match holds {

@@ -27,7 +27,7 @@ pub(super) const SUBJECT: Subject = Subject {
 /// Force over 3 E I/L^2.
 const FORCE: f64 = 0.65 * 8.0 / 7.0;
 
-/// Law, rise of the tip and its way along the beam, both over the length, where they are known.
+/// Law, rise of the tip and its displacement along the beam, both over the length, if known.
 const TIPS: &[(&str, Option<[f64; 2]>)] = &[
     ("corotational", Some([0.347_27, -0.074_70])),
     ("neo-hookean", Some([0.347_46, f64::NAN])),

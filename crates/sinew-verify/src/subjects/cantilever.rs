@@ -202,7 +202,7 @@ const OF_TET10: &[(usize, Figures)] = &[
     (4, &[(0.3, 0.992), (0.499, 0.969)]),
 ];
 
-/// Deflection of plain tetrahedra to two digits, beside the prototype's.
+/// Deflection of plain tetrahedra to two digits, with the prototype's.
 const TWO_DIGITS: &[(BeamMesh, Figures)] = &[
     (BeamMesh::Kuhn(2), &[(0.0, 0.55)]),
     (BeamMesh::Kuhn(4), &[(0.0, 0.82)]),

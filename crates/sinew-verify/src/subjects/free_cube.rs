@@ -278,7 +278,7 @@ fn against_rigid_motions(mesh: &TetMesh) -> Vec<Fixed> {
     ]
 }
 
-/// The smallest eigenvalue of K beside that of plain tetrahedra with lambda = 0.
+/// The smallest eigenvalue of K relative to that of plain tetrahedra with lambda = 0.
 fn coercivity(mesh: &TetMesh, element: Element) -> Result<f64, LabError> {
     let nu = 0.45;
     let build = |youngs_modulus, nu, element| {

@@ -102,7 +102,7 @@ fn after_stroke(
     Ok((cut.body().pieces().count == 2, uncut))
 }
 
-/// Counts what strokes leave wrong.
+/// Counts of defects of strokes.
 #[derive(Default)]
 struct Left {
     not_two: f64,
@@ -132,8 +132,8 @@ fn state_of(
     Ok(state)
 }
 
-/// 20 sheets through a strip that is stretched by 0 to 30 % and held so, each with three laws: strokes that leave other than two pieces, and area told as
-/// uncut.
+/// 20 sheets through a strip under a constant stretch of 0 to 30 %, each with three laws: strokes that leave other
+/// than two pieces, and area reported as uncut.
 pub(super) fn under_tension() -> Result<Vec<f64>, LabError> {
     let size = [0.08, 0.04, 0.01];
     let mut left = Left::default();

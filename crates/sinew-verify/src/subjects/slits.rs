@@ -1,4 +1,4 @@
-//! Bodies that are cut, against closed forms of what they are then.
+//! Cut bodies, compared with closed forms of slit bodies.
 
 use std::sync::Arc;
 
@@ -49,7 +49,7 @@ fn checks() -> Vec<Check> {
     ]
 }
 
-/// Nodes at which something holds.
+/// Nodes for which `holds` is true.
 fn nodes(mesh: &TetMesh, holds: impl Fn([f64; 3]) -> bool) -> On {
     let places = (0..).zip(&mesh.points);
     On::Nodes(
