@@ -9,8 +9,8 @@ use sinew_scene::output::say;
 use crate::failure::Failure;
 use crate::repository::root;
 
-/// Commands that take too long, or need what not every computer has, with the reason. With `--help` behind it, which reads
-/// all options before it and then ends, each still fails where an option is gone.
+/// Commands that take too long, or need programs that not every computer has, with the reason. With `--help` behind
+/// it, which reads all options before it and then ends, each still fails if an option is gone.
 const NOT_RUN: [(&str, &str); 16] = [
     (
         "cargo run --release -p sinew -- live scenes/ready/press.toml",

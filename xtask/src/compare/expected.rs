@@ -18,7 +18,7 @@ pub(super) enum Difference {
     Count { expected: usize, read: usize },
 }
 
-/// The lines that `xtask/python/read_meshes.py` prints where it reads everything as it was written.
+/// The lines that `xtask/python/read_meshes.py` prints if it reads everything as it was written.
 pub(super) fn of(mesh: &Mesh, overlapping: &Mesh) -> String {
     let mut lines = String::new();
     for (file, ..) in MSH {

@@ -29,7 +29,7 @@ impl fmt::Display for Needs {
     }
 }
 
-/// Reads what a program for this target needs from its symbols.
+/// Reads the needs of a program for this target from its symbols.
 ///
 /// # Errors
 /// [`Failure::Chore`] if it cannot be read.

@@ -17,7 +17,7 @@ const FILES: [&str; 5] = ["license", "licence", "copying", "copyright", "notice"
 /// Their file in the archive.
 pub(super) const NAME: &str = "THIRD-PARTY-LICENSES.txt";
 
-/// The C library, where it is part of the command.
+/// The C library, if it is part of the command.
 const LIBC: &str = "the GNU C library, linked statically: LGPL-2.1-or-later, https://www.gnu.org/software/libc; the sources of sinew build the command with any \
                     other version of it\n";
 

@@ -85,7 +85,7 @@ impl Served {
         self.connect(&format!("http://{}", self.host()))
     }
 
-    /// Memory (MB) that it holds.
+    /// Memory (MB) that it uses.
     pub(super) fn memory(&self) -> f64 {
         let status = std::fs::read_to_string(format!("/proc/{}/status", self.child.id()));
         let status = status.unwrap_or_default();

@@ -1,4 +1,4 @@
-//! The code of a Rust file as tokens, without what is compiled for tests only.
+//! The code of a Rust file as tokens, without code for tests only.
 
 use proc_macro2::{Delimiter, Group, Spacing, TokenStream, TokenTree};
 
@@ -146,7 +146,7 @@ pub(super) fn path(tokens: &[TokenTree], mut at: usize) -> (Vec<String>, usize) 
 /// One name that a `use` brings in.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Import {
-    /// The path of what is imported.
+    /// The imported path.
     pub(super) path: Vec<String>,
     /// The name that it gets; `None` for all names in `path` (`*`).
     pub(super) name: Option<String>,

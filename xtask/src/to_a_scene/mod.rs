@@ -1,5 +1,5 @@
-//! `cargo xtask to-a-scene`: the scripts and commands of docs/to-a-scene.md, and those that errors name for files of other programs,
-//! run as they are written there.
+//! `cargo xtask to-a-scene`: runs the scripts and commands of docs/to-a-scene.md, and those that errors name for
+//! files of other programs, as written there.
 
 mod advice;
 mod page;
