@@ -87,8 +87,8 @@ pub enum PlanError {
     Advice(#[from] AdviceError),
 }
 
-/// The plan of a scene as one JSON object, or the answer to a question with the plan in it: the output of `sinew plan
-/// --json`.
+/// The plan of a scene as one JSON object, or the answer to a question with the plan in it, as printed by
+/// `sinew plan --json`.
 ///
 /// # Errors
 /// [`PlanError`].

@@ -68,8 +68,7 @@ impl Recording {
     }
 
     /// Replays the session of each pane into its folder, which contains its log from then on. If this fails, the log
-    /// stays
-    /// next to its folder.
+    /// stays next to its folder.
     pub(super) fn write(
         self,
         session: sinew_live::Ended,
