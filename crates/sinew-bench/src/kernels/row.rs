@@ -34,8 +34,7 @@ pub struct KernelRow {
     /// Bytes that a step moves: matrices or templates, and vectors.
     pub bytes_per_step: f64,
     /// Floating-point operations of a step: two for each entry of the matrix, independent of its storage, and those
-    /// of
-    /// the cells' own maps.
+    /// of the cells' own maps.
     pub operations_per_step: f64,
     /// Operations a second, in thousands of millions.
     pub gflops: f64,
