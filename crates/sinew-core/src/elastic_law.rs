@@ -125,8 +125,7 @@ pub trait ElasticLaw: Send + Sync {
     /// displacement alone, symmetric and positive semidefinite. About a sweep.
     ///
     /// Unless a law has another, V is the factor times the tangent at constant rotations, and supports are at rest. A
-    /// law of bodies that turn
-    /// needs one that does not act on a rigid motion.
+    /// law of bodies that turn needs one that does not act on a rigid motion.
     ///
     /// # Errors
     /// As [`ElasticLaw::elastic_force`].

@@ -68,8 +68,7 @@ pub trait System: Send + Sync {
     }
 
     /// True if [`System::accept`] reads the state. If it does not, machines that store u and v in a format of their
-    /// own
-    /// need not write them out after each step.
+    /// own need not write them out after each step.
     fn looks_at_steps(&self) -> bool {
         true
     }
@@ -184,8 +183,7 @@ pub trait ForceLaw: Send + Sync {
 
     /// Bounds of the fastest motions about a state, or about rest, from which stable steps follow;
     /// `None` if they are unknown. About rest to some digits; about a state, which is asked for during runs, an
-    /// estimate to a few
-    /// per cent will do.
+    /// estimate to a few per cent will do.
     fn spectrum(&self, _about: Option<&State>) -> Option<Spectrum> {
         None
     }
