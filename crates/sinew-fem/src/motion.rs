@@ -239,8 +239,7 @@ impl Course {
     }
 
     /// Straight lines between positions relative to rest (m) at given times (s), constant before the first and after
-    /// the
-    /// last: a course for each axis.
+    /// the last: a course for each axis.
     #[must_use]
     pub fn along(times: &[f64], positions: &[[f64; 3]]) -> Vec<Self> {
         let along = |axis: usize| Self {

@@ -55,8 +55,7 @@ pub(crate) struct ModelParts<'a> {
 
 impl InPlace {
     /// For a problem on a mesh, uncut and as cuts without removals left it, whose tetrahedra have these densities
-    /// (kg/m^3); `None` if some
-    /// load cannot follow.
+    /// (kg/m^3); `None` if some load cannot follow.
     pub(crate) fn new(
         problem: &Problem,
         uncut: &TetMesh,

@@ -11,9 +11,8 @@ use crate::tetra;
 const ROUNDING: f64 = 1e-12;
 
 impl Model {
-    /// Bounds by single tetrahedra, which stay valid after any cut along their faces; `None` if a region is
-    /// hyperelastic,
-    /// so that its stiffness changes, or averages strain over tetrahedra that a cut separates. Checks each tetrahedron.
+    /// Bounds by single tetrahedra, which stay valid after any cut along their faces. Checks each tetrahedron. `None` if a
+    /// region is hyperelastic, so that its stiffness changes, or averages strain over tetrahedra that a cut separates.
     #[must_use]
     pub fn element_bounds(&self) -> Option<ElementBounds> {
         if self.large.is_some() || !self.body.smoothing.is_empty() {

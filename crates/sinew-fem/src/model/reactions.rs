@@ -29,11 +29,9 @@ impl Model {
     /// At each fixed or moved component p it is `M_p (a_p + alpha v_p) + (K u + D v)_p - F_p(t)`: the force
     /// of its prescribed motion, the pull of all other components, less the model's own loads on p, so that all
     /// reactions together are minus all loads if nothing moves. A change of speed at an instant, as at a row of a
-    /// table, takes an
-    /// impulse, which is a force over some time only: [`LoadTime::around`] names the time, two steps of a run or the distances to the rows
-    /// before and after, over which `a_p` is then a mean. Loads that were given to the system in other ways are not
-    /// included; add those of [`NodalForces::dropped`](super::NodalForces) to the result.
-    ///
+    /// table, takes an impulse, which is a force over some time only: [`LoadTime::around`] names the time, two steps of a
+    /// run or the distances to the rows before and after, over which `a_p` is then a mean. Loads that were given to the
+    /// system in other ways are not included; add those of [`NodalForces::dropped`](super::NodalForces) to the result.
     /// The first call sums up the rows of the fixed nodes; later ones allocate nothing but a few numbers for each
     /// prescribed motion beyond the eighth, and with hyperelastic regions one vector over the nodes.
     ///
