@@ -20,10 +20,9 @@ const TISSUE: f64 = 2.0;
 
 /// The loop that renders forces at the rate of a device, from the data that a slower simulation publishes.
 ///
-/// It never waits and reads no clock: each tick takes the position of the device and returns the force that is
-/// rendered
-/// until the next. Between two steps the tool is where the tissue of the last step, as a spring, and the coupling are
-/// in equilibrium. Changes by a new step are blended in linearly, over the time of one step.
+/// It never waits and reads no clock: each tick takes the position of the device and returns the force until the next.
+/// Between two steps the tool is where the tissue of the last step, as a spring, and the coupling are in equilibrium.
+/// Changes by a new step are blended in linearly, over the time of one step.
 ///
 /// The device never receives more energy than it has supplied: the coupling is stretched only as far as that energy
 /// allows, whatever the simulation publishes and however late. This is the passive set-position modulation of Lee and

@@ -80,8 +80,7 @@ impl SoftwareDevice {
     }
 
     /// The energy (J) that the handle has taken out of the source of the forces, exact, since it is the work of
-    /// constant
-    /// forces over displacements: negative if it has supplied energy.
+    /// constant forces over displacements: negative if it has supplied energy.
     #[must_use]
     pub fn energy_taken_out(&self) -> f64 {
         self.work[0]
