@@ -32,9 +32,9 @@ const LOWERED: f64 = 1e-4;
 /// blocks B alone, as it does in other methods. As `U' lambda = R'S d`, d being the change of their velocities by it,
 /// c is the root of `f(c) = R'S d(c) - G c`: a few numbers for each part. f is linear but for contacts that begin,
 /// end, stick or slip, and Newton's method finds c in a few rounds, with slopes by differences (Qi and Sun, Math.
-/// Program. 58, 1993). If none of its steps
-/// helps, `c + f` is followed: an alternating minimisation over cells and rigid motions, which converges where contact is the least of a convex function. So
-/// all laws of contact hold as in one block for each cell.
+/// Program. 58, 1993). If none of its steps helps, `c + f` is followed: an alternating minimisation over cells and
+/// rigid motions, which converges if contact is the minimum of a convex function. So all laws of contact hold as in
+/// one block for each cell.
 #[derive(Debug, Default)]
 pub(super) struct CoupledContact {
     /// u and v of contact's cells without the answer, three components each.

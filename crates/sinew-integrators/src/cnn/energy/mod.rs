@@ -47,9 +47,9 @@ pub use self::kind::Kind;
 /// # Contact
 ///
 /// With tools and [`Kind::ImplicitEuler`] each sweep finds the minimum of a bound of the potential by the cells' own
-/// blocks, in which contact is exact
-/// cell by cell, friction included, and `E+ <= E + P'y + W` holds with the work W of the tools (the proof is with the sweeps, `touched.rs`). The trapezoidal rule
-/// would let nodes bounce off a tool that they follow, and is refused.
+/// blocks, in which contact is exact cell by cell, friction included, and `E+ <= E + P'y + W` holds with the work W of
+/// the tools (the proof is with the sweeps, `touched.rs`). The trapezoidal rule would let nodes bounce off a tool that
+/// they follow, and is refused.
 ///
 /// All damping enters the potential: the mass-proportional part, dashpots, and stiffness damping at the point half
 /// way through the step by the velocity at its start, in the place of a function of the displacement. It has no
@@ -61,9 +61,8 @@ pub use self::kind::Kind;
 /// rotations, so that rigid motion needs no sweeps ([`sinew_cnn::RigidMotions`]).
 ///
 /// Sweeps begin with no other displacement, an error of `dt v`, and each leaves a share of it that falls as `dt^2`,
-/// or as `dt` with stiffness damping or
-/// dashpots, which weigh `dt` times more. So the order is that of the formula from two sweeps on (from one for implicit Euler), with
-/// such damping from three (two).
+/// or as `dt` with stiffness damping or dashpots, which weigh `dt` times more. So the order is that of the formula
+/// from two sweeps on (from one for implicit Euler), with such damping from three (two).
 #[derive(Clone, Copy, Debug)]
 pub struct CnnEnergy {
     kind: Kind,
