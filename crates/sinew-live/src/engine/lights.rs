@@ -31,8 +31,7 @@ impl Light {
 }
 
 /// Energy beyond the supplied energy, over the largest energy so far, that counts as rounding and as the difference
-/// between
-/// energies half a step apart.
+/// between energies half a step apart.
 const SLACK: f64 = 0.05;
 
 /// Data from which the light for a bounded motion is derived.

@@ -367,8 +367,7 @@ impl Pane {
     }
 
     /// Steps up to a simulated time (s), but not beyond, as long as it `may` continue; returns an error message if a
-    /// command
-    /// was refused.
+    /// command was refused.
     pub(crate) fn follow(
         &mut self,
         until: f64,

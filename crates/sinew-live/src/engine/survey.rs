@@ -55,8 +55,7 @@ fn set_up(
 }
 
 /// Finds the stable step of every integrator, or its refusal of the scene. Those that factorise are not set up,
-/// unless there are tools,
-/// which they refuse before they factorise.
+/// unless there are tools, which they refuse before they factorise.
 fn survey(scene: &Simulation, system: &dyn System) -> Vec<IntegratorFacts> {
     let has_tools = system.needs_contact();
     let entries = sinew_integrators::entries().into_iter();
