@@ -136,8 +136,7 @@ impl<T: Precision> Touched<T> {
 
     /// Lists the indices of the cells whose paths in the step may meet a box (m), increasing. No component of a
     /// displacement is larger than `largest` (m) at either end of a path: if a whole block stays away from the box
-    /// then, its paths
-    /// are not checked.
+    /// then, its paths are not checked.
     pub(crate) fn list_near(
         &self,
         set: InstructionSet,
