@@ -173,8 +173,7 @@ pub struct CellNodeData {
     /// Values per node of a cell.
     pub components: usize,
     /// For each block of [`Mesh::cells`]: `components` values for each node (VTK order) of each cell in turn; NaN if
-    /// the
-    /// file gives none.
+    /// the file gives none.
     pub blocks: Vec<Vec<f64>>,
 }
 

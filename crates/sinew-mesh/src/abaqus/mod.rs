@@ -1,8 +1,7 @@
 //! Input of Abaqus, `.inp`: the mesh of one part, with its sets and surfaces as groups.
 //!
 //! Lines are read first (`lines`), then keywords (`keywords`) into a part with the file's labels (`part`); then
-//! labels
-//! become indices, and sets groups (`assemble`, `sets`).
+//! labels become indices, and sets groups (`assemble`, `sets`).
 //!
 //! | case | what the reader does |
 //! |---|---|

@@ -1,9 +1,8 @@
 //! gmsh's .msh format: reading versions 1 and 2.0 to 4.1, writing 2.2 and 4.1, as text and as bytes.
 //!
 //! The reader walks over the bytes once. A cursor knows offsets, [`source`] turns bytes into numbers, `section` finds
-//! sections, and one module for each section decodes its rows per format version into raw tables that still contain
-//! the
-//! file's tags. [`assemble`] then turns tags into indices, when all sections are known, in whatever order they came.
+//! sections, and one module for each section decodes its rows per format version into raw tables with the file's
+//! tags. [`assemble`] then turns tags into indices, when all sections are known, in whatever order they came.
 //!
 //! The reader's answers to the questions that the format leaves open:
 //!

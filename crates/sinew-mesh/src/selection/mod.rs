@@ -13,8 +13,8 @@ pub use error::SelectionError;
 use std::fmt;
 
 /// Conditions on the nodes of a mesh, all of which must be met. A triangle or tetrahedron is selected if all its
-/// nodes are. Conditions on
-/// data of tetrahedra are met by tetrahedra themselves, by their triangles of the boundary and by their nodes.
+/// nodes are. Conditions on data of tetrahedra are met by tetrahedra themselves, by their triangles of the boundary
+/// and by their nodes.
 ///
 /// Bounds include nodes on them, up to rounding: they are moved outward by 1e-9 of the longest edge of the mesh's
 /// bounding box.

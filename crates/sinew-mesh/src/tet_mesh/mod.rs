@@ -201,8 +201,7 @@ impl TetMesh {
 
     /// The tetrahedron (0-based) that contains a point, and the point's barycentric coordinates in it; if none
     /// contains it, the one in whose coordinates it is least outside, with a coordinate below 0. Of several with
-    /// equal coordinates, the
-    /// first.
+    /// equal coordinates, the first.
     ///
     /// Checks every tetrahedron. `None` in a mesh without tetrahedra, and for a point that is not finite.
     #[must_use]
