@@ -5,8 +5,7 @@ use std::ops::Range;
 use toml::de::{DeTable, DeValue};
 
 /// The keys to the smallest key or value of a TOML text that contains a byte, such as `region[1].density`; tables of
-/// a list are
-/// counted from 1. `None` for a byte that belongs to none, and a text that is not TOML.
+/// a list are counted from 1. `None` for a byte that belongs to none, and a text that is not TOML.
 pub(super) fn key_path(text: &str, byte: usize) -> Option<String> {
     let document = DeTable::parse(text).ok()?;
     let mut smallest = None;

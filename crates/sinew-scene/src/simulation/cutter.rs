@@ -312,8 +312,7 @@ impl Cutter {
     }
 
     /// Continues from a result of [`Cutter::save`] of the same scene, whose uncut body is `uncut`; returns the body
-    /// to
-    /// continue with, if it was cut.
+    /// to continue with, if it was cut.
     ///
     /// # Errors
     /// [`CuttingError`] for the cuts of another body.

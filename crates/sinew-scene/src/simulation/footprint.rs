@@ -57,8 +57,7 @@ impl Footprint {
 }
 
 /// For each node, true if it is fixed or moved in all directions. Groups that the mesh does not have are skipped:
-/// they
-/// are reported elsewhere.
+/// they are reported elsewhere.
 fn held(body: &Body, mesh: &TetMesh) -> Vec<bool> {
     let mut held = vec![[false; 3]; mesh.points.len()];
     let fixed = body.problem.fixed.iter();

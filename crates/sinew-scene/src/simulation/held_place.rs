@@ -13,8 +13,7 @@ pub struct HeldPlace {
     /// The part of the body.
     pub on: On,
     /// Its nodes (0-based) with the components that it fixes or moves and no part before it does, so that the forces
-    /// of
-    /// all parts add up to that of the whole.
+    /// of all parts add up to that of the whole.
     pub nodes: Vec<(u32, [bool; 3])>,
     /// Mean (m) of the places at rest of its nodes before all cuts.
     pub centre: [f64; 3],

@@ -36,8 +36,7 @@ pub enum ReactionError {
 
 impl SceneBody {
     /// The parts of the body that are fixed or moved, in the order of the scene; none for an oscillator. They are
-    /// found
-    /// at the first request.
+    /// found at the first request.
     ///
     /// # Errors
     /// [`ReactionError::Field`] for a part that the body does not have, which building a scene rules out.

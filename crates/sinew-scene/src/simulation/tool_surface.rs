@@ -46,8 +46,7 @@ fn all_faces(mesh: &TetMesh) -> Vec<[u32; 3]> {
 }
 
 /// Assigns to small tools the triangles of the surface whose corners they touch (`nodes_of` each) or are fixed;
-/// returns
-/// all triangles that any of them touches, whose corners are indices into `touched`.
+/// returns all triangles that any of them touches, whose corners are indices into `touched`.
 pub(super) fn under_tips(
     tools: &mut [Tool],
     are_fine: &[bool],
