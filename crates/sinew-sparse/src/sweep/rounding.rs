@@ -7,8 +7,7 @@ use crate::simd::Real;
 const MOST_ENTRIES: usize = 9;
 
 /// Precision (relative) from which each entry is rounded separately: the rounding error of a sum of them is then far
-/// below
-/// any error that is measured.
+/// below any error that is measured.
 const FINE: f64 = 1e-12;
 
 /// Margin for a diagonal entry, which grows by the rounding errors of all others of its row.
