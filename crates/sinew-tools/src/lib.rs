@@ -2,8 +2,7 @@
 //!
 //! [`Tools`] are the contact of a step of a body: each [`Tool`] presses on the cells that it touches, with friction,
 //! may grasp them, and may be a body of its own ([`ToolBody`]) on a coupling; the faces of cuts ([`CutFace`]) push
-//! each
-//! other. [`ToolReport`] reports the results of a step.
+//! each other. [`ToolReport`] reports the results of a step.
 //!
 //! A [`Shape`] is a union of [`Convex`] shapes, each with a [`Pose`] in the tool's own frame. A [`Motion`] says where
 //! that frame is at any time, unless a [`Steering`] does while the simulation runs. A [`Stroke`] is the motion of one

@@ -77,8 +77,8 @@ pub(crate) fn vector(matrix: &Matrix) -> Vector {
     imaginary.map(|value| value / size * angle)
 }
 
-/// The spin (rad/s) of a body whose rotation vector changes at a rate (rad/s): `I + (1 - cos a)/a^2 W + (a - sin
-/// a)/a^3 W^2` times the rate.
+/// The spin (rad/s) of a body whose rotation vector changes at a rate (rad/s):
+/// `I + (1 - cos a)/a^2 W + (a - sin a)/a^3 W^2` times the rate.
 pub(crate) fn spin(vector: Vector, rate: Vector) -> Vector {
     let angle = length(vector);
     let second = sine_over_angle(angle / 2.0).powi(2) / 2.0;

@@ -12,8 +12,8 @@
 //! Where the step before was of another length, impulses are those of the time between the two velocities, half of either step, as on the tissue, and `d_before` is `d - dt_before (v- - w-)`. The balance
 //! is then off by `k D (dt - dt_before)(v+ - v-)/4`, of order 2, once.
 //!
-//! With tissue whose velocities are at the ends of steps it is implicit Euler, `m (v+ - v) = -dt k d_after - dt b (v+
-//! - w+) + dt f`, of which `P = m + dt b + dt^2 k`:
+//! With tissue whose velocities are at the ends of steps it is implicit Euler,
+//! `m (v+ - v) = -dt k d_after - dt b (v+ - w+) + dt f`, of which `P = m + dt b + dt^2 k`:
 //! there contact works at `v+`, and `(m v+^2 + k d_after^2)/2` rises by no more than that and the work of the path.
 //!
 //! Rotation goes likewise in the body's own axes, `J (W+ - W-) + dt W x J W = dt torque` with W the mean of both, or the new one; the gyroscopic term has no power.

@@ -44,8 +44,7 @@ impl Met {
         (self.count, self.residual) = (0, 0.0);
     }
 
-    /// Finds new contacts of a node along its path (m) to its pushed position, with the tools whose bits are set in
-    /// `tools`;
+    /// Finds new contacts of a node along its path (m) to its pushed position, with the tools of the bits in `tools`;
     /// returns true if there are any. The gap is taken at `end`, its contact-free position after the step. `swing` is
     /// the displacement (m) of the node along which friction works, `dt` (s) the length of the step.
     pub(super) fn touches(
