@@ -292,8 +292,7 @@ fn refused(scene: Scene, rate: usize) -> Check {
 }
 
 /// A method with its options, the step (ms), its error, and, if known, its Newton iterations a step by a factor, as
-/// in the prototype: with solutions by conjugate
-/// gradients, which are as near as an iteration needs, they are more.
+/// in the prototype: with solutions by conjugate gradients, which are as near as an iteration needs, they are more.
 type Row = (
     Scene,
     &'static str,
