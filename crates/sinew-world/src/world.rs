@@ -30,9 +30,8 @@ pub use saved::Saved;
 /// A scene in motion: the only thing that takes its steps.
 ///
 /// It owns the scene, which is constant, and the body, state, integrator, tools and inputs, which change. A
-/// [`Recorder`](crate::Recorder)
-/// observes the motion of [`World::advance`]; [`Command`](crate::Command)s between steps steer tools, scale loads, cut, and switch
-/// methods.
+/// [`Recorder`](crate::Recorder) observes the motion of [`World::advance`]; [`Command`](crate::Command)s between
+/// steps steer tools, scale loads, cut, and switch methods.
 ///
 /// A world of [`World::new`] takes commands, and its [`Log`] repeats it bit for bit. Without commands it takes the
 /// steps of [`World::following`], with the same bits, unless a tool is smaller than the surface triangles somewhere off

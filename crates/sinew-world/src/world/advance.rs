@@ -127,8 +127,7 @@ impl World {
     ///
     /// # Errors
     /// [`AdvanceError`] if a step or the recorder fails, and for a motion that failed already, also for no steps. A
-    /// step
-    /// that fails is counted as in [`World::step`].
+    /// step that fails is counted as in [`World::step`].
     pub fn advance_shown<R: Recorder + ?Sized>(
         &mut self,
         steps: usize,
