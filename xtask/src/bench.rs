@@ -250,8 +250,7 @@ struct Folder {
 
 impl Folder {
     /// Checks, before anything is measured, that the folder is new or empty, or contains an earlier result of the
-    /// same kind
-    /// of bench, and that these files may be written. Changes nothing.
+    /// same kind of bench, and that these files may be written. Changes nothing.
     fn check(&self, names: &[String]) -> Result<(), OutputError> {
         self.files.check(names)?;
         OwnedFolder::check(self.files.path(), self.kind, &self.inputs)?;

@@ -13,8 +13,7 @@ use crate::repository::root;
 use crate::{compare, memory, python_test, rules, to_a_scene};
 
 /// Seed of the random cases of properties, so that a failure is due to a change and not to new cases. `cargo test`
-/// alone
-/// draws new cases each time.
+/// alone draws new cases each time.
 const SEED_OF_CASES: &str = "1";
 
 #[derive(clap::Args)]

@@ -32,8 +32,7 @@ const SCENE: &str = "[mesh]\ncube = { cells = 6, edge = 0.1 }\n[[region]]\ndensi
                      point = [0.05, 0.05, 0.1]\n[output]\ncheckpoint = { every = 0.05 }\nfields = { frames = 400 }\n";
 
 /// Stops the file system of a folder as a loss of power does: data not yet on the disk are lost (`EXT4_IOC_SHUTDOWN`
-/// without flushing the log,
-/// include/uapi/linux/ext4.h).
+/// without flushing the log, include/uapi/linux/ext4.h).
 const SHUTDOWN: &str = "open(my $f, '<', $ARGV[0]) or die $!; my $flags = pack('L', 2); ioctl($f, 0x8004587d, $flags) or die $!";
 
 /// A file system of its own, in a file.
