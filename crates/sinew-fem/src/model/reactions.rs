@@ -32,6 +32,7 @@ impl Model {
     /// table, takes an impulse, which is a force over some time only: [`LoadTime::around`] names the time, two steps of a
     /// run or the distances to the rows before and after, over which `a_p` is then a mean. Loads that were given to the
     /// system in other ways are not included; add those of [`NodalForces::dropped`](super::NodalForces) to the result.
+    ///
     /// The first call sums up the rows of the fixed nodes; later ones allocate nothing but a few numbers for each
     /// prescribed motion beyond the eighth, and with hyperelastic regions one vector over the nodes.
     ///
