@@ -10,7 +10,7 @@ use sinew_core::{
 use crate::Machine;
 use crate::program::{Loads, Program, Register, Sweep};
 
-/// Sweeps after which the estimate is taken as it is.
+/// Sweeps after which the estimate is accepted.
 const MOST_SWEEPS: usize = 10_000;
 /// Sweeps between two checks of the estimate.
 const SWEEPS_A_LOOK: usize = 20;

@@ -154,8 +154,8 @@ impl Stabiliser {
         }
     }
 
-    /// The same with P = M' on the rigid motions of these parts, as far as W resists none of them. P stays above A: with the blocks by
-    /// [`Deflation`], beside an iteration by [`Projection`].
+    /// The same with P = M' on the rigid motions of these parts that W does not resist. P stays above A: with the
+    /// blocks by [`Deflation`], with an iteration by [`Projection`].
     #[must_use]
     pub fn sparing(mut self, parts: Vec<FreePart>) -> Self {
         if self.majorant.adds_nothing() || self.majorant.mass_suffices() {
