@@ -163,7 +163,7 @@ impl LinearOperators {
 
     /// These matrices, shared, under other loads.
     ///
-    /// The new loads count from the beginning of time: a run that changes to them on its way continues with one-step
+    /// The new loads count from t = 0: a run that changes to them later continues with one-step
     /// methods only. Forces that change during a run are [`Inputs`].
     ///
     /// # Errors

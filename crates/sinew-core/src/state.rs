@@ -63,7 +63,7 @@ pub struct StepCut {
     /// The square (1/s^2) of the fastest wave ([`crate::ElasticLaw::fastest_wave`]) at the time the stable step was
     /// found; 0 if the law gives none.
     pub wave: f64,
-    /// The square (1/s^2) of the fastest wave as it was seen last.
+    /// The square (1/s^2) of the fastest wave at the last check.
     pub seen: f64,
     /// The largest eigenvalue of `M^-1 D` over that of `M^-1 K` (s), D being the damping but for that by mass, as found then.
     pub damping: f64,
@@ -182,7 +182,7 @@ pub struct DampedAt {
 }
 
 impl DampedAt {
-    /// Damping by the velocities at the end of a step, which are the way over its time.
+    /// Damping by the velocities at the end of a step, which are its displacement over its time.
     pub const WAY_OF_STEP: Self = Self::supports(-0.5);
 
     /// Damping of a leapfrog that keeps the acceleration of its last kick, of which it takes this share at the displacement's time.

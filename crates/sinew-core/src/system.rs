@@ -165,8 +165,8 @@ pub trait ForceLaw: Send + Sync {
         0.0
     }
 
-    /// Fingerprint that tells this law from others on the same masses, such as a hash of its parameters: the same in
-    /// every process.
+    /// Fingerprint that distinguishes this law from others on the same masses, such as a hash of its parameters: the
+    /// same in every process.
     fn fingerprint(&self) -> u64 {
         0
     }
