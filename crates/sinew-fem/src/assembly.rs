@@ -36,8 +36,8 @@ pub(crate) struct Assembled {
 
 /// Sums up the matrices of a body, whose tetrahedra are in the regions `region_of`.
 ///
-/// The matrices are by far the largest part of a model: `graph` and all lists of springs but one are gone before they
-/// are allocated.
+/// The matrices are by far the largest part of a model: `graph` and all lists of springs but one are freed before
+/// they are allocated.
 pub(crate) fn assemble(
     mesh: &TetMesh,
     body: &Body,

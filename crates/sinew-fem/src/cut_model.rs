@@ -82,7 +82,7 @@ pub struct CutReport {
     pub removed_mass: f64,
     /// Number of frozen tetrahedra.
     pub frozen_tets: usize,
-    /// Kinetic and elastic energy (J) after the cut less those before; `None` if the model tells none.
+    /// Kinetic and elastic energy (J) after the cut less those before; `None` if the model has none.
     pub energy_gained: Option<Energy>,
 }
 
@@ -241,7 +241,7 @@ impl CutModel {
         Ok(cut_model)
     }
 
-    /// The model of the body as it is.
+    /// The model of the current body.
     #[must_use]
     pub fn model(&self) -> &Model {
         &self.model
@@ -253,7 +253,7 @@ impl CutModel {
         &self.body
     }
 
-    /// The mesh of the body as it is, which the model is on.
+    /// The mesh of the current body and of the model.
     #[must_use]
     pub fn mesh(&self) -> &CutMesh {
         &self.mesh
@@ -272,7 +272,8 @@ impl CutModel {
         self.layouts
     }
 
-    /// Cuts by a sheet in the configuration of the state, which is carried over. The model has another revision only where something changed.
+    /// Cuts by a sheet in the configuration of the state, which is transferred. The model gets a new revision only if
+    /// it changed.
     ///
     /// # Errors
     /// [`CutModelError`]; the body may be half changed then, and is to be discarded.
@@ -342,7 +343,7 @@ impl CutModel {
         self.split(nodes, state, inputs)
     }
 
-    /// Removes the tetrahedra whose centroid, in the configuration of the state, `is_inside` something.
+    /// Removes the tetrahedra for whose centroid, in the configuration of the state, `is_inside` is true.
     ///
     /// # Errors
     /// Same as [`CutModel::stroke`], and [`CutModelError::NothingLeft`].

@@ -264,7 +264,7 @@ pub enum Cause {
         /// The displacement along it (m).
         found: f64,
     },
-    /// A position that jumps where damping sees its velocity.
+    /// A position that jumps although damping acts on its velocity.
     #[error(
         "the position jumps at t = {instant} s, and stiffness damping or dashpots would see an infinite \
          velocity: let it rise over some time"

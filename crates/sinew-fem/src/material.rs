@@ -368,7 +368,7 @@ impl Material {
     }
 }
 
-/// Stiffness (Pa) that fibres add along themselves as soon as they are pulled.
+/// Stiffness (Pa) that fibres in tension add along themselves.
 fn modulus_along(family: &FibreFamily, tissue: &Tissue) -> f64 {
     4.0 * tissue.factor_of_fibres() * family.fibres.modulus_at_rest()
 }

@@ -8,7 +8,7 @@ use crate::tetra;
 use crate::tissue::Direction;
 use crate::{Law, Region};
 
-/// The material of a region at a point, by its moduli as they are stated: instantaneous or long-term ones where stress
+/// The material of a region at a point, with its moduli as stated: instantaneous or long-term ones if stress
 /// relaxes.
 #[derive(Clone, Debug)]
 pub struct Solid {

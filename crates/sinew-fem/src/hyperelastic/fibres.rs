@@ -50,7 +50,7 @@ pub struct FibrePoint<N> {
     stretch: N,
     /// First and second derivative of the energy by X.
     derivatives: [N; 2],
-    /// The second derivative that it has, or would have as soon as it is pulled.
+    /// The second derivative, or that in tension if it is idle.
     second_when_pulled: N,
     /// The second derivative at rest on the side of tension, and 0 in compression.
     viscosity: N,

@@ -36,7 +36,7 @@ pub trait HyperelasticLaw: Copy + Debug + Send + Sync {
     const MEANING: &'static str;
     /// Parameters, each a key of scenes.
     const PARAMETERS: &'static [LawParameter];
-    /// Warning to whoever takes the law in a scene, and advice; `None` for most.
+    /// Warning for scenes with the law, and advice; `None` for most.
     const WEAKNESS: Option<[&'static str; 2]> = None;
     /// True if the law overrides [`Self::dilation`], so that its viscosity takes that measure of volume in place of
     /// `J - 1`.
@@ -240,7 +240,7 @@ pub trait HyperelasticLaw: Copy + Debug + Send + Sync {
             .plus(bulk.stress, self.dilation_gradient(at))
     }
 
-    /// `share` times the local stress and `bulk` (Pa) times d theta/dF, the sum that forces go by.
+    /// `share` times the local stress and `bulk` (Pa) times d theta/dF, the sum used by force loops.
     #[inline(always)]
     fn stress_of<N: Number>(&self, at: &Point<N, Self::Own<N>>, share: N, bulk: N) -> Tensor<N> {
         let local = self.stress(at).scaled(share);

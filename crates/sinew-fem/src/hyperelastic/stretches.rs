@@ -106,7 +106,7 @@ fn axes_of<N: Number>(tensor: Tensor<N>) -> [[N; 3]; 3] {
     turning.axes
 }
 
-/// A symmetric tensor on its way to a diagonal one.
+/// A symmetric tensor during diagonalisation.
 struct Turning<N> {
     diagonal: [N; 3],
     /// Entries of the axes (0, 1), (0, 2) and (1, 2).

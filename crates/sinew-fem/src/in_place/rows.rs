@@ -42,7 +42,7 @@ struct Row {
     order: Vec<u32>,
 }
 
-/// The body that rows are gathered from, as it is after a split.
+/// The body after a split, from which rows are gathered.
 pub(super) struct Source<'a> {
     pub(super) body: &'a CuttableBody,
     pub(super) mesh: &'a TetMesh,
@@ -179,7 +179,7 @@ impl Gathering {
         Ok(())
     }
 
-    /// Takes the blocks of a cell's row that a split leaves as they are.
+    /// Copies the blocks of a cell's row that a split does not change.
     fn keep(&mut self, of: &Source<'_>, cell: u32, touched: &Touched) {
         for (column, block) in of.stiffness.row_blocks(cell as usize) {
             if !touched.is_split(of.cells.nodes[column])

@@ -160,7 +160,7 @@ impl Model {
         self.body.smoothing.mean_strains(&self.mesh, strain, share)
     }
 
-    /// The strain of a tetrahedron as its stress sees it.
+    /// The averaged strain that determines a tetrahedron's stress.
     pub(super) fn strain_among(
         &self,
         means: &MeanStrains,
