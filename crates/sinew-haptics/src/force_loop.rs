@@ -49,7 +49,7 @@ pub struct ForceLoop {
 }
 
 impl ForceLoop {
-    /// A loop for a device, with the tool as it is before the first step.
+    /// A loop for a device, with the tool before the first step.
     ///
     /// # Errors
     /// [`CouplingError`] for a coupling that the device cannot render.

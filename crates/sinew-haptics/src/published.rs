@@ -48,7 +48,7 @@ impl Published {
     }
 }
 
-/// A device as the simulation sees it at the beginning of a step.
+/// The motion of a device, for the simulation at the beginning of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DeviceMotion {
     /// Position (m).
