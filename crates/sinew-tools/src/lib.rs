@@ -4,10 +4,10 @@
 //! may grasp them, and may be a body of its own ([`ToolBody`]) on a coupling; the faces of cuts ([`CutFace`]) push
 //! each other. [`ToolReport`] reports the results of a step.
 //!
-//! A [`Shape`] is a union of [`Convex`] shapes, each with a [`Pose`] in the tool's own frame. A [`Motion`] says where
-//! that frame is at any time, unless a [`Steering`] does while the simulation runs. A [`Stroke`] is the motion of one
-//! part over a step: it finds the first contact of a node however far both move, so that nothing passes through
-//! anything. [`swept_box`] tells which nodes need to be checked.
+//! A [`Shape`] is a union of [`Convex`] shapes, each with a [`Pose`] in the tool's own frame. A [`Motion`] gives the
+//! pose of that frame at any time, unless a [`Steering`] does while the simulation runs. A [`Stroke`] is the motion
+//! of one part over a step: it finds the first contact of a node at any speed of both, so that nothing passes through
+//! anything. [`swept_box`] finds the nodes that need to be checked.
 //!
 //! ```
 //! use sinew_core::Inputs;

@@ -19,7 +19,7 @@ pub enum Motion {
         /// Its velocity (m/s).
         velocity: [f64; 3],
     },
-    /// A tool that goes from pose to pose.
+    /// A tool that moves from pose to pose.
     Table(Table),
     /// A tool that follows another motion until it is steered from outside.
     Steered(Box<Motion>, Steering),

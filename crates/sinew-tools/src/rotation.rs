@@ -39,7 +39,7 @@ pub(crate) fn matrix(vector: Vector) -> Matrix {
 
 /// The rotation vector of a matrix, with an angle of at most pi.
 ///
-/// By way of a quaternion, whose largest component is found first (Shepperd 1978): that keeps all digits at angles near 0 and
+/// It is found from a quaternion, largest component first (Shepperd 1978): that keeps all digits at angles near 0 and
 /// near pi.
 pub(crate) fn vector(matrix: &Matrix) -> Vector {
     let m = matrix;

@@ -81,7 +81,8 @@ impl Steering {
 
     /// The pose at `t` (s); `None` before the first that is given.
     ///
-    /// The end of a step is computed in two ways that differ by rounding; both are the instant for which a pose was given.
+    /// The end of a step is computed by two formulas that differ by rounding; both count as the instant of a given
+    /// pose.
     pub(crate) fn at(&self, t: f64, inputs: &Inputs) -> Option<Pose> {
         let slack = Clock::ROUNDING * t.abs();
         let (times, _) = inputs.course(self.pose[0]);

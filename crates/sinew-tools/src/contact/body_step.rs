@@ -4,19 +4,22 @@
 //! staggered is
 //! `m (v+ - v-) = -dt k (d_before + 2 d + d_after)/4 - dt b ((v+ + v-)/2 - (w+ + w-)/2) + dt f`,
 //! the average acceleration method (Newmark 1959) in the form of central difference, whose matrix is `P = m + dt/2 b + dt^2/4 k`. It is stable at any stiffness
-//! and step, and with the mean offset `D = d + dt/2 (v+ - w+)` the energy `(m v+^2 + k D^2)/2` changes by the work of the path, what the damper takes, and
+//! and step, and with the mean offset `D = d + dt/2 (v+ - w+)` the energy `(m v+^2 + k D^2)/2` changes by the work of
+//! the path, the dissipation of the damper, and
 //! `dt f (v+ + v-)/2`, exactly: contact treats it as it treats tissue. A body whose period the step does not resolve
 //! would oscillate from step to step forever: it gets additional damping and mass ([`Spring`]), which keep the
 //! balance.
 //!
-//! Where the step before was of another length, impulses are those of the time between the two velocities, half of either step, as on the tissue, and `d_before` is `d - dt_before (v- - w-)`. The balance
+//! If the step before was of another length, impulses are those of the time between the two velocities, half of
+//! either step, as on the tissue, and `d_before` is `d - dt_before (v- - w-)`. The balance
 //! is then off by `k D (dt - dt_before)(v+ - v-)/4`, of order 2, once.
 //!
 //! With tissue whose velocities are at the ends of steps it is implicit Euler,
 //! `m (v+ - v) = -dt k d_after - dt b (v+ - w+) + dt f`, of which `P = m + dt b + dt^2 k`:
 //! there contact works at `v+`, and `(m v+^2 + k d_after^2)/2` rises by no more than that and the work of the path.
 //!
-//! Rotation goes likewise in the body's own axes, `J (W+ - W-) + dt W x J W = dt torque` with W the mean of both, or the new one; the gyroscopic term has no power.
+//! Rotation is treated likewise in the body's own axes, `J (W+ - W-) + dt W x J W = dt torque` with W the mean of
+//! both, or the new one; the gyroscopic term has no power.
 
 use super::record::{Body, OF_BODY};
 use super::tool_body::ToolBody;

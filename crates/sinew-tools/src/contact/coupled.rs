@@ -99,7 +99,7 @@ impl Tools {
     }
 }
 
-/// The ways of cells in a pass of a step.
+/// The paths of cells in a pass of a step.
 #[derive(Clone, Copy)]
 struct Ways<'a> {
     tools: &'a Tools,
@@ -110,7 +110,7 @@ struct Ways<'a> {
 }
 
 impl Ways<'_> {
-    /// The way (m) of a cell in the step, without contact.
+    /// The path (m) of a cell in the step, without contact.
     fn whole(&self, place: usize) -> Way {
         let touched = &self.tools.cells[place];
         let to = touched.at(&self.state.u);
@@ -160,8 +160,8 @@ impl Search<'_> {
         swing(self.ways.meeting, kept, sub(to, from))
     }
 
-    /// Adds new contacts; returns true if there are any. At first, triangles that touch at the beginning: the others
-    /// may not come to touch at all once these do not give way.
+    /// Adds new contacts; returns true if there are any. At first, only triangles that touch at the beginning: the
+    /// others may not come into contact once these resist.
     fn all(&self, room: &mut Room, is_first: bool) -> bool {
         let count = |links: &Links| links.all.len() + links.lips.len();
         let before = count(&room.links);

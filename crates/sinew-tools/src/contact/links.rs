@@ -152,7 +152,7 @@ impl Links {
         self.lips.push(link);
     }
 
-    /// Notes that the cell at a place is part of a contact.
+    /// Records that the cell at a place is part of a contact.
     fn link(&mut self, place: u32) {
         if !std::mem::replace(&mut self.is_linked[place as usize], true) {
             self.places.push(place);

@@ -1,6 +1,6 @@
 //! Contact between the faces of cuts, which do not pass each other.
 //!
-//! A cut makes two nodes of one. While their faces still face each other, one may not go beyond the other along the
+//! A cut makes two nodes of one. While their faces still face each other, one may not pass the other along the
 //! mean normal of the faces around them: a unilateral constraint between two nodes, whose response is the sum of
 //! theirs. There is no friction, and both are pushed by opposite forces.
 

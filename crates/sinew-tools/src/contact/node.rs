@@ -49,7 +49,7 @@ pub(super) struct Constraint {
 }
 
 impl Constraint {
-    /// The constraint as it is after a displacement (m).
+    /// The constraint after a displacement (m).
     pub(super) fn behind(&self, displacement: Vector) -> Self {
         Self {
             gap: self.gap + dot(self.normal, displacement),

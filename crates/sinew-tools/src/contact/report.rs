@@ -17,10 +17,10 @@ use crate::vector::dot;
 pub struct ToolReport {
     /// The force on it (N), friction included: the mean over the step, or over the last part of one that is cut into parts.
     pub force: [f64; 3],
-    /// The torque on it (N m) about its origin, both as they are at the end of the step, the time of the state. Each of the
-    /// forces that [`ToolReport::force`] adds up acts at the place of its contact then: of a node alone where the force
-    /// leaves it, of contacts that act on each other the touched place of the tool. The moment of the forces on the nodes at
-    /// their places in the state is the opposite, but for the depth that a contact has left.
+    /// The torque on it (N m) about its origin, both at the end of the step, the time of the state. Each of the
+    /// forces that [`ToolReport::force`] adds up acts at the place of its contact then: for a single node the place
+    /// where the force leaves it, for coupled contacts the touched place of the tool. The moment of the forces on the
+    /// nodes at their places in the state is the opposite, apart from the remaining penetration.
     pub torque: [f64; 3],
     /// The impulse (N s) that it has received since the motion began: its growth over any time is the mean force then.
     pub impulse: [f64; 3],

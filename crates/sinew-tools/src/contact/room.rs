@@ -11,7 +11,7 @@ use super::tool_step::ToolStep;
 use crate::swept_box::around;
 use crate::vector::Vector;
 
-/// The longest way of a tool that meets triangles in a pass, in its smallest half widths.
+/// The longest path of a tool that meets triangles in a pass, in its smallest half widths.
 const LONGEST_WAY: f64 = 0.5;
 
 /// Most passes of a step.

@@ -157,7 +157,7 @@ pub enum ToolsError {
         /// The coefficient.
         friction: f64,
     },
-    /// A time of grasp that does not go forward.
+    /// A grasp whose end is not after its beginning.
     #[error("\"{name}\": grasp from {from} s to {to} s: expected an end after the beginning")]
     Grasp {
         /// The tool.

@@ -10,7 +10,7 @@ pub struct ToolBody {
     pub mass: f64,
     /// Its moments of inertia (kg m^2) about its own axes.
     pub inertia: [f64; 3],
-    /// Stiffness (N/m) of the spring between its origin and the path; 0 lets it go.
+    /// Stiffness (N/m) of the spring between its origin and the path; 0 leaves it free.
     pub coupling: f64,
     /// Stiffness (N m/rad) of the spring between its rotation and that of the path, which knows angles below pi alone; 0 lets it turn.
     pub rotational_coupling: f64,

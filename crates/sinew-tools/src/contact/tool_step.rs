@@ -8,7 +8,7 @@ use crate::shape::{Touch, Triangle, TriangleTouch};
 use crate::stroke::Stroke;
 use crate::vector::{Vector, add, between, dot, length, scaled, sub};
 
-/// The way (m) of a cell in a step, straight from one place to another.
+/// The path (m) of a cell in a step, straight from one place to another.
 pub(super) type Way = (Vector, Vector);
 
 /// Largest depth of a node in a part, at the beginning of a step, from which it is pushed out, as a share of the part's
@@ -183,12 +183,12 @@ impl ToolStep {
         way + turn * tool.shape.reach()
     }
 
-    /// The boxes (m) outside of which no way meets its parts; `None` for a plane.
+    /// The boxes (m) outside of which no path meets its parts; `None` for a plane.
     pub(super) fn bounds(&self) -> impl Iterator<Item = Option<[Vector; 2]>> {
         self.strokes.iter().map(|(_, near)| near.bounds())
     }
 
-    /// The strokes of the parts that a way (m) may meet, by their numbers.
+    /// The strokes of the parts that a path (m) may meet, by their numbers.
     pub(super) fn near_strokes(&self, way: Way) -> impl Iterator<Item = (usize, &Stroke)> {
         let strokes = self.strokes.iter().enumerate();
         let near = strokes.filter(move |(_, (_, near))| near.is_met(way));
@@ -354,7 +354,7 @@ impl ToolStep {
     }
 }
 
-/// The longest way (m) of a corner of a triangle.
+/// The longest path (m) of a corner of a triangle.
 fn longest_way(from: &Triangle, to: &Triangle) -> f64 {
     let ways = from
         .iter()

@@ -104,9 +104,9 @@ impl Convex {
 
     /// The point of the surface that is nearest to a point (m), and its normal.
     ///
-    /// Of several the answer is one: above the centre of a sphere, along x from the axis of a capsule, on the first of the
-    /// nearest faces inside a cuboid. Outside a cuboid the normal is the direction from the nearest point, also at edges and
-    /// corners.
+    /// If several are nearest, one is returned: above the centre of a sphere, along x from the axis of a capsule, on the
+    /// first of the nearest faces inside a cuboid. Outside a cuboid the normal is the direction from the nearest point, also
+    /// at edges and corners.
     #[must_use]
     pub fn nearest(&self, point: [f64; 3]) -> Nearest {
         match *self {

@@ -6,8 +6,8 @@ use crate::vector::{Vector, add, between, dot, scaled, sub};
 /// Gap, as a share of a hull's radius, below which a triangle touches it.
 const TOUCHES: f64 = 1e-9;
 
-/// Depth, as a share of a hull's radius, from which on a triangle that was in contact elsewhere gets another contact. Far nearer ones would be all but the same, and their forces hard to tell
-/// apart.
+/// Depth, as a share of a hull's radius, from which on a triangle that was in contact elsewhere gets another contact.
+/// Contacts much closer together would be nearly the same, with indeterminate forces.
 const OVERLAPS: f64 = 0.1;
 
 /// Depth, as a share of a hull's radius, up to which a triangle is pushed out however little it moves.
@@ -19,7 +19,7 @@ const MOST_ADVANCES: usize = 200;
 /// The contact of a triangle with a shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct TriangleTouch {
-    /// The share of the way at which it happens (0 to 1).
+    /// The share of the motion at the contact (0 to 1).
     pub(crate) share: f64,
     /// Weights of its corners at the point of contact.
     pub(crate) weights: Vector,
@@ -69,8 +69,8 @@ impl Hull {
         (gap < -OVERLAPS * self.radius).then_some(touch)
     }
 
-    /// The depth (m) beyond which a triangle that a step begins with was not left to it by the one before, if both go so far (m) against the shape: twice the depth from which on it would have been
-    /// given another contact, and no deeper than it can have come.
+    /// The depth (m) beyond which a triangle cannot have been left in contact by the step before, if both steps move
+    /// it `way` (m) against the shape: twice the depth of another contact, and no deeper than it can have come.
     pub(crate) fn left(&self, way: f64) -> f64 {
         (2.0 * OVERLAPS * self.radius).min(way + LEFT * self.radius)
     }
