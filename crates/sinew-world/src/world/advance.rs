@@ -35,7 +35,7 @@ impl World {
         })
     }
 
-    /// Takes steps under the eyes of a recorder, which sees the present state first.
+    /// Takes steps observed by a recorder, which receives the present state first.
     ///
     /// # Errors
     /// [`AdvanceError`].
