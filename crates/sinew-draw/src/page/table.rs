@@ -118,7 +118,7 @@ impl Cell {
         }
     }
 
-    /// A cell with a number as it is written, and as rows are sorted by it.
+    /// A cell with the text of a number, and its value for sorting.
     #[must_use]
     pub fn number(text: impl Into<String>, key: f64) -> Self {
         Self {
