@@ -59,7 +59,7 @@ pub trait Scheme: Send + Sized + 'static {
     /// named by [`Properties::needs`].
     ///
     /// # Errors
-    /// [`SetupError`] when the system lacks what the answer needs.
+    /// [`SetupError`] when the system lacks a needed property.
     fn stable_step(
         &self,
         _system: &dyn System,

@@ -1,10 +1,10 @@
-//! Contact in a step whose rigid motions answer as a whole.
+//! Contact in a step, coupled with rigid motions of whole parts.
 
 use sinew_cnn::Deflation;
 use sinew_core::vectors::norm;
 use sinew_core::{AllShown, Contact, Meeting, State};
 
-/// Most improvements of the answer in a step.
+/// Most improvements of the response in a step.
 const MOST_ROUNDS: usize = 40;
 
 /// Residual of the rigid motions' equation, relative to its terms, at which they count as found.
@@ -13,7 +13,7 @@ const FOUND: f64 = 1e-11;
 /// The same if it falls no further because of rounded positions.
 const ROUNDED: f64 = 1e-7;
 
-/// Change of an answer, as a share of it, by which slopes are found.
+/// Relative change of a response by which slopes are found.
 const NUDGE: f64 = 1e-7;
 
 /// Halvings of an improvement, and steps of the alternating minimisation if none helps.
@@ -37,7 +37,7 @@ const LOWERED: f64 = 1e-4;
 /// one block for each cell.
 #[derive(Debug, Default)]
 pub(super) struct CoupledContact {
-    /// u and v of contact's cells without the answer, three components each.
+    /// u and v of contact's cells without the response, three components each.
     u: Vec<f64>,
     v: Vec<f64>,
     /// Rows of contact's cells; none if no rigid motion moves them.
@@ -191,7 +191,7 @@ impl CoupledContact {
         }
     }
 
-    /// The slopes - G of f where contact's answer does not change.
+    /// The slopes - G of f with constant contact forces.
     fn find_slopes_without_contact(&mut self, deflation: &Deflation) {
         let count = self.active.len();
         for column in 0..count {
@@ -230,7 +230,7 @@ impl CoupledContact {
         solve(eliminated, &mut self.step[..count])
     }
 
-    /// Asks contact beyond the answer by a share of the improvement; the size of the terms of f.
+    /// Resolves contact at the response plus a share of the improvement; returns the size of the terms of f.
     fn go(
         &mut self,
         share: f64,
@@ -313,7 +313,7 @@ impl CoupledContact {
             });
     }
 
-    /// U c of the answer that is asked for, at one of contact's cells.
+    /// U c of the trial response, at one of contact's cells.
     fn shift(&self, place: usize) -> [f64; 3] {
         let mut shift = [0.0; 3];
         if let Some(row) = &self.rows[place] {

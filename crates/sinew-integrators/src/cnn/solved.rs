@@ -38,7 +38,7 @@ struct Touched {
     pushed: Vec<u32>,
 }
 
-/// Rigid motions, which answer to contact as a whole.
+/// Rigid motions of parts, coupled with contact.
 struct CoupledParts {
     deflation: Arc<Deflation>,
     contact: CoupledContact,

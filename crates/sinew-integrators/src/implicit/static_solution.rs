@@ -33,7 +33,7 @@ pub enum StaticError {
     Unreached {
         /// The share that is carried.
         share: f64,
-        /// The end of the last attempt to go beyond.
+        /// The error of the last attempt to increase the load.
         source: NewtonError,
     },
     /// Neither matrices nor an elastic law.

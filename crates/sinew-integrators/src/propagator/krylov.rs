@@ -30,7 +30,7 @@ const SHORTEST: f64 = 0.5;
 /// tolerance.
 ///
 /// Inner products weigh velocities by M and displacements by omega_max^2 M, so that both count alike.
-/// The energy weighs displacements by K, so that the error may bring energy in. A step that does
+/// The energy weighs displacements by K, so that the error may add energy. A step that does
 /// is shortened: `y + theta (y+ - y)` has no more energy than y for the theta of [`Krylov::part_without_gain`].
 #[derive(Debug)]
 pub struct Krylov {
@@ -181,7 +181,7 @@ impl Krylov {
     }
 
     /// `change += dt^order phi_order(dt L) start`; returns the sweeps it took. For order 1 the change is
-    /// the motion under constant loads, which brings no energy in.
+    /// the motion under constant loads, which adds no energy.
     fn add_phi(
         &mut self,
         operators: &LinearOperators,

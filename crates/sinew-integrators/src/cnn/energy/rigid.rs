@@ -34,7 +34,8 @@ impl Rigid {
         })
     }
 
-    /// Writes the rigid displacements (m) from `u` (m) on at which the potential is least, were there no elastic energy; other cells stay as they are. Those of a quadratic law are small ones about rest.
+    /// Writes the rigid displacements (m) from `u` (m) on that minimise the potential without elastic energy; other
+    /// cells are unchanged. For a quadratic law they are small ones about rest.
     pub(super) fn lead(
         &mut self,
         u: &[f64],

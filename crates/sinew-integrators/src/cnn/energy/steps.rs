@@ -23,7 +23,7 @@ pub struct EnergySteps {
     kind: Kind,
     sweeps: u32,
     descent: Descent,
-    /// Present where something touches the body.
+    /// Present if the body has contact.
     touched: Option<Touched>,
     start: Point,
     /// Loads at the start and the end of the step, and their mean, by which work is counted (N).

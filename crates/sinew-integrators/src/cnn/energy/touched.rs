@@ -1,4 +1,4 @@
-//! Sweeps that lower a step's potential while something pushes cells from outside.
+//! Sweeps that lower a step's potential with contact.
 
 use sinew_cnn::Deflation;
 use sinew_core::vectors::{dot, norm};
@@ -26,15 +26,15 @@ pub(super) enum SetOut {
 
 /// A displacement over a step, improved by sweeps: each minimises a bound of the potential, exactly and with contact.
 ///
-/// The bound about a displacement z is `Phi(z) + g'(y - z) + (y - z)'(m M + beta B)(y - z)/2`, with the inertia as it
-/// is and the cells' own blocks B of the rest, with beta large enough for a bound. Its minimum lies where contact, in
-/// the metric `dt^2 (m M + beta B)`, leaves the cells whose contact-free displacement is `z - (m M + beta B)^-1 g`. So
+/// The bound about a displacement z is `Phi(z) + g'(y - z) + (y - z)'(m M + beta B)(y - z)/2`, with the exact inertia
+/// and the cells' own blocks B of the rest, with beta large enough for a bound. Its minimum is the result of contact,
+/// in the metric `dt^2 (m M + beta B)`, for cells with the contact-free displacement `z - (m M + beta B)^-1 g`. So
 /// each sweep ends with forces of contact that fit its displacement, friction included. It is a proximal gradient
 /// method with a momentum that restarts where it leads uphill (Beck and Teboulle, SIAM J. Imaging Sci. 2, 2009;
 /// O'Donoghue and Candes, Found. Comput. Math. 15, 2015).
 ///
-/// Sweeps set out from `z = dt v`, where `y - z` is of the order of `dt^2`: free motion is carried on in the first one.
-/// A bound of the inertia, such as twice of it, would keep a share of the velocity in each step, however short.
+/// Sweeps start at `z = dt v`, where `y - z` is of the order of `dt^2`: the first one continues free motion.
+/// A bound of the inertia, such as twice the inertia, would keep only a share of the velocity in each step.
 ///
 /// B has no effect on parts that may move as rigid bodies ([`Deflation`]), which turn by z as far as they turn in dt.
 /// With one block for each cell they would be braked by the stiffness that couples a cell to its neighbours.

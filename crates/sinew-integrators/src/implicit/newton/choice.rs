@@ -14,7 +14,7 @@ const OF_BLOCKS: f64 = 0.06;
 /// and searches included.
 const ITERATIONS: f64 = 6.0;
 
-/// Cells below which a step takes a factor: less than any count tells apart.
+/// Number of cells below which a step takes a factor, without a count.
 const FEW: usize = 8;
 
 /// Number of iterations of conjugate gradients that take as long as a step with a factor, and the two bounds derived

@@ -6,7 +6,7 @@ const FIRST: f64 = 0.01;
 /// The most that a solution may leave.
 const MOST: f64 = 0.3;
 
-/// Share of the tolerance up to which a solution goes that is to be the last.
+/// Share of the tolerance to which the presumably last solution is computed.
 const LAST: f64 = 0.5;
 
 /// Relative residuals that linear solutions may leave: about those that the nonlinearity leaves (Eisenstat and

@@ -21,7 +21,7 @@ const MOST: u64 = 20_000;
 /// Newton iterations by products after which a factor is tried.
 const MOST_BY_PRODUCTS: u64 = 30;
 
-/// The way to a direction.
+/// Method for a direction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Way {
     Products,
@@ -155,7 +155,7 @@ impl Linear {
         true
     }
 
-    /// Takes nothing but a factor from the beginning of the step on, which is begun again; false if there is none, or was no other way.
+    /// Uses only a factor for the restarted step; returns false if there is none, or if it was used already.
     pub(super) fn insist_on_factor(&mut self) -> bool {
         if self.by_gradients.is_some() {
             self.take_factor(Reason::Stuck);

@@ -108,7 +108,7 @@ impl Equations for StaticEquations<'_> {
 pub(in crate::implicit) struct Unreached {
     /// The share of the load that is carried.
     pub(in crate::implicit) share: f64,
-    /// The end of the last attempt to go beyond.
+    /// The error of the last attempt to increase the load.
     pub(in crate::implicit) error: NewtonError,
 }
 

@@ -24,7 +24,7 @@ const MOST_HALVINGS: u32 = 30;
 /// Doublings of a step along the projected tangent's direction.
 const MOST_DOUBLINGS: u32 = 30;
 
-/// The share of the descent that the slope promises which a step must bring (Armijo).
+/// The share of the descent predicted by the slope that a step must achieve (Armijo).
 const ARMIJO: f64 = 1e-4;
 
 /// Share of the energies below which their change is not trusted, and slopes decide (Hager and Zhang, SIAM J. Optim. 16,

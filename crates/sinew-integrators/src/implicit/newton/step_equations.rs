@@ -39,8 +39,9 @@ pub(in crate::implicit) struct Unknown<'e> {
 pub(in crate::implicit) struct ViscousPlace<'e> {
     /// Position and velocity of supports.
     pub(in crate::implicit) load: LoadTime<'e>,
-    /// The time (s) by which the displacement lies before the end, at that velocity. A velocity that is the way of a step over its time belongs to the middle:
-    /// there `sym(F'dF)` is the change of Green's strain, whatever the body turns in a step.
+    /// The time (s) by which the displacement lies before the end, at that velocity. A velocity that is a step's
+    /// displacement over its time belongs to the middle: there `sym(F'dF)` is the change of Green's strain, for any
+    /// rotation in a step.
     pub(in crate::implicit) before: f64,
 }
 

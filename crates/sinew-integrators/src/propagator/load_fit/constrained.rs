@@ -195,7 +195,7 @@ impl Fit<'_> {
         }
     }
 
-    /// Weighs the modes for deviations of lambda G as they are, but of at most `clip`.
+    /// Weighs the modes for deviations of lambda G, clipped to `clip`.
     fn weigh(&self, deviations: &mut Deviations, g: &[f64], clip: f64) {
         let rows = deviations.rows.iter_mut().zip(&self.excitation.modes);
         for ((row, target, weight), mode) in rows {

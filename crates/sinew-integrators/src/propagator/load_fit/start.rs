@@ -49,7 +49,7 @@ pub(super) struct Start {
     pub(super) of_jump: Vec<f64>,
     /// Largest amplitude of any mode, from a velocity or from a displacement alone, over that of the exact motion.
     pub(super) amplitude: f64,
-    /// Error of the response to a jump of the loads that s brings about, relative to the response.
+    /// Error, due to s, of the response to a jump of the loads, relative to the response.
     pub(super) error: f64,
 }
 
