@@ -104,7 +104,7 @@ impl Clients {
         }
     }
 
-    /// Notes that a picture has been sent to a client.
+    /// Records that a picture has been sent to a client.
     pub(crate) fn sent(&self, id: u32) {
         if let Some(client) = self.lock().find(id) {
             client.waiting = client.waiting.saturating_sub(1);

@@ -8,7 +8,7 @@ use sinew_world::{JournalError, Log};
 pub struct Ended {
     /// The simulated time (s).
     pub t: f64,
-    /// The scene: another one than in the beginning where the page changed a tool.
+    /// The scene, with the page's changes of tools.
     pub scene: Scene,
     /// Values that are set in its file to get it, as `KEY=VALUE`.
     pub values: Vec<String>,

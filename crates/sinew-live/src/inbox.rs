@@ -80,7 +80,7 @@ fn setting(order: &Order) -> Option<(usize, Option<&str>)> {
     }
 }
 
-/// The one way from pages to the simulation.
+/// The queue of all requests from pages to the simulation.
 #[derive(Debug, Default)]
 pub(crate) struct Inbox {
     waiting: Mutex<Waiting>,

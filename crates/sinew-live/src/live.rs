@@ -61,7 +61,7 @@ pub struct Settings {
     pub port: u16,
 }
 
-/// A scene behind a page, which nobody has opened yet.
+/// A scene with its page, before the page is opened.
 pub struct Live {
     runtime: Runtime,
     listener: TcpListener,

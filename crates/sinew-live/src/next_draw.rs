@@ -44,7 +44,7 @@ impl NextDraw {
         }
     }
 
-    /// Notes that a picture is made.
+    /// Records that a picture is made.
     pub(crate) fn take(&mut self) {
         self.has_early = true;
         self.has_late = Instant::now() >= self.late;

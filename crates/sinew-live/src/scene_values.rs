@@ -11,7 +11,7 @@ use crate::error::LiveError;
 pub(crate) struct SceneValues {
     pub(crate) scene: Scene,
     pub(crate) values: Vec<String>,
-    /// The files of the scene as they were when the page was opened.
+    /// The files of the scene at the time when the page was opened.
     pub(crate) files: Vec<InputFile>,
     /// Loads whose factors are other than 1 at the beginning.
     pub(crate) first_factors: Vec<(std::sync::Arc<str>, f64)>,

@@ -1,4 +1,4 @@
-//! Cells that two bodies of a scene, cut in different ways, have in common.
+//! Common cells of two bodies of a scene with different cuts.
 
 use std::sync::Arc;
 

@@ -104,7 +104,7 @@ pub(crate) struct Engine {
     news: News,
     /// Commands that no step has taken yet.
     under_way: Vec<UnderWay>,
-    /// Files of the logs of the panes, and when they were last brought up to date.
+    /// Files of the logs of the panes, and the time of their last update.
     journals: Vec<Journal>,
     last_entries: Instant,
 }
@@ -249,7 +249,7 @@ impl Engine {
         journals.try_for_each(|(journal, pane)| journal.keep_up(pane.log()))
     }
 
-    /// Tells pages where commands are no longer kept in a file, which is tried once more in the end.
+    /// Reports to pages a file that can no longer record commands; it is tried once more at the end.
     fn report_journals(&self, kept: Result<(), JournalError>, shared: &Shared) {
         if let Err(error) = kept {
             let reason = format!("commands are kept in memory alone from now on: {error}");
@@ -444,7 +444,7 @@ impl Engine {
         self.last_picture = Some(Instant::now());
     }
 
-    /// Asks for the stable steps on bodies that became other ones, once nothing cuts any more.
+    /// Requests the stable steps on changed bodies, once nothing cuts any more.
     fn learn_after_cuts(&mut self, shared: &Arc<Shared>, survey: &mut Survey) {
         let is_calm = self.cut_at.is_some_and(|last| last.elapsed() >= CALM);
         let Some(first) = self
@@ -752,7 +752,7 @@ impl Engine {
         outcome
     }
 
-    /// Lets go of all, with panes at the beginning.
+    /// Releases all tools, with panes at the beginning.
     fn begin_anew(&mut self) {
         self.hands.fill(None);
         self.clock = Clock::at(self.panes.first().map_or(0.0, Pane::t));

@@ -462,7 +462,7 @@ impl Pane {
         self.settling.step(state.t(), dt, kinetic);
     }
 
-    /// The energies, the elastic one half way through the last step, where its velocity belongs.
+    /// Computes the energies; the elastic one half way through the last step, the time of its velocity.
     fn measure(&mut self) {
         if !self.measured.is_due() {
             return;
@@ -678,7 +678,7 @@ impl Pane {
         self.session.scene()
     }
 
-    /// Its body as it is.
+    /// Its current body.
     pub(crate) fn body(&self) -> &Arc<SceneBody> {
         self.session.body()
     }

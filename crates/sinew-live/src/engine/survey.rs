@@ -17,7 +17,7 @@ use crate::server::Shared;
 pub(crate) struct Survey(JoinHandle<()>);
 
 impl Survey {
-    /// Begins to ask, and tells all pages then.
+    /// Begins the survey, and sends its result to all pages.
     pub(crate) fn start(
         shared: &Arc<Shared>,
         scene: &Arc<Simulation>,

@@ -10,7 +10,7 @@ use super::command::Field;
 pub(crate) enum Event {
     /// The scenery; first of all events.
     Scenery(Box<Scenery>),
-    /// The settings as they are now.
+    /// The current settings.
     Settings {
         /// Each pane.
         panes: Vec<PaneFacts>,
@@ -40,7 +40,7 @@ pub(crate) enum Event {
         /// The reason.
         reason: String,
     },
-    /// Tools became other ones.
+    /// The tools changed.
     Tools {
         /// All of them.
         tools: Vec<ToolFacts>,

@@ -126,7 +126,7 @@ pub(crate) struct PaneHead {
     pub(crate) contacts: u32,
     /// Energy less that at the beginning and the work since (J); not a number where the energy is not known.
     pub(crate) balance: f64,
-    /// Nodes and tetrahedra of the body as it is.
+    /// Nodes and tetrahedra of the current body.
     pub(crate) nodes: u32,
     pub(crate) tets: u32,
     /// Totals of all cuts.
@@ -148,7 +148,7 @@ pub(crate) struct CutHead {
     pub(crate) pieces: u32,
     /// Tetrahedra that were taken away.
     pub(crate) removed: u32,
-    /// Times that the body became another one.
+    /// Number of changes of the body.
     pub(crate) changes: u32,
 }
 

@@ -19,7 +19,7 @@ use tokio::time::{Instant, Sleep, sleep_until};
 /// Most simultaneous connections: each page needs a few while it loads, and one from then on.
 const MOST: usize = 64;
 
-/// Time after which a connection ends that is no page's, and took no answer.
+/// Time after which a connection without a page ends if it reads no response.
 const PATIENCE: Duration = Duration::from_secs(10);
 
 /// Most simultaneous connections that have not named the secret of the page's address. One more dismisses the oldest
@@ -115,7 +115,7 @@ impl Drop for Seat {
     }
 }
 
-/// The status of a connection: a stranger, one that has named the secret, a page, or one that is to go.
+/// The status of a connection: a stranger, one that has named the secret, a page, or a dismissed one.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Standing(Arc<Inner>);
 
@@ -174,8 +174,8 @@ impl Connected<IncomingStream<'_, Guests>> for Standing {
     }
 }
 
-/// A connection, which fails when it waits for longer than the patience: the patience with strangers counts from the
-/// beginning of the connection, that with others again from each answer that it took a part of.
+/// A connection, which fails when it waits for longer than a limit: that for strangers counts from the
+/// beginning of the connection, that for others from the last response that was partly read.
 #[derive(Debug)]
 pub(crate) struct Guest {
     stream: TcpStream,

@@ -9,7 +9,7 @@ use crate::protocol::{Event, Scenery, ToolFacts};
 /// Data that connections share with the simulation.
 #[derive(Debug)]
 pub(crate) struct Shared {
-    /// Commands go there.
+    /// The queue of commands.
     pub(crate) inbox: Inbox,
     /// Pictures come from there.
     pub(crate) clients: Clients,

@@ -16,13 +16,13 @@ use crate::clients::MOST_CLIENTS;
 use crate::inbox::{Place, Request};
 use crate::protocol::{Event, Order, Said, is_frame};
 
-/// Time for which a page may read nothing while a message is under way to it.
+/// Time for which a page may read nothing while a message is sent to it.
 const PATIENCE: Duration = Duration::from_secs(10);
 
 /// Longest time until its next draw that a page is believed.
 const LONGEST_FRAME: Duration = Duration::from_millis(250);
 
-/// Talks to a page until it goes, breaks the protocol, or reads nothing while messages pile up.
+/// Serves a page until it leaves, breaks the protocol, or reads nothing while messages accumulate.
 pub(crate) async fn talk(mut stream: WebSocket, shared: Arc<Shared>, standing: Standing) {
     let Some((id, messages)) = shared.clients.enter() else {
         let reason = format!(
