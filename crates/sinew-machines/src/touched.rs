@@ -191,7 +191,7 @@ fn layers_of<T: Real>(fields: &mut Fields<T>, [u, v]: [usize; 2]) -> Layers<'_, 
     [[a, b, c], [d, e, f]]
 }
 
-/// The search for the blocks in which a way may meet a box.
+/// The search for the blocks in which a path may meet a box.
 struct Search<'a, T> {
     touched: &'a Touched<T>,
     layers: &'a Layers<'a, T>,
@@ -233,7 +233,7 @@ impl<T: Precision> WithReal<T> for Search<'_, T> {
 }
 
 impl<T: Precision> Search<'_, T> {
-    /// Lists the cells of a block whose ways meet the box.
+    /// Lists the cells of a block whose paths meet the box.
     #[inline(always)]
     fn look_at<N: Number<Real = T>>(&mut self, block: usize) {
         let (touched, [us, vs]) = (self.touched, self.layers);
@@ -284,7 +284,7 @@ mod tests {
 
     use super::*;
 
-    /// Every way that meets a box is listed, in every precision and by all instructions, and few others.
+    /// Every path that meets a box is listed, in every precision and by all instructions, and few others.
     fn lists_what_meets_a_box<T: Precision>() {
         let mut seed = 3_u64;
         let mut random = || {
