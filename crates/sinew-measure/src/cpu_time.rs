@@ -23,7 +23,7 @@ impl CostSince {
         }
     }
 
-    /// Time since then on the clock that whoever took the steps names ([`sinew_core::Integrator::cost_clock`]).
+    /// Time since then on the clock named by the integrator ([`sinew_core::Integrator::cost_clock`]).
     #[must_use]
     pub fn elapsed(&self, clock: CostClock) -> Duration {
         match clock {

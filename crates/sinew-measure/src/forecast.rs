@@ -8,7 +8,7 @@ use sinew_scene::Simulation;
 
 use crate::cpu_time::process_cpu_time;
 
-/// The work and the time that a run of a scene will take, as its first steps tell.
+/// The work and the time of a run of a scene, predicted from its first steps.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Forecast {
     /// Step (s).
@@ -25,7 +25,7 @@ pub struct Forecast {
     pub step_s: f64,
     /// CPU time (s) of a step, that of all threads.
     pub step_cpu_s: f64,
-    /// Steps that were taken to tell: from the first on, or all of them.
+    /// Number of steps on which the prediction is based, from the first on.
     pub seen: usize,
 }
 

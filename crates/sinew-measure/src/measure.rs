@@ -56,7 +56,7 @@ pub fn measure(
 /// Runs an integrator, of this workspace or not, on a case in steps of `dt` (s). The row has `name`
 /// in the place of an integrator's id, and no options.
 ///
-/// Times are told by the clock that the integrator names ([`Integrator::cost_clock`]).
+/// Times are measured by the clock that the integrator names ([`Integrator::cost_clock`]).
 /// Set-up, the run that is compared with the reference and the runs that are timed are separate,
 /// so that neither set-up nor comparison is in the times. An integrator that is set up for the
 /// case and the step already has no set-up left to time.

@@ -154,8 +154,8 @@ pub struct Row {
     /// system; of hard cases only.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub energy_drift: Option<f64>,
-    /// Largest excess of the energy over that of the start and the work of loads since, over all the energy they brought in; of bodies that
-    /// follow a force law and of which no part is moved.
+    /// Largest excess of the energy over that of the start and the work of loads since, over all the energy they
+    /// supplied; of bodies that follow a force law and of which no part is moved.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub energy_rise: Option<f64>,
     /// The smallest ratio of an element's volume to that at rest, over all steps; of bodies that follow a force law.
@@ -215,7 +215,7 @@ pub struct Work {
 }
 
 /// The verdict on a run in one word. Stability and accuracy are separate questions; see the
-/// fields of [`Row`] for all the answers.
+/// fields of [`Row`] for details.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum RowVerdict {
@@ -244,7 +244,7 @@ impl RowVerdict {
         Self::Refused,
     ];
 
-    /// A symbol that tells the verdict without colour.
+    /// A symbol that shows the verdict without colour.
     #[must_use]
     pub fn symbol(self) -> &'static str {
         match self {

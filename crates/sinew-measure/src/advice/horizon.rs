@@ -20,7 +20,7 @@ const TRIAL_STEPS: f64 = 4.0;
 /// Instants of the comparison where not even one interval of the scene's can be followed.
 const INSTANTS: usize = 10;
 
-/// Smallest share of an interval that still says something about the scene.
+/// Smallest representative share of an interval.
 const SMALLEST_SHARE: f64 = 1e-3;
 
 /// The part of a scene that is followed, from t = 0 on, and how.

@@ -83,7 +83,7 @@ impl Serialize for NotMeasured {
     }
 }
 
-/// The answer to a [`Question`], with how it was found.
+/// The answer to a [`Question`], with the facts of the search.
 #[derive(Debug, Serialize)]
 pub struct Advice {
     /// The question.
@@ -121,8 +121,8 @@ pub struct Advice {
 }
 
 /// The runs that answer a question. Total cost is that of set-up and of the whole scene; errors are
-/// those over the whole scene, as they were measured or, where [`Advice::covers_the_scene`] is
-/// false, as they are to be expected ([`Row::expected_error`](crate::Row::expected_error)).
+/// those over the whole scene, as measured or, if [`Advice::covers_the_scene`] is
+/// false, as expected ([`Row::expected_error`](crate::Row::expected_error)).
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub enum Answer {
     /// At least one run keeps to tolerance and budget.

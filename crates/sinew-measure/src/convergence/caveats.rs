@@ -69,7 +69,7 @@ pub enum Caveat {
          is too small; --levels 3"
     )]
     Locking,
-    /// A place is another one on the finer mesh.
+    /// A place differs on the finer mesh.
     #[error(
         "{by}: its place takes {} of the scene's mesh and {} of a refined one: part of the difference; a named group of the mesh \
          does not change",
@@ -153,7 +153,7 @@ const FAR: f64 = 0.3;
 /// Share of the difference between meshes from which on errors in time matter.
 const MATTERS: f64 = 0.3;
 
-/// Caveats that the scene itself tells.
+/// Caveats that follow from the scene.
 pub(super) fn of_scene(simulation: &Simulation, levels: usize) -> Vec<Caveat> {
     let mut caveats = Vec::new();
     if levels == 2 {
@@ -221,7 +221,7 @@ pub(super) fn of_places(levels: &[Vec<(String, f64, bool)>]) -> Vec<Caveat> {
     caveat.collect()
 }
 
-/// Caveats that the estimates themselves tell.
+/// Caveats that follow from the estimates.
 pub(super) fn of_estimates(quantities: &[Quantity]) -> Vec<Caveat> {
     let mut caveats: Vec<Caveat> = Vec::new();
     for quantity in quantities {

@@ -102,8 +102,8 @@ impl Falling {
 /// Halvings after which most solutions hardly change.
 const USUAL_HALVINGS: i32 = 3;
 
-/// CPU time (s) per simulated second that [`by_extrapolation`] takes with the usual number of halvings, as some first steps tell; infinite where
-/// these fail.
+/// CPU time (s) per simulated second of [`by_extrapolation`] with the usual number of halvings, estimated from some
+/// first steps; infinite if these fail.
 pub(crate) fn cost_of_extrapolation(system: &dyn System, start: &State, interval: f64) -> f64 {
     let pair = Falling::pair(system, critical_step(system), interval);
     let cost = |mut method: Falling| {

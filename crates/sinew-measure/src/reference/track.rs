@@ -87,7 +87,7 @@ pub enum ReferenceError {
 /// Smallest error of a run over the reference's own: even a tenth of it is then ten times larger.
 pub(crate) const TOLD_APART: f64 = 100.0;
 
-/// A motion as it is seen in passing.
+/// Running observations of a motion.
 #[derive(Clone)]
 pub(super) struct Sight<'a> {
     times: &'a [f64],
@@ -127,7 +127,7 @@ impl<'a> Sight<'a> {
         self.displacements.push(state.u.clone());
     }
 
-    /// Keeps the displacement and, where something touches the body, the impulses until the next of the instants.
+    /// Stores the displacement and, with contact, the impulses until the next of the instants.
     pub(super) fn keep_of(&mut self, system: &dyn System, state: &State) {
         self.keep(state);
         if let Some(contact) = system.contact() {

@@ -14,7 +14,7 @@ pub struct Candidate {
     /// The largest step (s) at which it is stable; infinite if it always is or cannot say, 0
     /// if it never is.
     pub stable_step: f64,
-    /// True if the method can tell that step.
+    /// True if the method can compute that step.
     pub stable_step_is_known: bool,
     /// The highest order it declares; none if it is exact at any step.
     pub order: Option<u8>,

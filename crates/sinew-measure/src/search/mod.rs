@@ -1,8 +1,8 @@
 //! The cheapest runs for an error, found without measuring every method at every step.
 //!
 //! Each candidate is followed from its longest stable step to shorter ones, by the order it
-//! declares and the errors measured on the way, for as long as it can still become cheaper than
-//! the best run so far; the one that promises most goes first. Steps divide the time between two
+//! declares and the errors measured so far, for as long as it can still become cheaper than
+//! the best run so far; the most promising one goes first. Steps divide the time between two
 //! instants of the comparison, so that all errors are taken at the same instants; those of methods
 //! that need loads to change between steps meet these changes too, anywhere in the scene.
 
@@ -220,8 +220,8 @@ impl<P: Pilots> Search<P> {
         self.trails.iter().flat_map(Trail::runs).chain(&self.others)
     }
 
-    /// The cheapest run for a goal, set-up included; of several whose times do not tell them
-    /// apart, the one with the smallest error.
+    /// The cheapest run for a goal, set-up included; of several with indistinguishable times,
+    /// the one with the smallest error.
     #[must_use]
     pub fn cheapest(&self, goal: Goal) -> Option<&Pilot> {
         let within = (1.0 + NOISE) * self.lowest_cost(goal, |_| true);
