@@ -26,7 +26,7 @@ impl Mesh {
     /// Makes every cell a linear one with the same corners, and drops the other nodes of the cells unless they are corners
     /// elsewhere. Groups and element tags stay; values at the nodes of cells stay at the corners.
     ///
-    /// A mesh of linear cells stays as it is.
+    /// A mesh of linear cells is unchanged.
     pub fn linearise(&mut self) -> Linearised {
         let mut done = Linearised::default();
         let mut keep = vec![true; self.points.len()];

@@ -11,7 +11,7 @@ use crate::reading::fault::Fault;
 use crate::reading::remarks::Remarks;
 use crate::reading::tag_index::TagIndex;
 
-/// Groups as they are made of sets.
+/// Groups under construction from sets.
 pub(super) struct Groups<'a> {
     node_index: &'a TagIndex,
     element_index: &'a TagIndex,

@@ -141,7 +141,7 @@ pub struct SharedFace {
 pub struct MeshCheck {
     /// Number of tetrahedra of any order. All shapes are measured on the corners.
     pub tets: usize,
-    /// Tetrahedra numbered the wrong way round. [`Mesh::orient`] turns them.
+    /// Tetrahedra of negative orientation. [`Mesh::orient`] turns them.
     pub inverted: Finding,
     /// Tetrahedra without volume.
     pub flat: Finding,
@@ -227,7 +227,7 @@ impl MeshCheck {
         self.problems().is_empty()
     }
 
-    /// Description of the tetrahedra that are numbered the wrong way round, if there are any.
+    /// Description of the tetrahedra of negative orientation, if any.
     fn winding(&self) -> Option<String> {
         const FIX: &str = "`sinew mesh check --fix orient` turns them";
         match (self.inverted.total, self.tets) {

@@ -31,7 +31,7 @@ pub struct Joints {
     pub parts_apart: usize,
     /// Faces of a part that lie on one of another node by node, without common nodes; each pair once, by its middle.
     pub touching: Places,
-    /// Faces of a part that lie on one of another in another way, or on a piece of it, by their middles.
+    /// Faces of a part that touch a face of another part without matching it, by their middles.
     pub touching_partly: Places,
     /// Number of nodes that [`crate::Mesh::merge_nodes`] would merge into others: nodes of touching faces, at the
     /// place of a node of another part.

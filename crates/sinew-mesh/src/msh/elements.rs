@@ -49,7 +49,7 @@ pub(super) struct BlockPlace {
     rows: RowPlaces,
 }
 
-/// The way in which messages count the elements of a block.
+/// The numbering of a block's elements in messages.
 #[derive(Debug, Clone, Copy)]
 enum BlockNumber {
     /// Version 4: within the block with this number, from 1.

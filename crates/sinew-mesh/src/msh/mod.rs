@@ -4,7 +4,7 @@
 //! sections, and one module for each section decodes its rows per format version into raw tables with the file's
 //! tags. [`assemble`] then turns tags into indices, when all sections are known, in whatever order they came.
 //!
-//! The reader's answers to the questions that the format leaves open:
+//! The reader's choices in cases that the format leaves open:
 //!
 //! | case | what the reader does |
 //! |---|---|

@@ -269,8 +269,8 @@ fn read_elements(
     Ok((section, format!("the declared {total} elements")))
 }
 
-/// Sections that nobody misses. gmsh writes its own schemes of interpolation, by which it draws elements, before every view, and
-/// the parameters of surfaces that it has made of an STL.
+/// Sections without meaning for a mesh. gmsh writes its own schemes of interpolation, by which it draws elements,
+/// before every view, and the parameters of surfaces that it has made of an STL.
 const WITHOUT_MEANING: [&str; 3] = ["Comments", "InterpolationScheme", "Parametrizations"];
 
 fn skip(

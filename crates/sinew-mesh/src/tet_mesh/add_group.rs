@@ -71,7 +71,7 @@ impl TetMesh {
     /// # Errors
     ///
     /// If the name is empty, has a line break or is taken, there are no members, one names a tetrahedron or node that
-    /// does not exist, or a triangle or line names a node twice. The mesh is then as it was.
+    /// does not exist, or a triangle or line names a node twice. The mesh is then unchanged.
     ///
     /// ```
     /// use sinew_mesh::GroupMembers;

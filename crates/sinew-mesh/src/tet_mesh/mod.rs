@@ -185,7 +185,8 @@ impl TetMesh {
 
     /// The node nearest to a point, and its distance; of equally near nodes, the lowest.
     ///
-    /// Checks every node. In a mesh without nodes, or for a point that is not finite, the answer is node 0 at infinity.
+    /// Checks every node. In a mesh without nodes, or for a point that is not finite, the result is node 0 at
+    /// infinity.
     #[must_use]
     pub fn nearest_node(&self, point: [f64; 3]) -> (u32, f64) {
         let mut nearest = (0, f64::INFINITY);

@@ -27,7 +27,7 @@ struct FollowedPart {
 /// Changes that a split made to a body of which no tetrahedron was removed.
 #[derive(Clone, Copy, Debug)]
 pub struct Split<'a> {
-    /// The body as it is.
+    /// The current body.
     pub body: CutBody<'a>,
     /// Nodes that were moved at rest.
     pub moved: &'a [MovedNode],
