@@ -56,7 +56,7 @@ pub(crate) struct Sums {
     /// Work of tools' forces on the nodes: that of tools less the dissipation of friction.
     at_contacts: f64,
     pub(crate) cuts: f64,
-    /// Energy (J) that damping brought in, which it never should.
+    /// Energy (J) that damping added, which is always an error.
     #[serde(default)]
     pub(crate) driven: f64,
 }

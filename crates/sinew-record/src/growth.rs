@@ -22,8 +22,8 @@ const FAR_BEYOND: f64 = 2.0;
 /// beyond the energy of the start plus the work of loads and tools.
 ///
 /// Work of loads is summed by component, as absolute values, and damping is left out: an excess that is reported is
-/// real. Scenes are not checked in which other energy may come in unseen: work of moved supports, of loads that come
-/// and go between two checks, or energy that memory stored in a deformed start.
+/// real. Scenes with other sources of energy are not checked: work of moved supports, of loads that begin and end
+/// between two checks, or energy that memory stored in a deformed start.
 #[derive(Debug)]
 pub struct EnergyGrowth {
     /// `None` if nothing is checked.

@@ -37,7 +37,7 @@ const MOST_FRAMES: usize = 100_000;
 /// Most numbers of a table, about two gigabytes.
 pub const MOST_NUMBERS: usize = 100_000_000;
 
-/// The folder of a run, open: nobody else writes into it.
+/// The folder of a run, locked against other writers.
 #[derive(Debug)]
 pub struct RunFolder {
     folder: OwnedFolder,
@@ -75,7 +75,7 @@ pub(crate) struct End<'a> {
     pub(crate) before: usize,
     pub(crate) stepping: Stepping,
     pub(crate) remarks: Vec<String>,
-    /// A warning where the step is too long for the body as it is in the end.
+    /// A warning if the step is too long for the body at the end.
     pub(crate) outrun: Option<String>,
     /// Times (s) of all frames.
     pub(crate) times: &'a [f64],
@@ -530,7 +530,7 @@ pub(crate) fn cut_record(world: &World, mass: Option<f64>) -> Option<CutRecord> 
 /// End of a motion by a refusal, of a law or of a method that found no equilibrium.
 ///
 /// # Errors
-/// Any other error, as it is.
+/// Any other error, unchanged.
 fn refusal(error: AdvanceError, world: &World) -> Result<Ended, RecordRunError> {
     let refused = |t: f64, reason: String| Ok(Ended::Refused { t, reason });
     let is_linear = world.body().system().as_linear().is_some();

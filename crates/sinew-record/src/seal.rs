@@ -93,7 +93,7 @@ impl Seal {
         }
     }
 
-    /// Checks that a whole file of a folder is as it was sealed.
+    /// Checks that a whole file of a folder matches its seal.
     ///
     /// # Errors
     /// [`RecordRunError::Altered`].

@@ -21,7 +21,7 @@ pub(crate) struct Taken {
 }
 
 impl Taken {
-    /// Takes note of a row.
+    /// Records a row.
     pub(crate) fn see(&mut self, row: &Energies) {
         self.taken = self.taken.max(row.taken.unwrap_or(0.0));
         self.given = self.given.max(row.given);

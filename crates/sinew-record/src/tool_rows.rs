@@ -33,7 +33,7 @@ impl Received {
         [0, 1].map(|vector| [0, 1, 2].map(|axis| mean(vector, axis)))
     }
 
-    /// Takes note of a row.
+    /// Records a row.
     fn note(&mut self, t: f64, reports: impl Iterator<Item = ToolReport>) {
         self.t = t;
         self.impulses.clear();

@@ -12,7 +12,7 @@ use super::measured::Measured;
 /// Measured amounts of a load that are states of its curve; between more of them lines are straight.
 const MOST_AMOUNTS: usize = 5000;
 
-/// Stretches of a curve that nobody asked for.
+/// Range of stretches by default.
 const USUAL: [f64; 2] = [0.7, 2.0];
 
 /// Room round measured points, as a share of their extent.
