@@ -1,4 +1,4 @@
-//! The steps of a run after which something is written.
+//! The steps of a run after which output is written.
 
 use crate::scene::Instants;
 

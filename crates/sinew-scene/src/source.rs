@@ -15,7 +15,7 @@ use sinew_mesh::TetMesh;
 pub struct SceneSource {
     path: PathBuf,
     text: String,
-    /// True if the text was made of values that a program gave: nobody has seen its lines.
+    /// True if the text was made of values of a program: the user has no lines.
     is_of_values: bool,
     /// Files by their resolved paths.
     given: BTreeMap<PathBuf, Given>,

@@ -1,4 +1,4 @@
-//! The other keys with which a key goes.
+//! Conditions of a key on other keys.
 
 /// A condition that must be met if a key is given.
 #[derive(Debug, Clone, Copy)]
@@ -16,7 +16,7 @@ pub(crate) struct Condition {
 /// Words that are known at run time.
 pub(crate) type AllWords = fn() -> &'static [&'static str];
 
-/// Requirement for the other keys of a table.
+/// Requirement for another key of a table.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Goes {
     /// This key is given.

@@ -353,7 +353,7 @@ impl<'a> Table<'a> {
         self.may_be_given_after(key, &mut Vec::new())
     }
 
-    /// The same, for keys that go with each other: of `seen` nothing more is asked.
+    /// The same, for keys that depend on each other: those in `seen` are not checked again.
     fn may_be_given_after(&self, key: &dyn Described, seen: &mut Vec<&'static str>) -> bool {
         seen.push(key.name());
         let mut is_possible = |other: &str| {

@@ -98,7 +98,7 @@ impl SceneError {
         self.0.span.clone()
     }
 
-    /// True if the scene was made of values of a program: the message names a key, and nobody has seen its lines.
+    /// True if the scene was made of values of a program: the message names a key, since the user has no lines.
     #[must_use]
     pub fn is_of_values(&self) -> bool {
         self.0.scene.is_of_values()

@@ -62,7 +62,7 @@ pub enum OutputError {
     Busy {
         /// The path.
         path: PathBuf,
-        /// The process, where the system tells it.
+        /// The process, if the system reports it.
         by: Option<u32>,
     },
     /// A folder within that of another result.
@@ -97,7 +97,7 @@ pub enum OutputError {
         /// The path.
         path: PathBuf,
     },
-    /// A folder that is another one than when the run began.
+    /// A folder that was replaced during the run.
     #[error("writing into {} failed: the folder was removed or replaced by others while the run went on; run again", path.display())]
     Gone {
         /// The path.
@@ -119,7 +119,7 @@ pub enum OutputError {
         /// The input that is the same file.
         input: PathBuf,
     },
-    /// A file that another output of the same run goes to.
+    /// A file that is also the destination of another output of the run.
     #[error("cannot write {}: it leads to the same file as {}, which this run writes too; remove the link", path.display(), other.display())]
     Shared {
         /// The path.
@@ -141,7 +141,7 @@ pub enum OutputError {
         /// Description of its kind.
         kind: &'static str,
     },
-    /// A path that now names something other than when the run began.
+    /// A path whose target was replaced during the run.
     #[error("cannot write {}: it was changed by others while the run went on; name another file and run again", path.display())]
     Changed {
         /// The path.

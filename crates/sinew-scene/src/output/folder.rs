@@ -27,7 +27,7 @@ impl OutputFolder {
         }
     }
 
-    /// Its path as it was given.
+    /// Its path as given.
     #[must_use]
     pub fn path(&self) -> &Path {
         &self.path

@@ -325,7 +325,7 @@ impl OwnedFolder {
         })
     }
 
-    /// Its path as it was given.
+    /// Its path as given.
     #[must_use]
     pub fn path(&self) -> &Path {
         &self.path

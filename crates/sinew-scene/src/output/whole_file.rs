@@ -144,7 +144,7 @@ pub(super) fn remove_left_behind(folder: &Path) {
 }
 
 /// Creates a file in the same folder, so that renaming never copies, under a name that no other writer
-/// uses and that is short however long the final name is.
+/// uses and that is short even if the final name is long.
 fn temporary_in(folder: &Path) -> io::Result<(PathBuf, File)> {
     static COUNT: AtomicU64 = AtomicU64::new(0);
     loop {

@@ -14,7 +14,8 @@ use super::segment::{are_apart, crossing};
 /// precision rounds places by less.
 const TOUCHES: f64 = 1e-6;
 
-/// Comparisons for each edge of the surface after which a state is given up: one in which everything is near everything is no longer a body.
+/// Most comparisons for each edge of the surface; a state that needs more is given up, since its surface is near
+/// itself everywhere.
 const COMPARISONS: usize = 1000;
 
 /// Most tetrahedra that are checked to measure depths, as a multiple of their number, or of 1000.

@@ -90,7 +90,7 @@ impl OverlapWatch {
         self.deepest.as_ref()
     }
 
-    /// The deepest that was seen, by a watch that is no longer needed.
+    /// The deepest overlap so far; consumes the watch.
     #[must_use]
     pub fn into_deepest(self) -> Option<Overlap> {
         self.deepest

@@ -32,7 +32,7 @@ pub struct Plan {
     pub warnings: Vec<Warning>,
     /// 2/omega_max (s), the limit of undamped leapfrog.
     pub critical_step: f64,
-    /// The largest stable step of the scene's integrator; unknown where the integrator cannot tell.
+    /// The largest stable step of the scene's integrator; unknown if the integrator cannot compute it.
     pub stable_step: StableStep,
     /// Memory of the matrices (bytes).
     pub matrix_bytes: usize,

@@ -1,4 +1,4 @@
-//! A first scene for a mesh, to be changed by whoever knows the body.
+//! A first scene for a mesh, as a template for the user.
 
 mod data;
 mod file;

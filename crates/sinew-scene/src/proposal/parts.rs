@@ -81,7 +81,8 @@ impl Part {
     }
 }
 
-/// The surface or group of nodes whose name tells, and which has nodes other than `taken` without being all of the body.
+/// The surface or group of nodes with one of these words in its name that has nodes other than `taken` and is not the
+/// whole body.
 fn named(mesh: &TetMesh, words: &[&str], taken: &[u32]) -> Option<String> {
     let tells = |name: &str| {
         let name = name.to_lowercase();

@@ -86,7 +86,7 @@ pub enum Subject {
 pub struct Body {
     /// The source of its shape.
     pub mesh: MeshSource,
-    /// Changes of size, orientation and order on the way from the source to the body.
+    /// Changes of size, orientation and order between the source and the body.
     pub mesh_changes: MeshChanges,
     /// Materials, damping, supports and loads. Prescribed motions, which may be in files, are added where the
     /// scene is built: see [`crate::BodyModel::problem`].

@@ -33,7 +33,7 @@ pub enum Members {
     Tetrahedra,
 }
 
-/// The way a part is chosen.
+/// The choice of a part.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Choice {
     /// Conditions on its nodes.

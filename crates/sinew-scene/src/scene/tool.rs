@@ -23,7 +23,7 @@ pub struct Tool {
     pub name: String,
     /// The shapes that it is made of.
     pub parts: Vec<ToolPart>,
-    /// The way it moves.
+    /// Its motion.
     pub path: ToolPath,
     /// Coefficient of Coulomb's friction.
     pub friction: f64,
@@ -37,12 +37,12 @@ pub struct Tool {
     pub body: Option<ToolBody>,
 }
 
-/// The way that a tool moves.
+/// The motion of a tool.
 #[derive(Debug, Clone, PartialEq)]
 pub enum ToolPath {
     /// It stays at a place.
     Hold(ToolStart),
-    /// It goes from a place at this velocity (m/s), without turning.
+    /// It moves from a place at this velocity (m/s), without rotation.
     Velocity(ToolStart, [f64; 3]),
     /// Poses over time in a CSV file: its path as written, relative to the scene's folder.
     Table(PathBuf),
@@ -260,7 +260,7 @@ const TO: Key<Number> = Key::required(
 )
 .unit("s");
 
-/// `true`, as the only way to say what another key would contradict.
+/// The value `true`; without the key another one applies.
 #[derive(Debug, Clone, Copy)]
 struct True;
 

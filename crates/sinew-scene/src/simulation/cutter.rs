@@ -423,7 +423,7 @@ impl Cutter {
         touched(after).map(place).collect()
     }
 
-    /// The body as it is after the cuts.
+    /// The body after the cuts.
     fn body_after(&self, before: &SceneBody) -> Result<SceneBody, CuttingError> {
         let (cut, model) = (self.cut.mesh(), self.cut.model());
         let from = CutFrom {
@@ -470,7 +470,7 @@ impl Cutter {
     }
 }
 
-/// The largest turn (rad) of a blade that one sheet follows: its ends go straight.
+/// The largest rotation (rad) of a blade in one sheet: its ends move straight.
 const LARGEST_TURN: f64 = 0.25;
 
 /// The equal parts of a time from one instant to another (s) in which a blade turns by no more than a sheet follows.

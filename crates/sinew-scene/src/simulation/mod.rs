@@ -183,7 +183,7 @@ impl Simulation {
     /// value; with dt = "auto" it was computed when the scene was built.
     ///
     /// # Errors
-    /// [`StableStepError`] when the system lacks what the answer needs.
+    /// [`StableStepError`] when the system lacks a needed property.
     pub fn stable_step(&self) -> Result<StableStep, StableStepError> {
         let found = || step::stable(self.settings(), self.system());
         self.stable_step.get_or_init(found).clone()

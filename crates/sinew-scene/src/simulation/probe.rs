@@ -1,4 +1,4 @@
-//! Probes: the nodes and the tetrahedra of which something is written down.
+//! Probes: the nodes and the tetrahedra with recorded values.
 
 use std::collections::HashMap;
 

@@ -12,7 +12,7 @@ use super::{set_up, step, tool_end};
 use crate::error::SceneError;
 use crate::scene::Scene;
 
-/// The body of a scene as it is now. A cut replaces it, and so do loads that follow inputs; the scene stays.
+/// The current body of a scene. A cut replaces it, and so do loads that follow inputs; the scene does not change.
 #[derive(Clone, Debug)]
 pub struct SceneBody {
     pub(super) scene: Arc<Scene>,

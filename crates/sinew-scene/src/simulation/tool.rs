@@ -162,7 +162,7 @@ pub(super) fn touching_anew(
     touched_by(built, body, tools, &are_fine)
 }
 
-/// Rebuilds the contact of tools that are steered in another way.
+/// Rebuilds the contact of tools after a change of steering.
 pub(super) fn led_anew(
     built: BodyModel,
     body: &Body,

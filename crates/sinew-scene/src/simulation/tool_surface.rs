@@ -8,7 +8,7 @@ use sinew_tools::{Corner, Motion, Tool, TouchedTriangle, swept_box};
 use super::model::BodyModel;
 use crate::number::length;
 
-/// Share of the body's size by which a tool's reach goes beyond its path at rest: tissue moves too.
+/// Share of the body's size added to a tool's reach beyond its path, since tissue moves too.
 const BEYOND: f64 = 0.1;
 
 /// Instants at which a path is checked, besides those of its table.

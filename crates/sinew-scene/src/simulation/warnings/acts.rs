@@ -107,7 +107,7 @@ fn largest(ramp: &Ramp) -> f64 {
 }
 
 impl Simulation {
-    /// A way to find why a motion of the scene diverged, after a semicolon.
+    /// Advice, after a semicolon, to find the cause of a divergence.
     #[must_use]
     pub fn after_divergence(&self) -> String {
         let large = match (self.scene().subject(), self.model().body()) {
