@@ -169,11 +169,12 @@ impl BlockMatrix {
         Ok(())
     }
 
-    /// Takes over rows, whose matrix is to be symmetric afterwards as it was. Returns true if all rows were laid out
+    /// Takes over rows; the matrix must be symmetric afterwards. Returns true if all rows were laid out
     /// again, which reserves space for `spare_cells` more than these: without it nothing is allocated.
     ///
     /// # Errors
-    /// [`AssemblyError::Row`] and [`AssemblyError::CellOutOfRange`] where rows have other columns than they may; nothing is changed then.
+    /// [`AssemblyError::Row`] and [`AssemblyError::CellOutOfRange`] if rows have invalid columns; nothing is changed
+    /// then.
     pub fn take_rows(
         &mut self,
         rows: &RowsOfCells,
@@ -291,7 +292,7 @@ impl BlockMatrix {
     }
 
     /// Multiplies every scalar row by its entry of `scale` (length [`BlockMatrix::dofs`]);
-    /// rows beyond the end of `scale` stay as they are.
+    /// rows beyond the end of `scale` are unchanged.
     pub fn scale_rows(&mut self, scale: &[f64]) {
         let layers = self.layers.count();
         let len = self.layers.block_len();

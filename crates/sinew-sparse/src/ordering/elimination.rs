@@ -3,7 +3,7 @@
 use super::graph::NONE;
 use crate::Pattern;
 
-/// An order of elimination with the fill that it brings.
+/// An order of elimination with its fill-in.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Elimination {
     /// The cells in the order in which they are eliminated, each subtree of the elimination tree in one piece.

@@ -132,7 +132,7 @@ impl<T: Real> At<T> {
         unsafe { V::gather(self.pointer, index.pointer) }
     }
 
-    /// Asks for the 64 bytes at this address, which may lie outside, to be brought near.
+    /// Prefetches the 64 bytes at this address, which may lie outside, into the first cache.
     #[inline(always)]
     pub(crate) unsafe fn prefetch<V: Lanes<T>>(self) {
         // SAFETY: the instruction set is there; no address is wrong.
@@ -141,7 +141,7 @@ impl<T: Real> At<T> {
 }
 
 impl At<u32> {
-    /// Asks for the 64 bytes at this address, which may lie outside, to be brought near.
+    /// Prefetches the 64 bytes at this address, which may lie outside, into the first cache.
     #[inline(always)]
     pub(crate) unsafe fn prefetch_index<T: Real, V: Lanes<T>>(self) {
         // SAFETY: the instruction set is there; no address is wrong.

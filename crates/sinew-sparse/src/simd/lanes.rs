@@ -27,7 +27,7 @@ pub(crate) trait Lanes<T: Real>: Copy {
     unsafe fn two_to_it(self) -> Self;
     /// [`Real::parts`].
     unsafe fn parts(self) -> [Self; 2];
-    /// Asks for the 64 bytes at an address, which need not be valid, to be brought near.
+    /// Prefetches the 64 bytes at an address, which need not be valid, into the first cache.
     unsafe fn prefetch(from: *const T);
     /// `self factor + other`, rounded once where the instruction set can.
     unsafe fn mul_add(self, factor: Self, other: Self) -> Self;

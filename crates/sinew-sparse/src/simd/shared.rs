@@ -107,7 +107,8 @@ impl<'a, T: Copy> SharedSlice<'a, T> {
         unsafe { std::slice::from_raw_parts(self.first.add(range.start), range.len()) }
     }
 
-    /// One of the numbers. Its place is not checked: where most of a loop's work is to fetch numbers, that cost 7 % of its time.
+    /// One of the numbers. Its place is not checked: in a loop that mostly fetches numbers, a check cost 7 % of its
+    /// time.
     ///
     /// # Safety
     /// The place is below [`Self::count`], and nobody writes the number meanwhile.

@@ -146,8 +146,8 @@ unsafe fn on_avx512<N: Number, W: WithNumber>(work: W) -> W::Output {
 
 /// A vector of `T::LANES` numbers.
 ///
-/// The type is private and nothing but the methods of [`InstructionSet`] above names it to others, after they have seen
-/// that the machine has its instructions. So whoever has the type may use it, and that is the proof of all blocks below.
+/// The type is private and only the methods of [`InstructionSet`] above pass it on, after they have checked that the
+/// machine has its instructions. So any code that has the type may use it, which is the proof of all blocks below.
 #[derive(Clone, Copy)]
 struct Vector<T, V>(V, PhantomData<T>);
 
