@@ -104,7 +104,7 @@ pub(crate) enum Failure {
     LongConverge {
         /// Predicted time (s).
         seconds: f64,
-        /// Time (s) up to which nobody is asked.
+        /// Time (s) up to which no confirmation is needed.
         limit: f64,
     },
     /// A scene that needs more memory than there is.
@@ -142,7 +142,7 @@ pub(crate) enum Failure {
         /// The names of all.
         known: Vec<&'static str>,
     },
-    /// A name that does not tell a mesh format.
+    /// A name that does not identify a mesh format.
     #[error("{}: expected a name that ends in .msh or .vtu", path.display())]
     MeshFormat {
         /// The path.
@@ -180,7 +180,7 @@ pub(crate) enum Failure {
         /// The reason.
         source: WriteVtuError,
     },
-    /// A report and a mesh that both go to standard output.
+    /// A report and a mesh with standard output as their common destination.
     #[error("--json and --out {} both go to standard output; name a file with --out", out.display())]
     SharedOutput {
         /// The destination of the mesh.
@@ -469,7 +469,7 @@ impl Failure {
     }
 }
 
-/// Advice on the way from a mesh to one of tetrahedra with four nodes.
+/// Advice on the conversion of a mesh to one of tetrahedra with four nodes.
 fn way_to_tetrahedra(mesh: &Path, error: &TetMeshError) -> Option<String> {
     match error {
         TetMeshError::UnsupportedCells { kind, .. } if kind.linear() == CellType::Tetra => {

@@ -145,7 +145,7 @@ fn onlooker(simulation: &Simulation, interruption: Interruption) -> Onlooker {
     Onlooker::new(interruption, steps, duration)
 }
 
-/// Runs a scene into an empty folder, which nobody reads but a comparison.
+/// Runs a scene into an empty folder for a comparison only.
 pub(crate) fn run_for_comparison(
     scene: &Path,
     folder: &Path,
