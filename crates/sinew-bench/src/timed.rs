@@ -104,7 +104,7 @@ mod tests {
 
     use super::*;
 
-    /// A machine that is broken in one way.
+    /// A machine with one defect.
     #[derive(Debug)]
     enum Broken {
         Refuses,

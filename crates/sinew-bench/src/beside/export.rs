@@ -38,7 +38,7 @@ pub struct Exported {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ExportError {
-    /// The other program would solve something else.
+    /// The other program would solve a different problem.
     #[error(
         "{case}: {what}; only an undamped linear body at rest under constant loads can run beside another program"
     )]

@@ -28,7 +28,7 @@ pub trait Rival {
     /// An error of the other program.
     fn lap(&mut self) -> Result<f64, RivalError>;
 
-    /// Displacement (m) at the case's samples, t = 0 first, from a run that nobody times.
+    /// Displacement (m) at the case's samples, t = 0 first, from a run that is not timed.
     ///
     /// # Errors
     /// An error of the other program.

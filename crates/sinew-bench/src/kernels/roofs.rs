@@ -41,7 +41,7 @@ pub struct OperationRate {
     pub operations_per_s: f64,
 }
 
-/// Sizes of caches (bytes) where the system does not tell.
+/// Sizes of caches (bytes) if the system does not report them.
 const CACHES: [usize; 2] = [1 << 20, 32 << 20];
 
 /// Most bytes that are read to measure memory.
@@ -91,7 +91,7 @@ fn rate<T: Precision>(set: InstructionSet, quick: bool) -> OperationRate {
     }
 }
 
-/// Bytes of a processor's cache of this level, where Linux tells.
+/// Bytes of a processor's cache of this level, if Linux reports it.
 fn cache(level: u32) -> Option<usize> {
     let of = |index: u32, name: &str| {
         let path = format!("/sys/devices/system/cpu/cpu0/cache/index{index}/{name}");

@@ -8,7 +8,7 @@ use crate::report::{number, percent};
 use crate::results::Mark;
 use sinew_verify::MarkVerdict;
 
-/// Largest rise of the energy, over all that was brought in, by which rounding is not exceeded.
+/// Largest rise of the energy, over all supplied energy, that counts as rounding.
 const ROUNDING: f64 = 1e-11;
 
 /// All marks; `begins` is notified of each that takes time.

@@ -20,7 +20,7 @@ const SHARE_OF_ORDER_2: f64 = 0.6;
 
 /// A scene's motion without errors of the mesh, at the nodes of its own mesh.
 pub(super) struct MeshReference {
-    /// The places (m) of the nodes, in units that tell them apart.
+    /// The positions of the nodes, in integer units that distinguish them.
     nodes: Vec<[i64; 3]>,
     /// Displacements (m) of all nodes at each instant.
     motion: Vec<Vec<f64>>,

@@ -20,7 +20,7 @@ struct Body {
     values: Vec<String>,
 }
 
-/// A bench under way.
+/// A bench in progress.
 pub(super) struct Running<'a> {
     pub(super) done: usize,
     pub(super) of: usize,

@@ -228,7 +228,7 @@ fn draw_run(svg: &mut Svg, cell: Frame, run: &MapRun, limit: Option<f64>) {
     }
 }
 
-/// The middle of a cell, or of its larger part where a line would go through the sign.
+/// The middle of a cell, or of its larger part if a line would cross the sign.
 fn sign_place(cell: Frame, limit: Option<f64>) -> f64 {
     let middle = cell.left + 0.5 * cell.width;
     match limit {

@@ -1,4 +1,4 @@
-//! Files of a bench, each there as a whole or not at all.
+//! Files of a bench, each written as a whole or not at all.
 
 use std::path::PathBuf;
 

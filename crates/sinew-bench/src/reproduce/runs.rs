@@ -152,7 +152,7 @@ fn histories(case: &mut Case, method: &MethodChoice) -> Result<[History; 3], Lab
     Ok([history(SMALL)?, history(LARGE[0])?, history(LARGE[1])?])
 }
 
-/// (t (s), u (m)) of the first degree of freedom, from the start on, however far it goes.
+/// (t (s), u (m)) of the first degree of freedom, from the start on, without a divergence limit.
 fn follow(
     case: &Case,
     method: &MethodChoice,

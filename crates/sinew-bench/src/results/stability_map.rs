@@ -27,9 +27,9 @@ pub struct MapPanel {
     /// The method with its options.
     pub method: String,
     /// The largest stable step (s) at each value of the parameter, as the method computes it from
-    /// the matrices; none if it is stable at any step or cannot tell.
+    /// the matrices; `None` if it is stable at any step or cannot compute it.
     pub stable_steps: Vec<Option<f64>>,
-    /// True if there is a value at which the method cannot tell its stable step.
+    /// True if there is a value at which the method cannot compute its stable step.
     #[serde(default)]
     pub cannot_tell: bool,
     /// The run at each step, for each value of the parameter.

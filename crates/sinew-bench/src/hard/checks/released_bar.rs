@@ -1,4 +1,4 @@
-//! The first mode of a bar that is stretched and let go.
+//! The first mode of a bar that is stretched and released.
 
 use sinew_core::Integrator;
 use sinew_integrators::Frame;

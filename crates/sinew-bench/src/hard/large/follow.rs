@@ -118,7 +118,7 @@ impl<'a> Ledger<'a> {
         }
     }
 
-    /// Work (J) of the loads over a step: the mean of both ends' along the way.
+    /// Work (J) of the loads over a step: their mean over both ends times the displacement.
     fn work_since(&mut self, before: &State, state: &State) -> f64 {
         let t = before.t();
         let moved: Vec<f64> = state.u.iter().zip(&before.u).map(|(b, a)| b - a).collect();

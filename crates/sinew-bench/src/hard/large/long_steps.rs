@@ -21,7 +21,7 @@ const TIMES: f64 = 10.0;
 /// Steps of a run.
 const STEPS: f64 = 40.0;
 
-/// Explicit methods in steps that are not cut, all of which must be refused or go wrong for all to see.
+/// Explicit methods in steps that are not cut, all of which must be refused or fail visibly.
 const EXPLICIT: [&str; 6] = [
     "forward-euler",
     "symplectic-euler",

@@ -72,7 +72,7 @@ impl Tally {
         self.worst.include(demand.figure / demand.limit, what);
     }
 
-    /// Takes note of something that must not be.
+    /// Records a fault.
     pub(crate) fn fault(&mut self, what: String) {
         self.faults.push(what);
     }
