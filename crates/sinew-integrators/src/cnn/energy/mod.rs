@@ -37,14 +37,12 @@ pub use self::kind::Kind;
 ///
 /// Let `E = v'M v/2 + W(u)` before the step and P be the mean load over it. A displacement y may be taken if
 /// `W(u + y) - P'y <= E`; then the velocity is reduced, if necessary, until `E+ <= E + P'y`. Implicit Euler's
-/// potential under the load P is E at y = 0, up to the
-/// constant `v'M v/2`, and never less than `W(u + y) - P'y`, as M and D have no negative eigenvalues; the sweeps only lower it. So its y
-/// may be taken after any number of sweeps. If the trapezoidal rule's y may not, the step is taken again by implicit
-/// Euler.
-/// If rounding spoils even that, or no sweep finds a lower point, the body keeps its displacement and gets zero
-/// velocity. Energies are compared by their difference along the step, so that rounding of a large constant energy
-/// spoils nothing. Both include supports at their places at the end of the step: the work of moving ones is counted
-/// separately.
+/// potential under the load P is E at y = 0, up to the constant `v'M v/2`, and never less than `W(u + y) - P'y`, as M
+/// and D have no negative eigenvalues; the sweeps only lower it. So its y may be taken after any number of sweeps. If
+/// the trapezoidal rule's y may not, the step is taken again by implicit Euler. If rounding spoils even that, or no
+/// sweep finds a lower point, the body keeps its displacement and gets zero velocity. Energies are compared by their
+/// difference along the step, so that rounding of a large constant energy spoils nothing. Both include supports at
+/// their places at the end of the step: the work of moving ones is counted separately.
 ///
 /// # Contact
 ///
