@@ -112,7 +112,7 @@ pub fn fastest_time(model: &Model) -> f64 {
     spectrum.critical_step().min(1.0 / damping)
 }
 
-/// Bodies of up to `cells` grid cells each way.
+/// Bodies of up to `cells` grid cells along each axis.
 pub fn bodies_up_to(cells: usize) -> impl Strategy<Value = Body> {
     let split = prop_oneof![Just(Split::Kuhn), Just(Split::Mirrored)];
     let size = uniform3(0.01..0.04);
@@ -138,7 +138,7 @@ pub fn bodies_up_to(cells: usize) -> impl Strategy<Value = Body> {
     })
 }
 
-/// Bodies of up to four grid cells each way.
+/// Bodies of up to four grid cells along each axis.
 pub fn bodies() -> impl Strategy<Value = Body> {
     bodies_up_to(4)
 }
@@ -253,7 +253,7 @@ fn renumbered(mesh: &TetMesh, order: &[u32]) -> TetMesh {
     }
 }
 
-/// A modulus [Pa] of soft tissue or of something stiffer.
+/// A modulus [Pa] of soft tissue or of a stiffer material.
 fn modulus() -> impl Strategy<Value = f64> {
     (2.0..5.0).prop_map(|power| 10.0_f64.powf(power))
 }
