@@ -152,7 +152,7 @@ pub fn relative_error(found: &[Vec<f64>], exact: &[Vec<f64>]) -> f64 {
     ErrorNorm::between(found, exact)
 }
 
-/// A cube that is stretched by half along z at the volume of rest, and let go.
+/// A cube that is stretched by half along z at constant volume, and released.
 ///
 /// # Errors
 /// [`LabError`].

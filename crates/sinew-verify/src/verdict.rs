@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Verdict on a figure that something is asked of.
+/// Verdict on a figure with a requirement.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum MarkVerdict {

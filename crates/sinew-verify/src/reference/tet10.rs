@@ -1,7 +1,7 @@
 //! The 10-node tetrahedron with quadratic displacement and straight edges.
 //!
-//! It bends without locking and gives way in volume almost as it should, so that its figures converge fast. It shares nothing
-//! with the library's elements but sparse matrices and their factors.
+//! It bends without locking and hardly locks in volume, so that its figures converge fast. It shares only sparse
+//! matrices and their factors with the library's elements.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;

@@ -353,7 +353,8 @@ impl BeamMesh {
         }
     }
 
-    /// Digits as printed on meshes that are the same to the last node; patches grow in other ways on meshes without a grid.
+    /// Digits as printed on meshes that are the same to the last node; patches grow differently on meshes without a
+    /// grid.
     fn asked(self, kind: Kind, value: f64) -> Asked {
         match self {
             Self::Gmsh(_) if kind != Kind::P1 => Asked::relative(value, 0.03),

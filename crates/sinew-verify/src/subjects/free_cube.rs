@@ -267,7 +267,7 @@ fn free(mesh: &TetMesh, nu: f64, element: Element) -> Result<Model, LabError> {
 }
 
 /// Supports of six components that take away rigid motions and nothing else: both forms of energy vanish on these motions, so
-/// that the eigenvalues between the forms stay as they are.
+/// that the eigenvalues between the forms are unchanged.
 fn against_rigid_motions(mesh: &TetMesh) -> Vec<Fixed> {
     let (low, high) = mesh.bounding_box();
     let corner = |place| On::Nodes(vec![mesh.nearest_node(place).0]);
