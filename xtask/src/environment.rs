@@ -81,7 +81,7 @@ impl Environment {
         self.program("python")
     }
 
-    /// Runs a program that a package brought.
+    /// A command for a program that a package installed.
     pub(crate) fn program(&self, name: &str) -> Command {
         Command::new(self.folder.join("bin").join(name))
     }

@@ -21,7 +21,7 @@ pub(crate) struct Packages {
     pub(crate) folder: &'static str,
     /// Names and versions in pip's form.
     pub(crate) names: &'static [&'static str],
-    /// True if they bring libraries that lie next to the modules, which pip's `--target` leaves out.
+    /// True if they contain libraries next to the modules, which pip's `--target` leaves out.
     pub(crate) beside_libraries: bool,
 }
 
@@ -62,7 +62,7 @@ impl Python {
         })
     }
 
-    /// The folder of programs that packages bring.
+    /// The folder of programs that packages install.
     pub(crate) fn programs(&self) -> PathBuf {
         self.programs.clone()
     }

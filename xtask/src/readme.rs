@@ -1,4 +1,4 @@
-//! `cargo xtask readme`: the commands of README.md, run as they are written there.
+//! `cargo xtask readme`: runs the commands of README.md as written there.
 
 use std::fs;
 use std::path::Path;
@@ -91,7 +91,7 @@ fn shell(line: &str, folder: &Path) -> Result<std::process::Output, Failure> {
         .map_err(|error| Failure::Input(format!("cannot run sh: {error}")))
 }
 
-/// The command as it is run here.
+/// The form of a command in which it is run here.
 fn as_run(command: &str) -> String {
     match NOT_RUN.iter().any(|(other, _)| *other == command) {
         true => format!("{command} --help"),

@@ -125,7 +125,7 @@ pub(super) fn compare(read: &str, expected: &str) -> Result<usize, Difference> {
     }
 }
 
-/// A line with its numbers as Rust shows them, since Python shows some in another way.
+/// A line with its numbers as Rust prints them, since Python prints some differently.
 fn normalised(line: &str) -> String {
     let word = |word: &str| match word.parse::<f64>() {
         Ok(number) => format!("{number:?}"),

@@ -8,7 +8,7 @@ use crate::failure::Failure;
 /// Requirements of a program.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) enum Needs {
-    /// No library of the system: it brings all it needs.
+    /// No library of the system: the program contains all it needs.
     Nothing,
     /// The C library of GNU from this version on: major, minor, patch.
     Glibc([u32; 3]),

@@ -9,7 +9,7 @@ use tungstenite::{Message, WebSocket, client};
 
 use crate::failure::Failure;
 
-/// Longest time for an answer.
+/// Longest time for a response.
 const PATIENCE: Duration = Duration::from_secs(60);
 
 /// A tab.

@@ -1,4 +1,4 @@
-//! No two files of a crate, and no two modules at its top, import each other, directly or by way of others.
+//! No two files of a crate, and no two modules at its top, import each other, directly or indirectly.
 
 use std::path::Path;
 

@@ -45,7 +45,7 @@ pub(super) const LIGHT: &[Light] = &[
 
 const HEAVY: &[&str] = &["faer", "nalgebra", "rayon"];
 
-/// Libraries of the `sinew` command, which the library of that name must not bring along.
+/// Libraries of the `sinew` command, on which the library of that name must not depend.
 const COMMAND: &[&str] = &["clap", "comfy-table", "annotate-snippets", "axum", "tokio"];
 
 /// Checks for tests, which a release has no use for.

@@ -119,7 +119,7 @@ impl Seen {
         }
     }
 
-    /// Takes note of a path that leads to an impure module.
+    /// Records a path that leads to an impure module.
     fn name(&mut self, path: &[String]) {
         if let [first, second, ..] = path
             && first == "std"
