@@ -249,8 +249,8 @@ struct Folder {
 }
 
 impl Folder {
-    /// Checks, before anything is measured, that the folder is new or empty, or holds an earlier result of the same kind
-    /// of bench, and that these files may be written. Changes nothing.
+    /// Checks, before anything is measured, that the folder is new or empty, or contains an earlier result of the
+    /// same kind of bench, and that these files may be written. Changes nothing.
     fn check(&self, names: &[String]) -> Result<(), OutputError> {
         self.files.check(names)?;
         OwnedFolder::check(self.files.path(), self.kind, &self.inputs)?;
@@ -318,7 +318,7 @@ fn failed_marks(results: &BenchResults) -> Option<String> {
     (count > 0).then(|| format!("{count} marks not passed: {list}"))
 }
 
-/// A list of what is missing from the results, if anything is.
+/// A list of missing results, if any.
 fn missing(results: &BenchResults) -> Option<String> {
     let missing = results.all_missing();
     let list: Vec<String> = missing.iter().map(ToString::to_string).collect();

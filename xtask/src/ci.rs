@@ -12,8 +12,8 @@ use crate::failure::Failure;
 use crate::repository::root;
 use crate::{book, compare, memory, python_test, rules, to_a_scene};
 
-/// Seed of the random cases of properties: a change fails for what it did, and not for new luck. `cargo test` alone
-/// draws new cases each time.
+/// Seed of the random cases of properties, so that a failure is due to a change and not to new cases. `cargo test`
+/// alone draws new cases each time.
 const SEED_OF_CASES: &str = "1";
 
 #[derive(clap::Args)]
@@ -100,7 +100,7 @@ const fn own(name: &'static str, check: fn() -> Result<(), Failure>) -> Step {
 }
 
 impl Step {
-    /// Runs it, and tells what it cost.
+    /// Runs it, and returns its cost.
     fn run(&self) -> Result<Cost, Failure> {
         say(&format!("\n== {}{}", self.name, self.command()))?;
         let watch = Stopwatch::start();
@@ -182,7 +182,7 @@ impl Failed {
     }
 }
 
-/// Runs the kernels' tests under valgrind, where it is installed.
+/// Runs the kernels' tests under valgrind, if it is installed.
 fn watch_memory_if_possible() -> Result<(), Failure> {
     match memory::has_valgrind() {
         true => memory::under_valgrind(),
@@ -190,7 +190,7 @@ fn watch_memory_if_possible() -> Result<(), Failure> {
     }
 }
 
-/// Compares with programs that Python and pip bring, where there are Python and pip.
+/// Compares with programs that pip installs, if there are Python and pip.
 fn compare_if_possible() -> Result<(), Failure> {
     match unless_missing(compare::python())? {
         Ok(python) => compare::run_with(&python),
@@ -198,7 +198,7 @@ fn compare_if_possible() -> Result<(), Failure> {
     }
 }
 
-/// Tries the Python package, where there are Python and pip.
+/// Tests the Python package, if there are Python and pip.
 fn python_test_if_possible() -> Result<(), Failure> {
     match unless_missing(python_test::environment())? {
         Ok(environment) => python_test::run_with(&environment),

@@ -40,11 +40,11 @@ pub(crate) struct Arguments {
     target: Option<String>,
 }
 
-/// Builds the command, packs it with scenes, meshes, documents and licences with those of all that it links into `target/dist`, then unpacks the archive in
-/// a temporary folder and runs a scene there.
+/// Builds the command, packs it into `target/dist` with scenes, meshes, documents and all licences, those of linked
+/// crates included, then unpacks the archive in a temporary folder and runs a scene there.
 ///
 /// # Errors
-/// [`Failure`] where cargo, git or tar is missing or fails, and where the unpacked command does.
+/// [`Failure`] if cargo, git or tar is missing or fails, or if the unpacked command does.
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let host = host()?;
     let target = arguments.target.as_deref().unwrap_or(&host);

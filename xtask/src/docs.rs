@@ -79,7 +79,7 @@ pub(crate) fn run() -> Result<(), Failure> {
     Ok(())
 }
 
-/// The text with this table and a line on the computer between its marks; `None` where it has none.
+/// The text with this table and a line on the computer between its marks; `None` if it has none.
 fn with_table(text: &str, table: &str, machine: &str) -> Option<String> {
     let (before, rest) = text.split_once(BEGIN)?;
     let (_, after) = rest.split_once(END)?;

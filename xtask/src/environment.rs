@@ -25,7 +25,7 @@ impl Environment {
     /// The environment with these packages under `target`, made unless it is there.
     ///
     /// # Errors
-    /// [`Failure::Input`] where there is no Python 3.10 or later with venv and pip, [`Failure::Chore`] where pip fails.
+    /// [`Failure::Input`] if there is no Python 3.10 or later with venv and pip, [`Failure::Chore`] where pip fails.
     pub(crate) fn with(name: &str, packages: &[&str], target: &Path) -> Result<Self, Failure> {
         let (program, version) = supported()?;
         let own = Self {
@@ -81,7 +81,7 @@ impl Environment {
         self.program("python")
     }
 
-    /// Runs a program that a package brought.
+    /// A command for a program that a package installed.
     pub(crate) fn program(&self, name: &str) -> Command {
         Command::new(self.folder.join("bin").join(name))
     }

@@ -16,8 +16,8 @@ const PACKAGES: Packages = Packages {
     beside_libraries: true,
 };
 
-/// The file of a block of some 50,000 tetrahedra, which gmsh makes unless it is there; `None`, with a line that says
-/// why, where it cannot.
+/// The file of a block of some 50,000 tetrahedra, which gmsh makes unless it exists; `None`, with a line on the
+/// reason, if that fails.
 pub(crate) fn block() -> Result<Option<PathBuf>, Failure> {
     let target = root().join("target");
     let file = target.join("gmsh-block.msh");

@@ -35,7 +35,7 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 use sinew_core::CountingAllocator;
 
-/// Counts what the kernels' bench asks about.
+/// Counts allocations for the kernels' bench.
 #[global_allocator]
 static ALLOCATOR: CountingAllocator = CountingAllocator;
 

@@ -17,7 +17,7 @@ const PROGRAMS: [(&[&str], &str); 2] = [(&["--lib"], ""), (&["--test", "all"], "
 /// whichever is there.
 ///
 /// # Errors
-/// [`Failure::Input`] where neither is.
+/// [`Failure::Input`] if neither is.
 pub(crate) fn run() -> Result<(), Failure> {
     let (valgrind, miri) = (has_valgrind(), has_miri());
     if valgrind {

@@ -10,7 +10,7 @@ use crate::repository::root;
 
 /// Cells along an edge of the paper's cube: 1331 nodes, 6000 tetrahedra.
 const PAPER_CELLS: usize = 10;
-/// Edge of the paper's cube (m). The paper gives none; at 0.2 m its three claims hold (see ARCHITECTURE.md).
+/// Edge of the paper's cube (m). The paper gives none; at 0.2 m its three claims are true (see ARCHITECTURE.md).
 const PAPER_EDGE: f64 = 0.2;
 
 /// The cube with a sliver: cells along an edge, edge (m).

@@ -1,4 +1,4 @@
-//! `cargo xtask native`: a portable build of the kernels beside one for this very processor.
+//! `cargo xtask native`: a portable build of the kernels compared with one for this very processor.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;

@@ -1,4 +1,4 @@
-//! `cargo xtask power-loss`: what is left of a run when the power goes.
+//! `cargo xtask power-loss`: the rest of a run after a loss of power.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -31,8 +31,8 @@ const SCENE: &str = "[mesh]\ncube = { cells = 6, edge = 0.1 }\n[[region]]\ndensi
                      integrator = \"central-difference\"\ndt = 0.001\n[[probe]]\nname = \"top\"\n\
                      point = [0.05, 0.05, 0.1]\n[output]\ncheckpoint = { every = 0.05 }\nfields = { frames = 400 }\n";
 
-/// Stops the file system of a folder as a loss of power does: what the disk has not got is lost (`EXT4_IOC_SHUTDOWN` without flushing the log,
-/// include/uapi/linux/ext4.h).
+/// Stops the file system of a folder as a loss of power does: data not yet on the disk are lost (`EXT4_IOC_SHUTDOWN`
+/// without flushing the log, include/uapi/linux/ext4.h).
 const SHUTDOWN: &str = "open(my $f, '<', $ARGV[0]) or die $!; my $flags = pack('L', 2); ioctl($f, 0x8004587d, $flags) or die $!";
 
 /// A file system of its own, in a file.
@@ -83,7 +83,7 @@ impl Drop for Disk {
     }
 }
 
-/// Runs a program whose output matters only where it fails.
+/// Runs a program whose output matters only if it fails.
 fn quietly(program: &str, arguments: &[&str]) -> Result<(), String> {
     let output = Command::new(program).args(arguments).output();
     let output = output.map_err(|error| format!("{program}: {error}"))?;
@@ -192,7 +192,7 @@ fn expect((status, said): (ExitStatus, String)) -> Result<(), Failure> {
     }
 }
 
-/// Contents of all files of a result by their names, but for what is said of the computer.
+/// Contents of all files of a result by their names, without facts about the computer.
 fn contents(folder: &Path) -> Result<BTreeMap<PathBuf, Vec<u8>>, Failure> {
     let mut found = BTreeMap::new();
     let mut waiting = vec![folder.to_owned()];

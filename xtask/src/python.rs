@@ -21,7 +21,7 @@ pub(crate) struct Packages {
     pub(crate) folder: &'static str,
     /// Names and versions in pip's form.
     pub(crate) names: &'static [&'static str],
-    /// True if they bring libraries that lie next to the modules, which pip's `--target` leaves out.
+    /// True if they contain libraries next to the modules, which pip's `--target` leaves out.
     pub(crate) beside_libraries: bool,
 }
 
@@ -37,7 +37,7 @@ impl Python {
     ///
     /// # Errors
     ///
-    /// [`Failure::Input`] where there is no Python 3 or no pip, [`Failure::Chore`] where pip fails.
+    /// [`Failure::Input`] if there is no Python 3 or no pip, [`Failure::Chore`] where pip fails.
     pub(crate) fn with(packages: &Packages, target: &Path) -> Result<Self, Failure> {
         let (program, version) = find().ok_or_else(|| {
             Failure::Input(format!(
@@ -62,7 +62,7 @@ impl Python {
         })
     }
 
-    /// The folder of programs that packages bring.
+    /// The folder of programs that packages install.
     pub(crate) fn programs(&self) -> PathBuf {
         self.programs.clone()
     }

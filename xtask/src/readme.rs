@@ -164,7 +164,7 @@ fn folder(path: &Path) -> std::io::Result<PathBuf> {
     Ok(path.to_owned())
 }
 
-/// The command as it is run here.
+/// The form of a command in which it is run here.
 fn as_run(command: &str) -> String {
     match NOT_RUN.iter().any(|(other, _)| *other == command) {
         true => format!("{command} --help"),

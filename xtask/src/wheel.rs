@@ -17,7 +17,7 @@ pub(crate) struct Arguments {
     /// Folder of the wheel
     #[arg(long, value_name = "DIR", default_value = "target/wheel")]
     out: PathBuf,
-    /// Make a source distribution too, and build the wheel from it: all is compiled anew
+    /// Make a source distribution too, and build the wheel from it: all is compiled again
     #[arg(long)]
     sdist: bool,
 }
@@ -29,10 +29,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     Ok(say(&format!("{}: {megabytes:.1} MB", wheel.display()))?)
 }
 
-/// Builds the wheel into a folder, which holds no other one then; its path.
+/// Builds the wheel into a folder, removing others from it; returns its path.
 ///
 /// # Errors
-/// As [`Environment::with`], and [`Failure::Chore`] where the build fails.
+/// Same as [`Environment::with`], and [`Failure::Chore`] if the build fails.
 pub(crate) fn build(out: &Path, sdist: bool) -> Result<PathBuf, Failure> {
     let environment = Environment::with("wheel", &[MATURIN], &root().join("target"))?;
     for old in wheels(out) {

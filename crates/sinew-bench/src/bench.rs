@@ -71,7 +71,7 @@ impl Bench {
     /// reference: the others are measured.
     ///
     /// # Errors
-    /// [`BenchError`] for mistakes in what was asked for, before anything is measured, and where
+    /// [`BenchError`] for mistakes in the request, before anything is measured, and if
     /// no scene can be measured.
     pub fn run(
         &self,
@@ -166,7 +166,7 @@ impl Bench {
         }
     }
 
-    /// The files that the bench reads, as far as its scenes can be read: no output may be one of
+    /// The files that the bench reads, for scenes that can be read: no output may be one of
     /// them.
     #[must_use]
     pub fn input_files(&self) -> Vec<PathBuf> {

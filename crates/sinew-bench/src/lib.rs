@@ -1,6 +1,6 @@
 //! Cases x integrators x steps: error, cost and stability verdicts, as JSON, tables, SVG and HTML.
 //!
-//! [`Bench`] goes through all combinations, measuring each as [`sinew_measure`] does; [`report`] shows
+//! [`Bench`] measures all combinations by [`sinew_measure`]; [`report`] shows
 //! the [`results`]; [`mod@beside`] compares our costs with another program's.
 
 mod bench;

@@ -1,7 +1,7 @@
 //! Errors and costs of other systems on the peers' cube, measured by us.
 //!
 //! Measured once, on one machine and one thread, each program on the same mesh with the same lumped
-//! mass and load. Times from there say nothing next to times from elsewhere, so only ratios to one
+//! mass and load. Those times are not comparable with times from other machines, so only ratios to one
 //! rival's cost leave this module; `cargo xtask bench --beside scipy` runs that rival again.
 
 /// Id of the case the figures belong to.

@@ -3,7 +3,7 @@
 use sinew_fem::{Element, LoadKind, Problem};
 use sinew_verify::bodies::{YOUNGS_MODULUS, body, held, load};
 
-/// The peers' tissue, undamped, held on one group and pressed on another.
+/// The peers' tissue, undamped, fixed on one group and pressed on another.
 pub(crate) fn problem(on: &str, pressed: &str) -> Problem {
     Problem {
         fixed: vec![held(on, [true; 3])],

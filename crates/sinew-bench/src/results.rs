@@ -1,8 +1,8 @@
-//! Results of a bench: what `results.json` holds.
+//! Results of a bench: the content of `results.json`.
 //!
 //! JSON has no NaN and no infinity. A figure that need not be there is an `Option`; any other number
 //! that is not finite is written as `null`, read as NaN, and named with its reason in the list
-//! `missing`, so that it costs nothing but itself.
+//! `missing`, so that only this number is lost.
 
 use serde::{Deserialize, Serialize};
 use sinew_measure::{CaseInfo, Row};
@@ -28,7 +28,7 @@ pub struct BenchResults {
     pub schema: u32,
     /// Revision of the source that ran.
     pub revision: String,
-    /// The subject of the page, where it is not what accuracy costs.
+    /// The subject of the page, if it is not the cost of accuracy.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub subject: Option<String>,
     /// Date of the run, as the caller wishes to write it.
@@ -43,8 +43,8 @@ pub struct BenchResults {
     /// Runs that were asked for and not made.
     #[serde(default)]
     pub skipped: Vec<Skipped>,
-    /// Scenes and maps that are missing. What is written holds the numbers that cannot be shown as
-    /// well; [`BenchResults::all_missing`] tells both.
+    /// Missing scenes and maps. The written file also lists the numbers that cannot be shown;
+    /// [`BenchResults::all_missing`] returns both.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub missing: Vec<Missing>,
     /// Pass marks of hard cases.

@@ -1,4 +1,4 @@
-//! Runs whose time is taken, and which count only where they came to their end.
+//! Timed runs, which count only if they were completed.
 
 use std::time::Instant;
 
@@ -104,7 +104,7 @@ mod tests {
 
     use super::*;
 
-    /// A machine that is broken in one way.
+    /// A machine with one defect.
     #[derive(Debug)]
     enum Broken {
         Refuses,

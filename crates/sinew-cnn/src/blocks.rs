@@ -2,7 +2,7 @@
 
 use sinew_core::{BlockMatrix, Layers};
 
-/// Share of the largest entry below which a pivot counts as zero: the cell feels nothing that way.
+/// Share of the largest entry below which a pivot counts as zero: the cell has no stiffness in that direction.
 const NEGLIGIBLE: f64 = 1e-12;
 
 /// Symmetric blocks on the diagonal, one for each cell, each `layers` x `layers`, row-major.

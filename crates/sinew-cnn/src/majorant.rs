@@ -37,7 +37,7 @@ pub enum Blend {
 /// Share of `dt/2 D'` that is added to M, D' being the damping other than alpha M.
 ///
 /// The force `F - K u - D' v` is taken with the velocity half a step behind the displacement; the
-/// share of `dt/2 D'` in P brings that share of the damping to the middle of the step.
+/// share of `dt/2 D'` in P moves that share of the damping to the middle of the step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DampingShare {
     /// The share s, as of `dt^2/4 K`. The rest lags by half a step as it does in central difference.

@@ -10,7 +10,7 @@ use sinew_core::{
 use crate::Machine;
 use crate::program::{Loads, Program, Register, Sweep};
 
-/// Sweeps after which the estimate is taken as it is.
+/// Sweeps after which the estimate is accepted.
 const MOST_SWEEPS: usize = 10_000;
 /// Sweeps between two checks of the estimate.
 const SWEEPS_A_LOOK: usize = 20;
@@ -71,7 +71,7 @@ pub fn largest_eigenvalue(
 }
 
 /// A bound (1/s^2) of the eigenvalues of `M^-1 K`: the largest row sum (Gershgorin) of the similar matrix
-/// `M^-1/2 K M^-1/2`, which unequal masses do not spoil. Infinite where an entry is not a number.
+/// `M^-1/2 K M^-1/2`, which unequal masses do not spoil. Infinite if an entry is not a number.
 fn bound(operators: &LinearOperators) -> f64 {
     let stiffness = operators.stiffness();
     let (mass, layers) = (operators.mass(), stiffness.layers().count());

@@ -24,7 +24,8 @@ pub(crate) struct SlowestMode {
 }
 
 impl SlowestMode {
-    /// Lowers Rayleigh's quotient of K and M by conjugate gradients (Bradbury and Fletcher, Numer. Math. 9, 1966) with the blocks of K for a preconditioner and directions of Polak and Ribiere, beside the rigid motions
+    /// Lowers Rayleigh's quotient of K and M by conjugate gradients (Bradbury and Fletcher, Numer. Math. 9, 1966)
+    /// with the blocks of K for a preconditioner and directions of Polak and Ribiere, orthogonal to the rigid motions
     /// of these parts; `None` if nothing is strained.
     pub(crate) fn of(operators: &LinearOperators, parts: &[FreePart]) -> Option<Self> {
         let (stiffness, mass) = (operators.stiffness(), operators.mass());

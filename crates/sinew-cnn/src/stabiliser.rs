@@ -154,8 +154,8 @@ impl Stabiliser {
         }
     }
 
-    /// The same with P = M' on the rigid motions of these parts, as far as W resists none of them. P stays above A: with the blocks by
-    /// [`Deflation`], beside an iteration by [`Projection`].
+    /// The same with P = M' on the rigid motions of these parts that W does not resist. P stays above A: with the
+    /// blocks by [`Deflation`], with an iteration by [`Projection`].
     #[must_use]
     pub fn sparing(mut self, parts: Vec<FreePart>) -> Self {
         if self.majorant.adds_nothing() || self.majorant.mass_suffices() {
@@ -223,7 +223,8 @@ impl Stabiliser {
         parts
     }
 
-    /// The slowest elastic motion and by how much steps slow it down, by the inertia that it has in P instead of M; `None` where nothing is added or nothing strained.
+    /// The slowest elastic motion and by how much steps slow it down, by the inertia that it has in P instead of M;
+    /// `None` if nothing is added or nothing strained.
     /// Its first request takes some hundred sweeps.
     #[must_use]
     pub fn slowing(&self) -> Option<Slowing> {

@@ -1,7 +1,7 @@
 //! Clocks by which the cost of a run is measured.
 
-/// The clock that tells the cost of a run, named by whoever takes its steps ([`crate::Integrator::cost_clock`]). This
-/// crate reads no clock: whoever measures does.
+/// The clock that measures the cost of a run, named by the integrator that takes its steps
+/// ([`crate::Integrator::cost_clock`]). This crate reads no clock: the caller measures.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum CostClock {
     /// CPU time of the calling thread: other processes do not count, and neither do threads that help it.
@@ -9,9 +9,9 @@ pub enum CostClock {
     CallingThread,
     /// CPU time of all threads of the process, for steps that threads share evenly.
     AllThreads,
-    /// Wall time, for work that no CPU clock sees.
+    /// Wall time, for work that no CPU clock measures.
     Wall {
-        /// Reason why no CPU clock tells the cost, such as `the steps run on a graphics processor`.
+        /// Reason why no CPU clock measures the cost, such as `the steps run on a graphics processor`.
         reason: &'static str,
     },
 }

@@ -43,8 +43,7 @@ impl CountingAllocator {
     }
 
     /// Result of `body`, and the peak of the bytes that this thread allocated during it, beyond those at its
-    /// beginning; 0 if
-    /// it is not the global allocator.
+    /// beginning; 0 if it is not the global allocator.
     pub fn peak<T>(body: impl FnOnce() -> T) -> (T, usize) {
         let before = HELD.get();
         PEAK.set(before);

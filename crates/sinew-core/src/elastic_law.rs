@@ -52,8 +52,9 @@ pub trait ElasticLaw: Send + Sync {
         out: &mut [f64],
     ) -> Result<(), EvaluationError>;
 
-    /// `out = S w` (N), S being the matrix by which stable steps go, symmetric: the exact tangent, with what loads that follow the surface add to it, and with
-    /// parts that are idle but may act before the next step as if they did. About two sweeps.
+    /// `out = S w` (N), S being the symmetric matrix that determines stable steps: the exact tangent with the
+    /// symmetric load stiffness, and with idle parts that may act before the next step, as if active. About two
+    /// sweeps.
     ///
     /// # Errors
     /// As [`ElasticLaw::elastic_force`].
@@ -66,7 +67,8 @@ pub trait ElasticLaw: Send + Sync {
         self.tangent_product(trial, TangentKind::Exact, w, out)
     }
 
-    /// The square (1/s^2) of the largest frequency of plane waves as short as an element, at most half a sweep; `None` for a law that does not tell.
+    /// The square (1/s^2) of the largest frequency of plane waves as short as an element, at most half a sweep;
+    /// `None` for a law without it.
     ///
     /// It is not itself a bound of the largest eigenvalue of `M^-1 S`, S being that of
     /// [`ElasticLaw::stiffest_product`], but grows about as that does when the
@@ -78,8 +80,8 @@ pub trait ElasticLaw: Send + Sync {
         Ok(None)
     }
 
-    /// Writes a symmetric positive semidefinite block (N/m, row-major, layers each way) for every cell: its own block of the tangent, or more
-    /// where that has a negative eigenvalue.
+    /// Writes a symmetric positive semidefinite block (N/m, row-major, layers x layers) for every cell: its own block
+    /// of the tangent, or more if that has a negative eigenvalue.
     ///
     /// # Errors
     /// As [`ElasticLaw::elastic_force`].
@@ -94,7 +96,7 @@ pub trait ElasticLaw: Send + Sync {
     /// displacement: Newton's method adds it to the exact tangent.
     ///
     /// # Errors
-    /// [`EvaluationError`] where `out` has no block for a coupling; its entries are then unspecified.
+    /// [`EvaluationError`] if `out` has no block for a coupling; its entries are then unspecified.
     fn add_load_stiffness(
         &self,
         _trial: &Trial<'_>,
@@ -125,8 +127,7 @@ pub trait ElasticLaw: Send + Sync {
     /// displacement alone, symmetric and positive semidefinite. About a sweep.
     ///
     /// Unless a law has another, V is the factor times the tangent at constant rotations, and supports are at rest. A
-    /// law of bodies that turn
-    /// needs one that does not act on a rigid motion.
+    /// law of bodies that turn needs one that does not act on a rigid motion.
     ///
     /// # Errors
     /// As [`ElasticLaw::elastic_force`].

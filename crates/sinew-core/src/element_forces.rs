@@ -59,7 +59,7 @@ pub trait ElementSweep<T>: Debug + Send + Sync {
     /// Begins a sweep at a time.
     ///
     /// # Errors
-    /// [`EvaluationError`] where a support follows an input that the time does not bring.
+    /// [`EvaluationError`] if a support follows an input that the time does not bring.
     fn begin(&mut self, when: LoadTime<'_>) -> Result<(), EvaluationError>;
 
     /// Reads the displacement (m) at some positions from a vector.
@@ -87,7 +87,7 @@ pub trait ElementSweep<T>: Debug + Send + Sync {
 /// Makes a whole sweep by the calling thread: from the displacement in one vector to the forces in another.
 ///
 /// # Errors
-/// [`EvaluationError`] where the law is not defined for the displacement.
+/// [`EvaluationError`] if the law is not defined for the displacement.
 #[allow(unsafe_code, reason = "nobody else uses what is borrowed")]
 pub fn sweep_alone<T: ElementPrecision>(
     sweep: &mut dyn ElementSweep<T>,

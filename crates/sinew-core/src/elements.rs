@@ -19,7 +19,7 @@ pub trait Elements: Send + Sync {
 pub struct ElementStiffness {
     /// The cells it couples.
     pub cells: Vec<u32>,
-    /// Its entries (N/m), row-major and cell-major, all layers of its cells each way.
+    /// Its entries (N/m), row-major and cell-major, with all layers of its cells in rows and columns.
     pub matrix: Vec<f64>,
 }
 

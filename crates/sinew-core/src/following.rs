@@ -15,15 +15,15 @@ const SETTLED: f64 = 1.005;
 const NOISE: f64 = 0.1;
 
 /// An estimate from below, by some thousandths, of the largest eigenvalue of `M^-1 S`, S symmetric and M diagonal,
-/// where S is hardly another one than in the call before: one product improves the two fields, of the length of `mass`
+/// when S has changed little since the call before: one product improves the two fields, of the length of `mass`
 /// each, that have turned towards its vector. Without such fields it begins from noise that is always the same, by
 /// [`PRODUCTS_OF_BEGINNING`] products. `multiply(x, out)` writes `out = S x`; `room` is scratch space, of the length of
 /// `mass`.
 ///
 /// Chebyshev's recurrence (Saad, Numerical Methods for Large Eigenvalue Problems, section 7.4), scaled again in each
-/// step: eigenvalues from -.45 to .9 of the estimate stay as they are, those beyond grow, the one that was found by 1.7
+/// step: eigenvalues from -.45 to .9 of the estimate are unchanged, those beyond grow, the one that was found by 1.7
 /// and one half as large again by 3.5 in a product. So it turns to another vector within a few products, where the
-/// power iteration, by which they grow as the eigenvalues, would take some ten. Infinite where products are not finite.
+/// power iteration, by which they grow as the eigenvalues, would take some ten. Infinite if products are not finite.
 ///
 /// # Errors
 /// That of `multiply`.

@@ -1,7 +1,7 @@
 //! A hash that is the same in every process and on every machine.
 
-/// FNV-1a with 64 bits (Fowler, Noll, Vo and Eastlake, The FNV non-cryptographic hash algorithm): it tells
-/// any two texts apart that differ in one byte.
+/// FNV-1a with 64 bits (Fowler, Noll, Vo and Eastlake, The FNV non-cryptographic hash algorithm): any two texts
+/// that differ in one byte have different hashes.
 #[derive(Clone, Copy, Debug)]
 pub struct Hash(u64);
 

@@ -8,9 +8,9 @@ use crate::ramp::{Channel, Ramp, RampError};
 /// Inputs that a caller gives while a simulation runs: forces of a user, factors of loads, positions of supports.
 ///
 /// The caller owns them and passes them with every step. They are a record: each value is kept
-/// with its time, so that a run that is driven by them is a function of them, and the same record
-/// played again gives the same bits. A method sees a force that was given frame by frame exactly as
-/// it would see the same force known beforehand.
+/// with its time, so that a run is a function of its inputs, and the same record played again gives the
+/// same bits. A method receives a force that was given frame by frame exactly as it would receive the
+/// same force known beforehand.
 ///
 /// ```
 /// use sinew_core::Inputs;
@@ -120,7 +120,7 @@ impl Inputs {
     }
 
     /// Replaces the forces that act from outside by these from `t` (s) on: (degree of freedom,
-    /// force (N)). What was given for `t` and later is replaced, so that a run that goes back to a
+    /// force (N)). Forces given for `t` and later are replaced, so that a run that returns to a
     /// checkpoint can be given other forces from there on.
     ///
     /// # Errors

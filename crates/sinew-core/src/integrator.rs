@@ -147,7 +147,7 @@ pub trait Integrator: Send {
         None
     }
 
-    /// The clock that tells the cost of its steps, once it is set up.
+    /// The clock that measures the cost of its steps, once it is set up.
     fn cost_clock(&self) -> CostClock {
         CostClock::default()
     }
@@ -163,11 +163,11 @@ pub struct Fact {
 }
 
 impl Batch<'_> {
-    /// Sets the integrator up, checks the state and takes the steps: the one way to take a step.
+    /// Sets the integrator up, checks the state and takes the steps: the only function that takes steps.
     ///
     /// # Errors
     /// [`StepError`] when set-up fails or the system refuses a trial state, and [`StepError::Stalled`] for an integrator
-    /// that leaves steps out and does not say why.
+    /// that skips steps without an error.
     pub fn take<I: Integrator + ?Sized>(
         &mut self,
         integrator: &mut I,

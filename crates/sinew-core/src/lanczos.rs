@@ -2,7 +2,7 @@
 
 use sinew_sparse::vectors::{dot, noise, scale};
 
-/// Lanczos steps after which the estimate is taken as it is.
+/// Lanczos steps after which the estimate is accepted.
 pub(crate) const MAX_STEPS: usize = 600;
 
 /// The largest eigenvalue of `M^-1 S` for a symmetric positive semidefinite S and a diagonal M.

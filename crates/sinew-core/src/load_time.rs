@@ -102,7 +102,7 @@ impl LoadTime<'static> {
     }
 
     /// The loads at both ends of a step from `t` (s) to `t + dt`, for a method that adds up `1 - gamma` of
-    /// the first and gamma of the second. A line is taken beside the ends where gamma is not 1/2, so that
+    /// the first and gamma of the second. A line is taken at shifted times if gamma is not 1/2, so that
     /// the sum is its mean.
     #[must_use]
     pub fn at_both_ends(t: f64, dt: f64, gamma: f64) -> [Self; 2] {

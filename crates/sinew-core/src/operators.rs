@@ -163,7 +163,7 @@ impl LinearOperators {
 
     /// These matrices, shared, under other loads.
     ///
-    /// The new loads count from the beginning of time: a run that changes to them on its way continues with one-step
+    /// The new loads count from t = 0: a run that changes to them later continues with one-step
     /// methods only. Forces that change during a run are [`Inputs`].
     ///
     /// # Errors
@@ -177,8 +177,8 @@ impl LinearOperators {
         })
     }
 
-    /// These matrices with bounds that replace estimates of the largest eigenvalues of `M^-1 K` and `blockdiag(K)^-1
-    /// K`: bounds of elements stay valid after cuts, at no cost. They are not checked.
+    /// These matrices with bounds that replace estimates of the largest eigenvalues of `M^-1 K` and
+    /// `blockdiag(K)^-1 K`: bounds of elements stay valid after cuts, at no cost. They are not checked.
     #[must_use]
     pub fn with_element_bounds(mut self, bounds: ElementBounds) -> Self {
         let matrices = Arc::make_mut(&mut self.matrices);

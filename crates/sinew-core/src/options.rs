@@ -187,7 +187,7 @@ impl Options {
         Ok(given.unwrap_or(default))
     }
 
-    /// Reads an option by `read`; `None` where the option is absent.
+    /// Reads an option by `read`; `None` if the option is absent.
     ///
     /// # Errors
     /// [`OptionError::Value`] with `expected` when `read` returns `None`.

@@ -142,7 +142,7 @@ pub enum Accuracy {
 }
 
 impl Accuracy {
-    /// The order without or with damping; `None` where the method is exact.
+    /// The order without or with damping; `None` if the method is exact.
     #[must_use]
     pub fn order(self, damping: bool) -> Option<u8> {
         match self {

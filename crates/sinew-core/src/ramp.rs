@@ -375,7 +375,7 @@ impl Ramp {
         }
     }
 
-    /// Bound of the integral of the value's size over all time (s), which is infinite where the load
+    /// Bound of the integral of the value's size over all time (s), which is infinite if the load
     /// stays.
     #[must_use]
     pub fn impulse(&self) -> f64 {

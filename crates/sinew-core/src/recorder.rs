@@ -70,8 +70,8 @@ impl Moment<'_> {
     }
 }
 
-/// Sees a running simulation. It asks beforehand for the moments it wants, which saves copies and
-/// lets a method take many steps at once.
+/// An observer of a running simulation. It asks beforehand for the moments it wants, which saves copies and
+/// lets a method take many steps in one batch.
 pub trait Recorder {
     /// The first of the steps from `step` on (0: the initial state) after which it wants to see the
     /// state, if any.

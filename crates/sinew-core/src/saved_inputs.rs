@@ -1,4 +1,4 @@
-//! A record of inputs apart from its process, to be played again in another one.
+//! A record of inputs in a portable form, for replay in another process.
 
 use serde::{Deserialize, Serialize};
 

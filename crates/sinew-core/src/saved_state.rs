@@ -1,4 +1,4 @@
-//! A state apart from its process, to be continued in another one.
+//! A state in a portable form, to be continued in another process.
 
 use serde::{Deserialize, Serialize};
 

@@ -121,7 +121,7 @@ pub fn simulate_under(
     })
 }
 
-/// Steps of a motion that a recorder sees as one, however many calls take them.
+/// Steps of a motion that a recorder receives as one sequence, however many calls take them.
 pub struct RecordedSteps<'r, R: Recorder + ?Sized> {
     recorder: &'r mut R,
     watch: Watch,
@@ -169,7 +169,7 @@ impl<'r, R: Recorder + ?Sized> RecordedSteps<'r, R> {
         self.recorder
     }
 
-    /// Asks the recorder again for the degrees of freedom to watch: the system became another one.
+    /// Asks the recorder again for the degrees of freedom to watch, after the system changed.
     pub fn watch_again(&mut self) {
         self.watch = Watch::new(self.recorder.watches(), LONGEST_BATCH + 1);
     }

@@ -9,7 +9,7 @@ pub use crate::spectral_measure::{SpectralWeight, spectral_measure};
 
 use crate::operators::LinearOperators;
 
-/// 2/omega_max (s) of these matrices, the limit of undamped leapfrog; infinite where nothing
+/// 2/omega_max (s) of these matrices, the limit of undamped leapfrog; infinite if nothing
 /// vibrates.
 #[must_use]
 pub fn critical_step(operators: &LinearOperators) -> f64 {
@@ -64,7 +64,7 @@ impl Spectrum {
         }
     }
 
-    /// 2/omega_max (s), the limit of undamped leapfrog; infinite where nothing vibrates.
+    /// 2/omega_max (s), the limit of undamped leapfrog; infinite if nothing vibrates.
     #[must_use]
     pub fn critical_step(&self) -> f64 {
         2.0 / self.omega_max

@@ -63,7 +63,7 @@ pub struct StepCut {
     /// The square (1/s^2) of the fastest wave ([`crate::ElasticLaw::fastest_wave`]) at the time the stable step was
     /// found; 0 if the law gives none.
     pub wave: f64,
-    /// The square (1/s^2) of the fastest wave as it was seen last.
+    /// The square (1/s^2) of the fastest wave at the last check.
     pub seen: f64,
     /// The largest eigenvalue of `M^-1 D` over that of `M^-1 K` (s), D being the damping but for that by mass, as found then.
     pub damping: f64,
@@ -179,7 +179,7 @@ pub enum VelocityTime {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct DampedAt {
-    /// Offset for cells, after the velocity's own time: more than 0 where a state keeps the acceleration of the last
+    /// Offset for cells, after the velocity's own time: more than 0 if a state keeps the acceleration of the last
     /// kick, and damping does not lag by a whole step.
     pub cells: f64,
     /// Offset for moving supports, after the displacement's time: -1/2 means their displacement over the last step, 1/2
@@ -188,7 +188,7 @@ pub struct DampedAt {
 }
 
 impl DampedAt {
-    /// Damping by the velocities at the end of a step, which are the way over its time.
+    /// Damping by the velocities at the end of a step, which are its displacement over its time.
     pub const WAY_OF_STEP: Self = Self::supports(-0.5);
 
     /// Damping of a leapfrog that keeps the acceleration of its last kick, of which it takes this share at the displacement's time.

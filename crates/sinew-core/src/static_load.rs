@@ -12,7 +12,7 @@ pub trait StaticLoad {
     /// `out -= factor dF/du` (N/m), the symmetric part; nothing for loads that do not depend on the displacement.
     ///
     /// # Errors
-    /// [`EvaluationError`] where `out` has no block for a coupling; its entries are then unspecified.
+    /// [`EvaluationError`] if `out` has no block for a coupling; its entries are then unspecified.
     fn add_stiffness(
         &self,
         _u: &[f64],

@@ -7,7 +7,7 @@ use crate::state::{Acceleration, DampedAt, State, VelocityTime};
 use crate::system::System;
 use crate::trial::Trial;
 
-/// Reasons for which a velocity cannot be brought to the displacement's time.
+/// Reasons for which a velocity cannot be moved to the displacement's time.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SynchroniseError {
@@ -28,8 +28,8 @@ pub enum SynchroniseError {
 impl State {
     /// Writes the velocity at the displacement's time (m/s) into `out` (length of `u`).
     ///
-    /// A staggered velocity is brought there with the acceleration of the last kick, where the method
-    /// keeps one (its mass may be another than the system's), and otherwise with the acceleration at
+    /// A staggered velocity is moved there with the acceleration of the last kick, if the method
+    /// keeps one (its mass may differ from the system's), and otherwise with the acceleration at
     /// that time, which takes a force evaluation. Either is accurate to second order in the step; a
     /// velocity that is a mean over a step gives an estimate, for display.
     ///

@@ -68,8 +68,7 @@ pub trait System: Send + Sync {
     }
 
     /// True if [`System::accept`] reads the state. If it does not, machines that store u and v in a format of their
-    /// own
-    /// need not write them out after each step.
+    /// own need not write them out after each step.
     fn looks_at_steps(&self) -> bool {
         true
     }
@@ -106,7 +105,7 @@ pub trait System: Send + Sync {
         None
     }
 
-    /// Number of elements that are inside out at a time, with the displacement `u` then; `None` where the
+    /// Number of elements that are inside out at a time, with the displacement `u` then; `None` if the
     /// system has no elements, or moves by inputs that the time does not bring.
     fn inverted_elements(&self, _when: LoadTime<'_>, _u: &[f64]) -> Option<usize> {
         None
@@ -166,8 +165,8 @@ pub trait ForceLaw: Send + Sync {
         0.0
     }
 
-    /// Fingerprint that tells this law from others on the same masses, such as a hash of its parameters: the same in
-    /// every process.
+    /// Fingerprint that distinguishes this law from others on the same masses, such as a hash of its parameters: the
+    /// same in every process.
     fn fingerprint(&self) -> u64 {
         0
     }
@@ -183,8 +182,8 @@ pub trait ForceLaw: Send + Sync {
     }
 
     /// Bounds of the fastest motions about a state, or about rest, from which stable steps follow;
-    /// `None` where they are unknown. About rest to some digits; about a state, which is asked for during runs, an estimate to a few
-    /// per cent will do.
+    /// `None` if they are unknown. About rest to some digits; about a state, which is asked for during runs, an
+    /// estimate to a few per cent will do.
     fn spectrum(&self, _about: Option<&State>) -> Option<Spectrum> {
         None
     }
@@ -242,7 +241,7 @@ impl<'s> dyn System + 's {
         }
     }
 
-    /// The fastest motions about a state, or about rest; `None` where they are unknown.
+    /// The fastest motions about a state, or about rest; `None` if they are unknown.
     #[must_use]
     pub fn spectrum(&self, about: Option<&State>) -> Option<Spectrum> {
         match self.equations() {

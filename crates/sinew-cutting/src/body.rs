@@ -122,7 +122,7 @@ impl CuttableBody {
     /// The body of a mesh, uncut.
     ///
     /// # Errors
-    /// [`CutError`] where a face has more than two tetrahedra, or a tetrahedron names a node twice.
+    /// [`CutError`] if a face has more than two tetrahedra, or a tetrahedron names a node twice.
     pub fn new(mesh: &TetMesh, properties: Box<dyn TetProperties>) -> Result<Self, CutError> {
         let (nodes, tets) = (mesh.points.len(), mesh.tets.len());
         let spare = spare_nodes(nodes);
@@ -262,7 +262,7 @@ impl CuttableBody {
         &self.stroke
     }
 
-    /// The body as it is, in its own numbers.
+    /// The current body, in its own numbers.
     #[must_use]
     pub fn as_cut(&self) -> CutBody<'_> {
         CutBody {
@@ -273,13 +273,14 @@ impl CuttableBody {
         }
     }
 
-    /// The mesh of the body as it is, with the groups and the data of the uncut one, which must be the mesh that it was made of.
+    /// The mesh of the current body, with the groups and the data of the uncut one, which must be the mesh that it
+    /// was made of.
     #[must_use]
     pub fn mesh(&self, uncut: &TetMesh) -> CutMesh {
         uncut.after_cuts(self.as_cut())
     }
 
-    /// Mass of a tetrahedron as it is at rest (kg).
+    /// Mass of a tetrahedron (kg).
     #[must_use]
     pub fn mass_of(&self, tet: u32) -> f64 {
         self.properties.density(tet as usize) * crate::tet::volume(&self.vertices(tet))

@@ -18,10 +18,11 @@ impl CuttableBody {
     /// Cuts by a sheet in the current configuration, with these positions (m) of the nodes. Copies of nodes get the
     /// positions of their originals; nodes that are moved at rest onto the sheet get their new positions.
     ///
-    /// Nodes within a share `snap` of their shortest edge are moved first; 0 moves none. Where the sheet begins where the last one ended, its beginning
-    /// goes with the tissue that has moved since, and nodes keep the sides on which they were as the blade passed them. A face is cut that has tetrahedra of
-    /// both sides, once the blade is over its centroid or past its nodes, and has come through the tetrahedra beside it. So one that was entered in part
-    /// stays whole until a later stroke comes through; [`CuttableBody::lift`] forgets.
+    /// Nodes within a share `snap` of their shortest edge are moved first; 0 moves none. If the sheet begins at the
+    /// end of the last one, its beginning moves with the tissue since then, and nodes keep the sides on which the
+    /// blade passed them. A face is cut if it has tetrahedra on both sides, once the blade is over its centroid or
+    /// past its nodes, and has come through the tetrahedra next to it. So one that was entered in part stays whole
+    /// until a later stroke comes through; [`CuttableBody::lift`] forgets.
     ///
     /// # Errors
     /// [`CutError::Positions`] unless there is a position for each node; nothing is changed then.
@@ -273,7 +274,7 @@ impl CuttableBody {
             || nodes.all(|node| self.marks.has_passed(node))
     }
 
-    /// True if faces of a tetrahedron may be cut: the blade has come through it, or passes beside it.
+    /// True if faces of a tetrahedron may be cut: the blade has come through it, or passes outside it.
     fn lets_through(&self, tet: u32) -> bool {
         let mark = self.marks.of(tet);
         if mark.is_crossed() {

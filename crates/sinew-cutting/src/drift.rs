@@ -9,9 +9,9 @@ pub(crate) struct Drift {
     pub(crate) from: Vector,
     /// The blade by its length squared.
     pub(crate) along: Vector,
-    /// The way of tissue at the first end.
+    /// The displacement of tissue at the first end.
     pub(crate) at_first: Vector,
-    /// The way of tissue at the last end less that.
+    /// The displacement of tissue at the last end less that.
     pub(crate) slope: Vector,
 }
 

@@ -1,6 +1,6 @@
 //! Points of tissue in the plane of a sheet.
 
-/// A point of tissue, brought to the plane of a sheet along its normal.
+/// A point of tissue, projected onto the plane of a sheet along its normal.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Flat {
     /// Its place in the plane, from the sheet's centre.
@@ -22,7 +22,7 @@ impl Flat {
         }
     }
 
-    /// The point at a share of the way from one to another.
+    /// The point at a share of the segment from one to another.
     pub(crate) fn between([from, to]: [Self; 2], share: f64) -> Self {
         let part = |from: [f64; 2], to: [f64; 2]| {
             [0, 1].map(|axis| from[axis] + share * (to[axis] - from[axis]))

@@ -103,7 +103,7 @@ pub(crate) struct Marks {
     pub(crate) course: Course,
     /// The side of each node.
     pub(crate) sides: Vec<NodeSide>,
-    /// The side of each node that the blade has passed, as it was then.
+    /// The side of each node at the time when the blade passed it.
     pub(crate) passed: Vec<NodeSide>,
     /// Position (m) of each node at the last sheet; empty before the first one.
     pub(crate) places: Vec<[f64; 3]>,
@@ -216,7 +216,7 @@ impl Marks {
         }
     }
 
-    /// A node more, which lies where another one does.
+    /// Adds a node at the place of another one.
     pub(crate) fn copy_node(&mut self, node: u32) {
         self.sides.push(self.sides[node as usize]);
         self.passed.push(self.passed[node as usize]);

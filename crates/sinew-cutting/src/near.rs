@@ -5,7 +5,7 @@ use sinew_mesh::vector::Vector;
 /// Share of the longest edge by which the blade, and each node along each axis, may move before the list is rebuilt.
 const ROOM: f64 = 0.25;
 
-/// Factor by which that is wider as they are found: no rounding may lose one.
+/// Factor by which the list is made larger, so that rounding loses no node.
 const MARGIN: f64 = 1.01;
 
 /// The nodes that may be within an edge of a blade, as long as it stays within a box and no node has gone far since they were found.

@@ -6,6 +6,6 @@ pub trait TetProperties: Send + Sync {
     fn density(&self, tet: usize) -> f64;
 
     /// The largest frequency (1/s) at which a tetrahedron (0-based) with these vertices (m) would swing its own mass: snapping
-    /// bounds it. 0 where nothing is to be bounded.
+    /// bounds it. 0 if nothing is to be bounded.
     fn frequency(&self, tet: usize, vertices: &[[f64; 3]; 4]) -> f64;
 }

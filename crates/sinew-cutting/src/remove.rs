@@ -6,8 +6,9 @@ use crate::report::Removal;
 use sinew_mesh::vector::mean;
 
 impl CuttableBody {
-    /// Removes the tetrahedra whose centroid, at these positions of the nodes (m), `is_inside` something. Parts that hang together
-    /// at a node or an edge only afterwards come apart. A node without tetrahedra keeps its number and is no longer used.
+    /// Removes the tetrahedra for whose centroid, at these positions of the nodes (m), `is_inside` is true. Parts
+    /// that are then joined by a node or an edge only are separated. A node without tetrahedra keeps its number and
+    /// is no longer used.
     ///
     /// # Errors
     /// [`CutError::Positions`] unless there is a position for each node; nothing is changed then.

@@ -51,7 +51,7 @@ impl Stroke {
         self.changed_tets.clear();
     }
 
-    /// True if nodes were moved or copied, so that the body is another one than before.
+    /// True if nodes were moved or copied, so that the body has changed.
     #[must_use]
     pub fn changes_nodes(&self) -> bool {
         !(self.moved.is_empty() && self.copied.is_empty())

@@ -1,4 +1,4 @@
-//! The nodes of a body as a sheet sees them.
+//! Positions of the nodes of a body relative to a sheet.
 
 use crate::flat::Flat;
 use crate::sheet::Sheet;
@@ -104,7 +104,7 @@ impl SeenNodes {
         a & b & c & d == 0
     }
 
-    /// Takes a node as it is seen now: its distance from the plane and its place in it.
+    /// Sets a node's distance from the plane and its place in it.
     pub(crate) fn set(&mut self, node: u32, distance: f64, flat: Flat) {
         self.distances[node as usize] = distance;
         self.flats[node as usize] = flat;

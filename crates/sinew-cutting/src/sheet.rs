@@ -86,7 +86,7 @@ impl Sheet {
         [[a, b], [d, c]]
     }
 
-    /// The unit direction across the blade in which it goes.
+    /// The unit direction of the blade's motion, across the blade.
     pub(crate) fn heading(&self) -> Vector {
         let [a, b, c, d] = self.corners;
         let (blade, way) = (sub(b, a), sub(add(c, d), add(a, b)));

@@ -43,9 +43,9 @@ impl Freedom {
 
 impl CuttableBody {
     /// Moves nodes of crossed edges that are within a share `snap` of their shortest edge onto the sheet, nearest
-    /// first. Space is moved through the tissue: each goes, at rest, to the point that lies on the sheet now. Nodes of
-    /// the surface stay in their face, and those of an earlier cut where they are, because its two faces fit each
-    /// other, as do fixed ones.
+    /// first. The mesh moves through the tissue: each goes, at rest, to the point of tissue that lies on the sheet
+    /// now. Nodes of the surface stay in their face, and those of an earlier cut are not moved, because its two faces
+    /// fit each other, nor are fixed ones.
     pub(crate) fn snap(&mut self, sheet: &Sheet, positions: &mut [Vector], snap: f64) {
         let mut near = std::mem::take(&mut self.room.near);
         near.clear();
@@ -123,8 +123,8 @@ impl CuttableBody {
         }
     }
 
-    /// The shortest way of a node at rest, by the shape that a tetrahedron has now, onto the sheet: the least share of the other
-    /// vertices in the new place (below 0 outside the tetrahedron), the place, and the move.
+    /// The shortest displacement of a node at rest, by a tetrahedron's current shape, onto the sheet: the least share
+    /// of the other vertices in the new place (below 0 outside the tetrahedron), the place, and the move.
     fn way(
         &self,
         node: u32,

@@ -100,7 +100,7 @@ pub struct Strokes(Vec<BladePose>);
 pub enum BladeAct {
     /// It is lifted, or set on again.
     Lift,
-    /// It goes from one pose to another, each given by both ends (m), or rests.
+    /// It moves from one pose to another, each given by both ends (m), or rests.
     Sweep([[[f64; 3]; 2]; 2]),
 }
 

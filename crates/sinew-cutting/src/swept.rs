@@ -8,7 +8,7 @@ use sinew_mesh::vector::{Vector, add, bounds_of, dot, length, scaled, sub};
 /// Share of the longest edge within which tissue counts in full for how it moves at a blade.
 const NEAR: f64 = 0.5;
 
-/// Cosine of the angle between the ways of both ends beyond which a sheet is warped too much.
+/// Cosine of the angle between the paths of both ends beyond which a sheet is warped too much.
 const FLAT: f64 = 0.5;
 
 /// Weighted sums over tissue next to a blade, by position along the blade (0 to 1).

@@ -49,7 +49,7 @@ pub(crate) struct Seeing<'a> {
 
 /// The turn of a blade between two sheets, by which it may pass nodes that no sheet covers.
 struct Turn {
-    /// The directions in which it went and goes.
+    /// The directions of its motion, last and current.
     last: Vector,
     now: Vector,
     /// The first end of the blade.
@@ -109,14 +109,14 @@ impl CuttableBody {
         Beside(self.room.nodes.distances(self.tets[tet as usize]))
     }
 
-    /// Sees the nodes of a tetrahedron that this search has not seen yet.
+    /// Computes the nodes of a tetrahedron that this search has not computed yet.
     fn see_nodes(&mut self, tet: u32, seeing: &Seeing<'_>, positions: &[Vector]) {
         for node in self.tets[tet as usize] {
             self.see_anew(node, seeing, positions);
         }
     }
 
-    /// Sees a node that this search may not have seen yet.
+    /// Computes a node unless this search has computed it already.
     #[inline]
     fn see_anew(&mut self, node: u32, seeing: &Seeing<'_>, positions: &[Vector]) {
         if self.room.nodes.is_new(node, self.room.look) {
@@ -125,7 +125,7 @@ impl CuttableBody {
         }
     }
 
-    /// Sees a node, which is here now.
+    /// Computes a node at this position.
     #[inline]
     pub(crate) fn see_node(&mut self, node: u32, sheet: &Sheet, place: Vector) {
         let distance = sheet.distance(place);
@@ -209,8 +209,8 @@ impl CuttableBody {
         move |place| (0..3).all(|axis| low[axis] <= place[axis] && place[axis] <= high[axis])
     }
 
-    /// Finds the tetrahedra that a sheet touches, increasing, into `room.touched`: from nodes near it, and on from neighbour to
-    /// neighbour, so that tetrahedra stretched beyond all measure are found where another one leads to them.
+    /// Finds the tetrahedra that a sheet touches, increasing, into `room.touched`: from nodes near it, and from
+    /// neighbour to neighbour, so that extremely stretched tetrahedra are found if a chain of others leads to them.
     pub(crate) fn find_touched(&mut self, seeing: &Seeing<'_>, positions: &[Vector]) {
         self.room.start_look(positions.len());
         let bounds = seeing.sheet.bounds();
@@ -257,7 +257,7 @@ impl CuttableBody {
     }
 
     /// Finds the tetrahedra, increasing, that this search has not touched, one of whose nodes the blade has passed in
-    /// it, and at which something may be left to be cut, into `room.left`.
+    /// it, and at which faces may remain to be cut, into `room.left`.
     pub(crate) fn find_left(
         &mut self,
         touched: &[(u32, Passed)],

@@ -134,7 +134,7 @@ impl CuttableBody {
         })
     }
 
-    /// True if no node is near a blade on its way from one pose to another.
+    /// True if no node is near a blade that moves from one pose to another.
     pub(crate) fn is_in_the_air(
         &self,
         [before, after]: [[Vector; 2]; 2],
@@ -145,7 +145,7 @@ impl CuttableBody {
         !positions.iter().any(is_near)
     }
 
-    /// Follows how far a stroke goes through the body, by a blade that came from one pose to another.
+    /// Records the path of a stroke through the body, for a blade that moved from one pose to another.
     pub(crate) fn keep_course(&mut self, [before, after]: [[Vector; 2]; 2], positions: &[Vector]) {
         let holds = |blade: [Vector; 2]| {
             let nodes = self.near.of(bounds_of(blade), positions.len());

@@ -107,7 +107,7 @@ pub struct Fitted {
 pub struct Tick {
     /// Position as a share of the axis.
     pub at: f64,
-    /// The value, as it is written.
+    /// The text of the value.
     pub label: Option<String>,
 }
 

@@ -2,7 +2,7 @@
 //!
 //! [`Plot`] draws series on two axes, [`Sheet`] plots side by side, [`Surface`] a mesh, [`Roofline`] rates beneath
 //! their limits;
-//! [`svg`] and [`axis`] are what they are made of. [`Page`] is an HTML page in one file with
+//! [`svg`] and [`axis`] are their parts. [`Page`] is an HTML page in one file with
 //! headings, facts, tables and figures. Everything follows a reader's light or dark colours and needs
 //! no network.
 

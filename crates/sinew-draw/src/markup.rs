@@ -1,7 +1,7 @@
 //! Text inside HTML and SVG, and names of files and anchors.
 
 /// Escapes text for the content and the quoted attributes of HTML and SVG. Control characters,
-/// which XML cannot hold, become the replacement character.
+/// which are invalid in XML, become the replacement character.
 #[must_use]
 pub fn escape(text: &str) -> String {
     let mut out = String::with_capacity(text.len());

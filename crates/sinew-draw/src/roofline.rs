@@ -1,5 +1,5 @@
 //! Roofline plots (Williams, Waterman and Patterson, Commun. ACM 52, 2009): operations a second over
-//! operations for each byte, beneath what memory and arithmetic allow.
+//! operations for each byte, beneath the limits of memory and arithmetic.
 
 use crate::axis::{Axis, Fitted, Tick};
 use crate::style::{Dash, Marker, Style};

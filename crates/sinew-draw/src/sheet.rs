@@ -14,7 +14,7 @@ const LEADING: f64 = 1.45;
 pub struct Sheet {
     /// Description for those who cannot see it.
     pub described: String,
-    /// Title, which is broken into lines where it is long.
+    /// Title, which is broken into lines if it is long.
     pub title: String,
     /// Paragraphs below it, broken likewise.
     pub lines: Vec<String>,

@@ -21,7 +21,7 @@ const BAR: f64 = 14.0;
 pub struct Surface<'a> {
     /// Title above the picture.
     pub title: String,
-    /// Vertices (m), as they are to be seen; z is up.
+    /// Vertices (m) of the drawn state; z is up.
     pub points: &'a [[f64; 3]],
     /// Triangles of vertices.
     pub triangles: &'a [[u32; 3]],

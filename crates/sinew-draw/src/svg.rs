@@ -224,7 +224,7 @@ impl Svg {
         self.out.push_str("</g>\n");
     }
 
-    /// Draws by `draw` what belongs together, with attributes for scripts.
+    /// A group with the content that `draw` adds, with attributes for scripts.
     pub fn group(&mut self, attributes: &[(&str, String)], draw: impl FnOnce(&mut Self)) {
         let attributes: String = attributes
             .iter()

@@ -24,7 +24,7 @@ pub(crate) struct Assembled {
     pub(crate) stiffness: BlockMatrix,
     /// Dashpots along springs, as a matrix; `None` without any.
     pub(crate) damping: Option<BlockMatrix>,
-    /// The dashpots, held ends included.
+    /// The dashpots, fixed ends included.
     pub(crate) dashpots: Vec<Dashpot>,
     /// The material of each region.
     pub(crate) materials: Vec<Material>,
@@ -36,8 +36,8 @@ pub(crate) struct Assembled {
 
 /// Sums up the matrices of a body, whose tetrahedra are in the regions `region_of`.
 ///
-/// The matrices are by far the largest part of a model: `graph` and all lists of springs but one are gone before they
-/// are allocated.
+/// The matrices are by far the largest part of a model: `graph` and all lists of springs but one are freed before
+/// they are allocated.
 pub(crate) fn assemble(
     mesh: &TetMesh,
     body: &Body,
@@ -149,7 +149,7 @@ fn damping(
     Ok(Some(damping))
 }
 
-/// Clears the rows and columns of components that are held although their cells move.
+/// Clears the rows and columns of fixed components of cells that move.
 fn clear_held(matrix: &mut BlockMatrix, body: &Body) {
     if body.cells.partly_held() {
         matrix.clear_pinned(&body.cells.pinned);

@@ -75,7 +75,8 @@ impl Body {
 }
 
 /// The blocks of the stiffness matrix that [`crate::Model::build`] makes where some region averages strain over its
-/// neighbourhoods; `None` where none does, or where the problem does not fit the mesh, as building says. For a forecast of memory: no matrix is made.
+/// neighbourhoods; `None` if none does, or if the problem does not fit the mesh, as in building. For a forecast of
+/// memory: no matrix is made.
 #[must_use]
 pub fn smoothed_blocks(mesh: &TetMesh, problem: &Problem) -> Option<usize> {
     let has_patches = |region: &Region| region.element.has_patches();

@@ -6,8 +6,8 @@ use crate::network::Dashpot;
 use crate::parts::{Parts, WholePart};
 use crate::springs;
 
-/// The rows of K and of the dashpots' matrix at nodes with held components, against all their
-/// neighbours, held or not: K_ps and K_pp together, in 3x3 blocks.
+/// The rows of K and of the dashpots' matrix at nodes with fixed components, against all their
+/// neighbours, fixed or not: K_ps and K_pp together, in 3x3 blocks.
 #[derive(Clone, Debug)]
 pub(crate) struct Border {
     /// Nodes of the rows, increasing.
@@ -17,7 +17,7 @@ pub(crate) struct Border {
     columns: Vec<u32>,
     /// Row-major blocks (N/m).
     stiffness: Vec<[f64; 9]>,
-    /// Row-major blocks (N s/m); empty where there are no dashpots.
+    /// Row-major blocks (N s/m); empty without dashpots.
     dashpots: Vec<[f64; 9]>,
 }
 

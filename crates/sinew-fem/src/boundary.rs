@@ -7,9 +7,9 @@ use crate::on::On;
 /// A support: components of displacement that stay zero.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Fixed {
-    /// The part of the mesh that is held: all its nodes.
+    /// The part of the mesh that is fixed: all its nodes.
     pub on: On,
-    /// True for those of x, y and z that are held.
+    /// Flags of x, y and z: true for fixed components.
     pub axes: [bool; 3],
 }
 
@@ -23,7 +23,7 @@ impl Fixed {
         }
     }
 
-    /// Sets the components that are held: true for those of x, y and z.
+    /// Sets the fixed components: flags of x, y and z.
     #[must_use]
     pub fn along(self, axes: [bool; 3]) -> Self {
         Self { axes, ..self }
@@ -36,9 +36,9 @@ impl Fixed {
 pub struct Moving {
     /// The part of the mesh that is moved: all its nodes.
     pub on: On,
-    /// True for those of x, y and z that are prescribed; the other components stay free.
+    /// Flags of x, y and z: true for prescribed components; the others stay free.
     pub axes: [bool; 3],
-    /// The courses; without one the components are held.
+    /// The courses, which are added up; without one the components are fixed.
     pub courses: Vec<Course>,
 }
 
@@ -53,7 +53,7 @@ impl Moving {
         }
     }
 
-    /// Sets the components that are prescribed: true for those of x, y and z.
+    /// Sets the prescribed components: flags of x, y and z.
     #[must_use]
     pub fn along(self, axes: [bool; 3]) -> Self {
         Self { axes, ..self }

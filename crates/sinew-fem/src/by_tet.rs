@@ -26,7 +26,7 @@ pub(crate) struct RegionByTet {
     pub(crate) moduli: [f64; 2],
     /// The stiffness of each tetrahedron, of the largest.
     pub(crate) shares: Shares,
-    /// The direction of each family of fibres as unit vectors; `None` where it is the same in all tetrahedra.
+    /// The direction of each family of fibres as unit vectors; `None` if it is the same in all tetrahedra.
     pub(crate) directions: Vec<Option<UnitVectors>>,
     /// The material's axes, where its law has some.
     pub(crate) axes: Option<Axes>,
@@ -261,7 +261,7 @@ impl<'a> Members<'a> {
     }
 }
 
-/// The values of a tetrahedron; none where data made by hand are too short.
+/// The values of a tetrahedron; empty if the data given are too short.
 fn values(data: &TetData, tet: usize) -> &[f64] {
     let width = data.components;
     data.values

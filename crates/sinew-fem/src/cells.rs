@@ -8,18 +8,18 @@ use crate::{Fixed, Moving};
 /// Marks a node that is not a cell.
 const HELD: u32 = u32::MAX;
 
-/// The nodes that move. A node held in x, y and z is removed; one held in some of them stays a
-/// cell whose held components never feel a force, so that every cell has three layers.
+/// The nodes that move. A node fixed in x, y and z is removed; one fixed in some of them stays a
+/// cell whose fixed components never feel a force, so that every cell has three layers.
 #[derive(Clone, Debug)]
 pub(crate) struct Cells {
     /// Mesh node of each cell, increasing.
     pub(crate) nodes: Vec<u32>,
-    /// Held components of the cells, three a cell.
+    /// Fixed components of the cells, three a cell.
     pub(crate) pinned: Vec<bool>,
     cell_of_node: Vec<u32>,
-    /// Nodes with a held component, increasing.
+    /// Nodes with a fixed component, increasing.
     pub(crate) held_nodes: Vec<u32>,
-    /// Components held at all nodes together.
+    /// Number of fixed components of all nodes.
     pub(crate) held_components: usize,
 }
 
@@ -59,7 +59,7 @@ impl Cells {
         })
     }
 
-    /// Appends a node that is held as another one is.
+    /// Appends a node with the supports of another one.
     pub(crate) fn push_copy(&mut self, of: u32) {
         let node = self.cell_of_node.len() as u32;
         let held: [bool; 3] = std::array::from_fn(|axis| self.free_dof(of, axis).is_none());
@@ -84,7 +84,7 @@ impl Cells {
         self.held_nodes.reserve(nodes);
     }
 
-    /// The first node that supports hold or move in other directions than these.
+    /// The first node whose fixed or moved directions differ from these.
     pub(crate) fn first_held_otherwise(
         &self,
         mesh: &TetMesh,
@@ -104,13 +104,13 @@ impl Cells {
         (cell != HELD).then_some(cell)
     }
 
-    /// The degree of freedom of a node's component (0, 1, 2 for x, y, z); `None` where it is held.
+    /// The degree of freedom of a node's component (0, 1, 2 for x, y, z); `None` if it is fixed.
     pub(crate) fn free_dof(&self, node: u32, axis: usize) -> Option<u32> {
         let dof = 3 * self.of_node(node)? + axis as u32;
         (!self.pinned[dof as usize]).then_some(dof)
     }
 
-    /// The three components of a vector over the degrees of freedom at a node; zero where they are held.
+    /// The three components of a vector over the degrees of freedom at a node; zero if fixed.
     pub(crate) fn at_node(&self, values: &[f64], node: u32) -> [f64; 3] {
         match self.of_node(node) {
             Some(cell) => self.at_cell(values, cell as usize),
@@ -118,14 +118,14 @@ impl Cells {
         }
     }
 
-    /// The three components of a vector over the degrees of freedom at a cell; zero where they are held.
+    /// The three components of a vector over the degrees of freedom at a cell; zero if fixed.
     pub(crate) fn at_cell(&self, values: &[f64], cell: usize) -> [f64; 3] {
         let (values, pinned) = (values.as_chunks::<3>().0, self.pinned.as_chunks::<3>().0);
         let (values, pinned) = (values[cell], pinned[cell]);
         std::array::from_fn(|axis| if pinned[axis] { 0.0 } else { values[axis] })
     }
 
-    /// The node of each cell, and what [`Cells::at_cell`] is for it.
+    /// The node of each cell with the value of [`Cells::at_cell`].
     pub(crate) fn each_value(&self, values: &[f64]) -> impl Iterator<Item = (u32, [f64; 3])> {
         let (values, pinned) = (values.as_chunks::<3>().0, self.pinned.as_chunks::<3>().0);
         let cells = self.nodes.iter().zip(values.iter().zip(pinned));
@@ -135,14 +135,14 @@ impl Cells {
         })
     }
 
-    /// True if some node is held in some directions only.
+    /// True if some node is fixed in some directions only.
     pub(crate) fn partly_held(&self) -> bool {
         let wholly_held = self.cell_of_node.len() - self.nodes.len();
         self.held_components > 3 * wholly_held
     }
 }
 
-/// The components of each node that are not free: held, or moved from outside.
+/// The components of each node that are not free: fixed, or moved from outside.
 fn held_axes(
     mesh: &TetMesh,
     (fixed, moves): (&[Fixed], &[Moving]),
@@ -159,7 +159,7 @@ fn held_axes(
     Ok(held)
 }
 
-/// The components of each node that supports hold.
+/// The components of each node that supports fix.
 pub(crate) fn supported(mesh: &TetMesh, fixed: &[Fixed]) -> Result<Vec<[bool; 3]>, FemError> {
     let mut held = vec![[false; 3]; mesh.points.len()];
     for (index, support) in fixed.iter().enumerate() {

@@ -9,11 +9,12 @@ use crate::{LoadKind, LoadSpec, On, Problem};
 impl Problem {
     /// The problem of a body that was cut, of which `uncut` is the mesh that this problem is on.
     ///
-    /// Copies of nodes that are held or moved are held or moved. Tractions and pressures follow their triangles. A force on nodes stays with
-    /// the nodes that it was on, so that a cut does no work, and the share of those that are gone goes with them; where all that a load acts on is gone, so is the load.
+    /// Copies of nodes that are fixed or moved are fixed or moved. Tractions and pressures follow their triangles. A
+    /// force on nodes stays with its nodes, so that a cut does no work; the share of removed nodes is dropped, and a
+    /// load without any node left is removed.
     ///
     /// # Errors
-    /// [`Cause`] where a part of the mesh does not exist.
+    /// [`Cause`] if a part of the mesh does not exist.
     pub fn after_cuts(&self, uncut: &TetMesh, cut: &CutMesh) -> Result<Self, Cause> {
         let mut problem = self.clone();
         let fixed = problem.fixed.iter_mut().map(|fixed| &mut fixed.on);
@@ -46,7 +47,7 @@ impl Problem {
         Ok(problem)
     }
 
-    /// True for each node of the uncut mesh that bears a share of a force: it is not held in all three directions.
+    /// True for each node of the uncut mesh that bears a share of a force: it is not fixed in all three directions.
     fn bears_forces(&self, uncut: &TetMesh) -> Result<Vec<bool>, Cause> {
         let held = supported(uncut, &self.fixed).map_err(|error| error.cause().clone())?;
         let mut bears: Vec<bool> = held.iter().map(|held| *held != [true; 3]).collect();

@@ -26,7 +26,7 @@ pub enum CutModelError {
     /// The mesh.
     #[error(transparent)]
     Mesh(#[from] CutError),
-    /// The problem, or what is left of it after a cut.
+    /// The problem cannot be built, before or after a cut.
     #[error(transparent)]
     Model(#[from] FemError),
     /// A part of the mesh that does not exist.
@@ -80,9 +80,9 @@ pub struct CutReport {
     pub removed_tets: usize,
     /// Their mass (kg).
     pub removed_mass: f64,
-    /// Tetrahedra that were frozen where they were.
+    /// Number of frozen tetrahedra.
     pub frozen_tets: usize,
-    /// Kinetic and elastic energy (J) after the cut less those before; `None` where the model tells none.
+    /// Kinetic and elastic energy (J) after the cut less those before; `None` if the model has none.
     pub energy_gained: Option<Energy>,
 }
 
@@ -144,13 +144,13 @@ impl CutReport {
 
 /// A model whose body is cut while it moves.
 ///
-/// A cut carries the state over: displacement and velocity of a node are those of its copies. So mass, momentum and, for tetrahedra that average
-/// nothing, energy stay what they are where no node is moved. Frequencies and K's blocks are bounded by single tetrahedra where these bounds hold, so that stable
-/// steps are the same before and after.
+/// A cut transfers the state: copies of a node get its displacement and velocity. So mass, momentum and, for
+/// tetrahedra without averages, energy are conserved unless nodes are moved. Frequencies and K's blocks are bounded
+/// by single tetrahedra (if these bounds exist), so that stable steps are the same before and after.
 ///
 /// Linear bodies of plain tetrahedra whose supports rest follow a split in their place, at the cost of the rows that it
 /// touches: with the bits of a model that is rebuilt, [`Model::report`] aside, whose sums of masses, volumes and loads
-/// stay. Space for a tenth more nodes is reserved; until it is used up nothing is allocated, while no clone of the
+/// stay. Memory for a tenth more nodes is reserved; until it is used up nothing is allocated, while no clone of the
 /// model shares its rows. All other models are rebuilt on the mesh of the body that is left: springs, hyperelastic
 /// regions, elements that average strain, supports in motion, and any body from the first piece on that was removed or
 /// frozen.
@@ -241,7 +241,7 @@ impl CutModel {
         Ok(cut_model)
     }
 
-    /// The model of the body as it is.
+    /// The model of the current body.
     #[must_use]
     pub fn model(&self) -> &Model {
         &self.model
@@ -253,7 +253,7 @@ impl CutModel {
         &self.body
     }
 
-    /// The mesh of the body as it is, which the model is on.
+    /// The mesh of the current body and of the model.
     #[must_use]
     pub fn mesh(&self) -> &CutMesh {
         &self.mesh
@@ -272,7 +272,8 @@ impl CutModel {
         self.layouts
     }
 
-    /// Cuts by a sheet in the configuration of the state, which is carried over. The model has another revision only where something changed.
+    /// Cuts by a sheet in the configuration of the state, which is transferred. The model gets a new revision only if
+    /// it changed.
     ///
     /// # Errors
     /// [`CutModelError`]; the body may be half changed then, and is to be discarded.
@@ -285,7 +286,8 @@ impl CutModel {
         self.follow(sheet.poses(), state, inputs)
     }
 
-    /// Cuts what a blade passes from one pose to the next, each given by its two ends (m), as [`CutModel::stroke`] does by a sheet. A blade that rests
+    /// Cuts the tissue that a blade passes from one pose to the next, each given by its two ends (m), as
+    /// [`CutModel::stroke`] does by a sheet. A blade that rests
     /// cuts the tissue that has come through it since the last time.
     ///
     /// # Errors
@@ -319,8 +321,8 @@ impl CutModel {
         self.split(nodes, state, inputs)
     }
 
-    /// Lifts the blade: the next stroke continues no tetrahedron that this one left partly cut. Returns what was left
-    /// uncut of a body that the blade passed through.
+    /// Lifts the blade: the next stroke continues no tetrahedron that this one left partly cut. Returns the uncut
+    /// part of a body that the blade passed through.
     pub fn lift(&mut self) -> Option<Uncut> {
         self.body.lift()
     }
@@ -341,7 +343,7 @@ impl CutModel {
         self.split(nodes, state, inputs)
     }
 
-    /// Removes the tetrahedra whose centroid, in the configuration of the state, `is_inside` something.
+    /// Removes the tetrahedra for whose centroid, in the configuration of the state, `is_inside` is true.
     ///
     /// # Errors
     /// Same as [`CutModel::stroke`], and [`CutModelError::NothingLeft`].
@@ -361,8 +363,8 @@ impl CutModel {
         self.go_on_anew(nodes, &[], &copied, report, state, inputs)
     }
 
-    /// Removes the pieces of which no node is held or moved from outside, with their mass: by the problem, or by something else that has hold of
-    /// `held`, nodes of the body.
+    /// Removes the unsupported components of the body, with their mass: those without a node that the problem fixes
+    /// or moves and without one of the grasped nodes `held`.
     ///
     /// # Errors
     /// Same as [`CutModel::remove`].
@@ -383,7 +385,8 @@ impl CutModel {
         self.go_on_anew(nodes, &[], &[], report, state, inputs)
     }
 
-    /// Holds the pieces that [`CutModel::remove_loose`] would remove where they are: they keep mass and shape, and rest.
+    /// Freezes the components that [`CutModel::remove_loose`] would remove: they keep mass, place and shape, and
+    /// rest.
     ///
     /// # Errors
     /// Same as [`CutModel::remove`].
@@ -405,7 +408,7 @@ impl CutModel {
         self.go_on_anew(self.body.nodes(), &[], &[], report, state, inputs)
     }
 
-    /// Freezes the nodes of some tetrahedra of the body where they are.
+    /// Freezes the nodes of some tetrahedra of the body at their current places.
     fn freeze(
         &mut self,
         tets: &[bool],
@@ -484,12 +487,12 @@ impl CutModel {
         self.body.holds(blade, &self.positions)
     }
 
-    /// Leaves these nodes of the body where they are at rest, until this is called again: those that a tool has hold of.
+    /// Fixes the rest positions of these nodes of the body until the next call: the nodes that a tool grasps.
     pub fn hold(&mut self, nodes: impl IntoIterator<Item = u32>) {
         self.body.hold(nodes);
     }
 
-    /// The model of what is left of the body.
+    /// The model of the remaining body.
     fn model_on(&self, mesh: &CutMesh) -> Result<Model, CutModelError> {
         if mesh.tets.is_empty() {
             return Err(CutModelError::NothingLeft);
@@ -514,7 +517,7 @@ impl CutModel {
         })
     }
 
-    /// Lets the model follow splits from here on, where it can.
+    /// Lets the model follow splits from here on, if it can.
     fn follow_from_here(&mut self) {
         let is_whole = self.frozen.is_empty() && !self.body.is_removed().contains(&true);
         let can = is_whole && self.model.can_follow_splits();
@@ -626,7 +629,7 @@ fn gained(before: Energy, after: Energy) -> Energy {
     }
 }
 
-/// The nodes that stay where they are at rest: those that the problem holds or moves, and those of several regions.
+/// The nodes whose rest positions are fixed: those with supports or prescribed motions, and those of several regions.
 fn kept_nodes(mesh: &TetMesh, problem: &Problem, model: &Model) -> Result<Vec<u32>, Cause> {
     let mut kept = Vec::new();
     let fixed = problem.fixed.iter().map(|fixed| &fixed.on);

@@ -126,7 +126,7 @@ pub enum Cause {
         /// The reason.
         error: crate::from_mesh::DataError,
     },
-    /// Fibres or memory beside a law that takes none.
+    /// Fibres or memory with a law that supports neither.
     #[error("fibres and memory go with laws of large deformation only, such as `neo-hookean`")]
     TissueOfSmallStrain,
     /// A term of a Prony series outside its range.
@@ -215,7 +215,7 @@ pub enum Cause {
         /// Its longest edge (m).
         edge: f64,
     },
-    /// Supports that hold everything.
+    /// Supports that fix all components.
     #[error("no degree of freedom is free: all {nodes} nodes are held")]
     NothingFree {
         /// Nodes of the mesh.
@@ -224,10 +224,10 @@ pub enum Cause {
     /// Supports other than those of the model whose pattern is to be shared.
     #[error("node {tag} is not held as in the model given; build such a model anew")]
     OtherSupports {
-        /// Tag of the first node that is held in other directions.
+        /// Tag of the first node that is fixed in other directions.
         tag: u64,
     },
-    /// A load that falls on held components only.
+    /// A load that falls on fixed components only.
     #[error(
         "every node of {} is held there, so the load acts on nothing",
         named(on)
@@ -236,7 +236,7 @@ pub enum Cause {
         /// The part of the mesh it is on.
         on: On,
     },
-    /// A component that is held and is to be moved.
+    /// A component that is both fixed and moved.
     #[error(
         "node {tag} is held in {} by a support; a component is held or moved, never both", axis_name(*axis)
     )]
@@ -264,7 +264,7 @@ pub enum Cause {
         /// The displacement along it (m).
         found: f64,
     },
-    /// A position that jumps where damping sees its velocity.
+    /// A position that jumps although damping acts on its velocity.
     #[error(
         "the position jumps at t = {instant} s, and stiffness damping or dashpots would see an infinite \
          velocity: let it rise over some time"

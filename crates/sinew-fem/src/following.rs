@@ -7,7 +7,7 @@ use sinew_mesh::vector::{add as plus, cross, sub as minus};
 use crate::cells::Cells;
 use crate::elements::moving_part;
 
-/// Pressure on triangles that follows them: what its forces are more than on the surface at rest, which is a load like others.
+/// Follower pressure on triangles: its forces beyond those on the surface at rest, which are a load like others.
 ///
 /// The force on a triangle with the corners a, b and c is `-p/2 (x_b - x_a) x (x_c - x_a)`, a third of it on each: exactly what a pressure
 /// does on flat triangles, since each corner's shape function has a third of the area.
@@ -105,7 +105,7 @@ impl FollowingPressure {
         }
     }
 
-    /// Adds `-factor` times the symmetric part of the derivative (N/m) of the forces: what a stiffness matrix has of it.
+    /// Adds `-factor` times the symmetric part of the derivative (N/m) of the forces: their load stiffness.
     ///
     /// With `w_a = x_b - x_c` and so on around, `df_i/dx_j = p/6 [w_j]_x` at each corner i. What is not symmetric cancels along edges
     /// between two triangles; it remains at free edges of the loaded surface only (Bufler, ZAMP 35, 1984).

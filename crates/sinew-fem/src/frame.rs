@@ -15,8 +15,8 @@ pub fn are_parallel(first: [f64; 3], second: [f64; 3]) -> bool {
     frame(first, second).is_none()
 }
 
-/// Perpendicular unit vectors: along the first vector, along what is left of the second, and their cross product; `None`
-/// where the two are parallel, or not vectors.
+/// Orthonormal vectors: along the first vector, along the part of the second at right angles to it, and their cross
+/// product; `None` if the two are parallel, zero or not finite.
 pub(crate) fn frame(first: [f64; 3], second: [f64; 3]) -> Option<Frame> {
     let (first, second) = (unit(first)?, unit(second)?);
     let along: f64 = first.iter().zip(second).map(|(a, b)| a * b).sum();
@@ -26,7 +26,7 @@ pub(crate) fn frame(first: [f64; 3], second: [f64; 3]) -> Option<Frame> {
     Some([first, second, cross(first, second)])
 }
 
-/// The unit vector along another; `None` where that is 0 or not finite.
+/// The unit vector along another; `None` if that is 0 or not finite.
 pub(crate) fn unit(vector: [f64; 3]) -> Option<[f64; 3]> {
     // Scaled first, so that no square overflows or is lost.
     let largest = vector.iter().fold(0.0, |m: f64, d| m.max(d.abs()));

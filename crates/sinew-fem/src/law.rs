@@ -9,7 +9,7 @@ use crate::hyperelastic::{
 };
 use crate::number::require;
 
-/// A material law: the way a material resists deformation.
+/// A material law: the relation of stress and deformation.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Law {
     /// Isotropic linear elasticity on 4-node tetrahedra.
@@ -135,7 +135,7 @@ impl Law {
         }
     }
 
-    /// Description of the law, with Young's modulus (Pa) as it is said.
+    /// Description of the law, with this text for Young's modulus (Pa).
     #[must_use]
     pub fn with_modulus(&self, youngs_modulus: &str) -> String {
         match self {

@@ -1,4 +1,4 @@
-//! The laws that scenes and [`crate::Law`] know by their ids: ours, and those that a program adds.
+//! Registry of the laws that scenes and [`crate::Law`] know by their ids: ours, and those that a program adds.
 
 use std::fmt;
 use std::sync::{Arc, PoisonError, RwLock};
@@ -98,7 +98,7 @@ pub fn register<L: HyperelasticLaw + 'static>() -> Result<(), RegisterError> {
 pub type MakeBoxed =
     Box<dyn Fn(&LawValues<'_>) -> Result<Arc<dyn PointLaw>, ParameterError> + Send + Sync>;
 
-/// Adds a law that is known at run time only, as [`register`] adds others; slower by far ([`PointLaw`]). `meaning` is
+/// Adds a law that is known at run time only, as [`register`] adds others; much slower ([`PointLaw`]). `meaning` is
 /// its use in half a sentence.
 ///
 /// # Errors
@@ -224,7 +224,7 @@ impl KnownLaw {
         self.parameters
     }
 
-    /// Warning to whoever takes the law, and advice.
+    /// Warning for scenes with the law, and advice.
     #[must_use]
     pub fn weakness(&self) -> Option<[&'static str; 2]> {
         self.weakness

@@ -16,7 +16,7 @@
 //! ```
 //!
 //! A model also evaluates a state: positions of all nodes, strain and stress of each tetrahedron,
-//! and the reactions of its supports. A mesh without groups is held by nodes:
+//! and the reactions of its supports. A mesh without groups is fixed at nodes:
 //!
 //! ```
 //! # use sinew_core::System;

@@ -21,7 +21,7 @@ pub(crate) struct LoadsOnBody {
     pub(crate) moving: Vec<Load>,
     /// Source of each of them.
     pub(crate) items: Vec<Item>,
-    /// Parts of the loads on held components; loads without one are left out.
+    /// Parts of the loads on fixed components; loads without one are left out.
     pub(crate) held: Vec<HeldLoad>,
     /// Additional contributions of pressures that follow the surface.
     pub(crate) following: Vec<FollowingPressure>,
@@ -89,7 +89,7 @@ impl LoadsOnBody {
     }
 }
 
-/// The parts of a load on moving and on held components.
+/// The parts of a load on moving and on fixed components.
 struct Parts {
     moving: Load,
     held: Option<HeldLoad>,

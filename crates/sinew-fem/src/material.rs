@@ -38,7 +38,7 @@ enum Kind {
         law: Hyperelastic,
         element: Element,
         tissue: Tissue,
-        /// The direction of each family of fibres in each tetrahedron of the mesh; `None` where all have that of
+        /// The direction of each family of fibres in each tetrahedron of the mesh; `None` if all have that of
         /// `tissue`.
         directions: Vec<Option<UnitVectors>>,
         /// The axes, where the law has some.
@@ -51,8 +51,8 @@ enum Kind {
 }
 
 impl Material {
-    /// The material that a law makes of some tetrahedra of `volume` (m^3) together, and their springs
-    /// where it is a network. `graph` is that of the mesh.
+    /// The material of some tetrahedra, of total volume `volume` (m^3), under a law, with their springs if it is a
+    /// network. `graph` is that of the mesh.
     pub(crate) fn new(
         region: &Region,
         by_tet: &RegionByTet,
@@ -146,7 +146,7 @@ impl Material {
         matches!(self.kind, Kind::Hyperelastic { .. })
     }
 
-    /// Its law and all else that loops read of it, where it is of this density (kg/m^3); `None` unless it is of large deformation.
+    /// Its law and the other constants of force loops, at this density (kg/m^3); `None` unless it is hyperelastic.
     pub(crate) fn hyperelastic(&self, density: f64) -> Option<(Arc<dyn Compiled>, RegionLaw<'_>)> {
         match &self.kind {
             Kind::Hyperelastic {
@@ -171,7 +171,7 @@ impl Material {
         }
     }
 
-    /// Lame's constants (Pa) at small strain, of the stiffest tetrahedron; `None` where it is a network of springs.
+    /// Lame's constants (Pa) at small strain, of the stiffest tetrahedron; `None` for a network of springs.
     fn lame(&self) -> Option<(f64, f64)> {
         match &self.kind {
             Kind::Continuum { lame, .. } => Some(*lame),
@@ -242,8 +242,8 @@ impl Material {
         [share * lambda, 0.0]
     }
 
-    /// Stiffness matrix (N/m) of a single tetrahedron, without what acts on averages, at small strain: 12 x 12,
-    /// row-major and vertex-major; `None` where it is flat.
+    /// Stiffness matrix (N/m) of a single tetrahedron, without terms that act on averages, at small strain: 12 x 12,
+    /// row-major and vertex-major; `None` if it is flat.
     pub(crate) fn stiffness(&self, mesh: &TetMesh, tet: usize) -> Option<[f64; 144]> {
         let share = self.shares.of(tet);
         let (points, nodes) = (&mesh.points, &mesh.tets[tet]);
@@ -298,7 +298,7 @@ impl Material {
     }
 
     /// The largest frequency (1/s) at which a tetrahedron with these vertices (m) and this density (kg/m^3) would swing its own mass, at small
-    /// strain and without fibres or what acts on averages; `None` where it is flat.
+    /// strain and without fibres or terms that act on averages; `None` if it is flat.
     pub(crate) fn frequency(
         &self,
         tet: usize,
@@ -322,7 +322,7 @@ impl Material {
         }
     }
 
-    /// Stress (Pa) at a small strain, in the order of [`crate::stress`]; `None` where the law has none.
+    /// Stress (Pa) at a small strain, in the order of [`crate::stress`]; `None` if the law has none.
     pub(crate) fn stress(&self, strain: &SmoothedStrain) -> Option<[f64; 6]> {
         let SmoothedStrain { shear, dilation } = strain;
         match self.kind {
@@ -333,7 +333,7 @@ impl Material {
         }
     }
 
-    /// The springs of some tetrahedra; `None` where the law has none.
+    /// The springs of some tetrahedra; `None` if the law has none.
     pub(crate) fn springs(
         &self,
         mesh: &TetMesh,
@@ -351,7 +351,7 @@ impl Material {
         }
     }
 
-    /// Adds what tells it from others.
+    /// Adds all that distinguishes it from other materials.
     pub(crate) fn add_to(&self, hash: &mut Hash) {
         hash.add(format!("{:?}", self.kind).as_bytes());
         let mut add = |numbers: &[f64]| numbers.iter().for_each(|x| hash.add(&x.to_le_bytes()));
@@ -368,7 +368,7 @@ impl Material {
     }
 }
 
-/// Stiffness (Pa) that fibres add along themselves as soon as they are pulled.
+/// Stiffness (Pa) that fibres in tension add along themselves.
 fn modulus_along(family: &FibreFamily, tissue: &Tissue) -> f64 {
     4.0 * tissue.factor_of_fibres() * family.fibres.modulus_at_rest()
 }

@@ -8,14 +8,14 @@ use crate::error::{Cause, FemError, Item};
 use crate::number::require_finite;
 use crate::{Course, Moving, Problem};
 
-/// Everything that is moved, by the places of [`Problem::moves`], and what was frozen.
+/// Prescribed motions, in the order of [`Problem::moves`], and frozen nodes.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Motions {
     parts: Vec<MovedPart>,
     /// The nodes that are moved, increasing, with the part that moves each component.
     nodes: Vec<(u32, [Option<u32>; 3])>,
-    /// Nodes that are held away from where they are at rest, increasing, with a constant course along each axis. They belong to pieces of which
-    /// every node is such a one, so that nothing that moves feels them.
+    /// Frozen nodes, increasing, with a constant course along each axis. All nodes of their pieces are frozen, so
+    /// that they exert no force on nodes that move.
     frozen: Vec<(u32, [Course; 3])>,
 }
 
@@ -97,7 +97,8 @@ impl Motions {
         })
     }
 
-    /// The same, with nodes, increasing, that are held at these displacements (m): each piece of the body as a whole, or not at all.
+    /// The same, with nodes, increasing, frozen at these displacements (m): each piece of the body as a whole, or not
+    /// at all.
     pub(crate) fn with_frozen(mut self, frozen: &[(u32, [f64; 3])]) -> Self {
         let held = |(node, displacement): &(u32, [f64; 3])| {
             let along = |axis: usize| Course {
@@ -112,12 +113,12 @@ impl Motions {
         self
     }
 
-    /// True if a node is held where it was frozen.
+    /// True if a node is frozen.
     pub(crate) fn is_frozen(&self, node: u32) -> bool {
         self.frozen(node).is_some()
     }
 
-    /// The courses of a component of a node; none where it is held at rest or free.
+    /// The courses of a component of a node; none if it is fixed at rest or free.
     pub(crate) fn courses(&self, node: u32, axis: usize) -> &[Course] {
         if let Some(part) = self.part_of(node, axis) {
             return self.parts.get(part).map_or(&[], |part| &part.courses);
@@ -131,7 +132,7 @@ impl Motions {
         Some(&self.frozen.get(place.ok()?)?.1)
     }
 
-    /// The nodes that are moved, or held away from where they are at rest.
+    /// The nodes that are moved or frozen.
     pub(crate) fn moved(&self) -> impl Iterator<Item = u32> {
         let moved = self.nodes.iter().map(|(node, _)| *node);
         moved.chain(self.frozen.iter().map(|(node, _)| *node))
@@ -152,8 +153,8 @@ impl Motions {
         Some(by[axis]? as usize)
     }
 
-    /// A field of all parts, as a step takes it: displacements at the instant, velocities as those of loads that they make, and accelerations
-    /// with the kinks inside the window. Allocates nothing for a few parts.
+    /// A field of all motions at the time of a step: displacements at the instant, velocities as loads are taken, and
+    /// accelerations with the kinks inside the window. Allocates nothing for a few motions.
     pub(crate) fn at(&self, when: LoadTime<'_>, field: Field) -> MotionsAt {
         let mut parts = self.parts.iter().map(|part| part.at(when, field));
         MotionsAt {
@@ -237,8 +238,8 @@ impl Course {
         }
     }
 
-    /// Straight lines between positions relative to rest (m) at given times (s), held before the first and after the
-    /// last: a course for each axis.
+    /// Straight lines between positions relative to rest (m) at given times (s), constant before the first and after
+    /// the last: a course for each axis.
     #[must_use]
     pub fn along(times: &[f64], positions: &[[f64; 3]]) -> Vec<Self> {
         let along = |axis: usize| Self {
@@ -252,7 +253,7 @@ impl Course {
         (0..3).filter(moves).map(along).collect()
     }
 
-    /// The displacement (m) along an axis (0, 1, 2 for x, y, z) at a time (s); `None` where the course
+    /// The displacement (m) along an axis (0, 1, 2 for x, y, z) at a time (s); `None` if the course
     /// follows an input that the time does not bring.
     #[must_use]
     pub fn displacement_at<'a>(&self, when: impl Into<LoadTime<'a>>, axis: usize) -> Option<f64> {

@@ -55,8 +55,9 @@ pub(crate) struct Dashpot {
 }
 
 /// A dashpot `d = gamma 2 sqrt(k (m_i + m_j))` along each edge of all networks; gamma =
-/// 1/2 damps a pair of equal masses critically, as the relative motion of both goes, and unequal ones more. An edge that networks share is one spring, whose gamma is the mean of theirs by
-/// stiffness: cutting a body into regions changes nothing. Empty where no network is damped.
+/// 1/2 damps the relative motion of a pair of equal masses critically, and of unequal ones more. An edge that
+/// networks share is one spring, whose gamma is the mean of theirs by stiffness: cutting a body into regions changes
+/// nothing. Empty if no network is damped.
 pub(crate) fn dashpots(networks: &[Option<Network>], masses: &[f64]) -> Vec<Dashpot> {
     let networks = || networks.iter().flatten();
     if !networks().any(|network| network.damping_ratio > 0.0) {

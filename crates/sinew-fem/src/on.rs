@@ -1,8 +1,8 @@
-//! The part of a mesh that a support holds or a load acts on.
+//! The part of a mesh that a support fixes or a load acts on.
 
 use std::fmt;
 
-/// The part of a mesh that a support holds or a load acts on. A name turns into [`On::Group`].
+/// The part of a mesh that a support fixes or a load acts on. A name turns into [`On::Group`].
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum On {

@@ -21,7 +21,7 @@ pub struct Orthotropic {
 const PAIRS: [[usize; 2]; 6] = [[0, 0], [1, 1], [2, 2], [0, 1], [1, 2], [2, 0]];
 
 impl Orthotropic {
-    /// The constants of a law in the axes of coordinates, by the inverse of its stiffness at rest; `None` where that has
+    /// The constants of a law in the axes of coordinates, by the inverse of its stiffness at rest; `None` if that has
     /// none.
     #[must_use]
     pub fn of(law: &Hyperelastic) -> Option<Self> {

@@ -106,7 +106,7 @@ impl<'a> Parts<'a> {
         }
     }
 
-    /// Writes the rows and columns of a part's stiffness of those nodes that are cells; held components are zero.
+    /// Writes the rows and columns of a part's stiffness of those nodes that are cells; fixed components are zero.
     pub(crate) fn moving(&self, number: usize, cells: &Cells, out: &mut ElementStiffness) {
         if let Part::Tet(tet) = self.part(number) {
             moving_part(&self.of_tet(tet), &self.mesh.tets[tet], cells, out);
@@ -117,14 +117,14 @@ impl<'a> Parts<'a> {
         whole.moving(cells, out);
     }
 
-    /// The stiffness of a tetrahedron by its own strain; zero where it is flat.
+    /// The stiffness of a tetrahedron by its own strain; zero if it is flat.
     fn of_tet(&self, tet: usize) -> [f64; 144] {
         let material = &self.materials[self.region_of[tet] as usize];
         let matrix = material.stiffness(self.mesh, tet);
         matrix.unwrap_or([0.0; 144])
     }
 
-    /// Writes the stiffness of a part between all its nodes, held ones included; zero where a tetrahedron is flat.
+    /// Writes the stiffness of a part between all its nodes, fixed ones included; zero if a tetrahedron is flat.
     pub(crate) fn whole(&self, number: usize, out: &mut WholePart) {
         let part = self.part(number);
         let WholePart {
@@ -200,7 +200,7 @@ impl WholePart {
         0.5 * twice
     }
 
-    /// Writes the rows and columns of those nodes that are cells; held components are zero.
+    /// Writes the rows and columns of those nodes that are cells; fixed components are zero.
     pub(crate) fn moving(&self, cells: &Cells, out: &mut ElementStiffness) {
         moving_part(&self.stiffness, self.nodes(), cells, out);
     }

@@ -215,6 +215,6 @@ pub enum LoadKind {
     /// [`LoadKind::Pressure`] that follows the surface of hyperelastic regions as it deforms: against the outward normal then, on the
     /// area then. On other regions, whose shape is that at rest, it is the same as that.
     FollowingPressure(f64),
-    /// A total force (N) in equal parts on the nodes that are not held in x, y and z.
+    /// A total force (N) in equal parts on the nodes that are not fixed in x, y and z.
     Force([f64; 3]),
 }

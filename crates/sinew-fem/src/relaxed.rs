@@ -32,7 +32,7 @@ impl Tissue {
         Err(FemError::new(item, cause))
     }
 
-    /// A law as it is stated with its instantaneous and with its long-term moduli; twice the same one if nothing relaxes.
+    /// The stated law with its instantaneous and with its long-term moduli; twice the same one if nothing relaxes.
     #[must_use]
     pub fn moduli(&self, stated: &Law) -> [Law; 2] {
         let stated = || stated.clone();

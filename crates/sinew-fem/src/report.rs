@@ -25,11 +25,11 @@ pub struct ModelReport {
     pub edges: usize,
     /// Degrees of freedom of the mesh, three a node.
     pub mesh_dofs: usize,
-    /// Components held by supports or moved from outside.
+    /// Components fixed by supports or moved from outside.
     pub held_components: usize,
     /// Free degrees of freedom.
     pub free_dofs: usize,
-    /// Mass of the body (kg), held nodes included.
+    /// Mass of the body (kg), fixed nodes included.
     pub mass: f64,
     /// Volume of the body (m^3).
     pub volume: f64,
@@ -39,7 +39,7 @@ pub struct ModelReport {
     pub loads: Vec<LoadFacts>,
     /// Facts of each prescribed motion, in the order of the problem.
     pub moves: Vec<MoveFacts>,
-    /// Weight, where there is gravity.
+    /// Weight, if there is gravity.
     pub gravity: Option<LoadFacts>,
     /// Stored blocks of the stiffness matrix.
     pub blocks: usize,

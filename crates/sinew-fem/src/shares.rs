@@ -14,7 +14,7 @@ use sinew_mesh::TetMesh;
 /// pressure, stiff ones would be as compressible as their softest neighbour.
 #[derive(Clone, Default, PartialEq)]
 pub(crate) struct Shares {
-    /// Over all tetrahedra of the mesh; `None` where all are equally stiff.
+    /// Over all tetrahedra of the mesh; `None` if all are equally stiff.
     all: Option<Arc<[f64]>>,
     least: f64,
 }

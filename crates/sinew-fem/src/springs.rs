@@ -131,7 +131,7 @@ pub(crate) fn stiffness(
 }
 
 /// The largest frequency (1/s) at which the springs of a tetrahedron with these vertices (m) and this density (kg/m^3) would swing its own mass;
-/// `None` where it is flat.
+/// `None` if it is flat.
 pub(crate) fn largest_frequency(
     vertices: &[[f64; 3]; 4],
     youngs_modulus: f64,
@@ -187,7 +187,7 @@ pub struct NetworkModulus {
 }
 
 /// The moduli of the affine tensor `C = (1/V) sum k l^2 n n n n` of springs that fill `volume`
-/// (m^3). `softest` is 0 where some strain meets no resistance.
+/// (m^3). `softest` is 0 if some strain meets no resistance.
 #[must_use]
 pub(crate) fn network_modulus(
     points: &[[f64; 3]],

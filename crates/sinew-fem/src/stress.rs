@@ -48,7 +48,7 @@ pub fn isotropic(strain: &[f64; 6], lambda: f64, mu: f64) -> [f64; 6] {
     with_dilation(strain, xx + yy + zz, lambda, mu)
 }
 
-/// [`isotropic`] where the relative change of volume is not the trace of the strain that shear resists.
+/// [`isotropic`] if the relative change of volume is not the trace of the strain that shear resists.
 #[must_use]
 pub(crate) fn with_dilation(strain: &[f64; 6], dilation: f64, lambda: f64, mu: f64) -> [f64; 6] {
     let pressure = lambda * dilation;

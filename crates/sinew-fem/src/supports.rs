@@ -1,4 +1,4 @@
-//! Loads, dashpots and matrix rows of held components, which M, D, K and the loads of a model leave out.
+//! Loads, dashpots and matrix rows of fixed components, which M, D, K and the loads of a model leave out.
 
 use std::sync::OnceLock;
 
@@ -11,7 +11,7 @@ use crate::motion::Motions;
 use crate::network::Dashpot;
 use crate::parts::Parts;
 
-/// The part of a load that falls on held components: `ramp(t)` times `forces`.
+/// The part of a load that falls on fixed components: `ramp(t)` times `forces`.
 #[derive(Clone, Debug)]
 pub(crate) struct HeldLoad {
     /// The load, or gravity.
@@ -31,11 +31,11 @@ impl HeldLoad {
     }
 }
 
-/// Everything that acts on held components.
+/// Everything that acts on fixed components.
 #[derive(Clone, Debug)]
 pub(crate) struct Supports {
     pub(crate) loads: Vec<HeldLoad>,
-    /// Dashpots with an end that is held.
+    /// Dashpots with a fixed end.
     dashpots: Vec<Dashpot>,
     /// Summed up at the first request: most runs ask for no reaction.
     border: OnceLock<Border>,
@@ -55,12 +55,12 @@ impl Supports {
         }
     }
 
-    /// Forgets the rows of held nodes, which have changed.
+    /// Forgets the rows of fixed nodes, which have changed.
     pub(crate) fn forget_border(&mut self) {
         self.border = OnceLock::new();
     }
 
-    /// The rows of the `held` nodes.
+    /// The rows of the nodes `held`.
     pub(crate) fn border(&self, parts: Parts<'_>, held: &[u32]) -> &Border {
         let rows = || Border::new(parts, held, &self.dashpots);
         self.border.get_or_init(rows)

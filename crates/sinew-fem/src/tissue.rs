@@ -11,7 +11,7 @@ use crate::number::require_finite;
 /// Additions to a law; only laws of large deformation take any of them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Tissue {
-    /// Families of fibres that stiffen it where they are stretched, up to [`Tissue::MOST_FAMILIES`].
+    /// Families of fibres, which stiffen it under tension, up to [`Tissue::MOST_FAMILIES`].
     pub fibres: Vec<FibreFamily>,
     /// The first two axes of a law that has some: the second is made perpendicular to the first, and the third is their
     /// cross product. `None` for the axes of coordinates.
@@ -65,13 +65,13 @@ pub enum ViscousPart {
     Deviatoric,
 }
 
-/// The moduli that the parameters of a law with memory are, those of its fibres included where they relax.
+/// Meaning of the moduli of a law with memory, and of its fibres if they relax.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Moduli {
     /// Moduli of an instantaneous deformation.
     #[default]
     Instantaneous,
-    /// Moduli of a deformation that is held for a long time.
+    /// Long-term moduli, after relaxation under constant deformation.
     LongTerm,
 }
 

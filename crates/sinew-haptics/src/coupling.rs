@@ -12,7 +12,7 @@ pub struct Coupling {
 /// Capabilities of a device.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DeviceLimits {
-    /// Time (s) for which a force is held constant: one tick.
+    /// Time (s) for which a force is constant: one tick.
     pub tick: f64,
     /// Lower bound of the damping (N s/m) of the device together with the user's hand.
     pub damping: f64,
@@ -57,8 +57,8 @@ pub enum CouplingError {
 }
 
 impl Coupling {
-    /// A coupling of this stiffness k (N/m) with the damping `B = k T`: twice the damping that is lost by holding the
-    /// spring's force for a tick T.
+    /// A coupling of this stiffness k (N/m) with the damping `B = k T`: twice the damping that is lost by the
+    /// zero-order hold of the spring's force for a tick T.
     ///
     /// [`Self::check`] accepts it for `k < 2 b/(3 T)`, where b is the damping of the device.
     #[must_use]
@@ -82,7 +82,7 @@ impl Coupling {
     /// Checks all numbers, and the bound of [`Self::largest_stiffness`].
     ///
     /// # Errors
-    /// [`CouplingError`] for what the device cannot render, with the stiffness below which it can.
+    /// [`CouplingError`] for a coupling that the device cannot render, with the stiffness below which it can.
     pub fn check(&self, device: &DeviceLimits) -> Result<(), CouplingError> {
         for (name, value) in [
             ("stiffness of the coupling", self.stiffness),

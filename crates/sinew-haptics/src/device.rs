@@ -1,4 +1,4 @@
-//! Devices that a user holds.
+//! Haptic devices.
 
 use crate::coupling::DeviceLimits;
 

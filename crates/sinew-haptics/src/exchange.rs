@@ -2,11 +2,11 @@
 
 use triple_buffer::{Input, Output, triple_buffer};
 
-/// The end that writes: it never waits, and what was not read is replaced.
+/// The writing end: it never waits, and replaces a value that was not read.
 #[derive(Debug)]
 pub(crate) struct Publisher<T: Send>(Input<T>);
 
-/// The end that reads the latest value: it never waits, and never sees half of one.
+/// The reading end, for the latest value: it never waits, and never reads half of one.
 #[derive(Debug)]
 pub(crate) struct Reader<T: Send>(Output<T>);
 
@@ -24,7 +24,7 @@ impl<T: Send> Publisher<T> {
 }
 
 impl<T: Send> Reader<T> {
-    /// The latest value, where it is one that was not read before.
+    /// The latest value, if it was not read before.
     pub(crate) fn newer(&mut self) -> Option<&T> {
         self.0.update().then(|| self.0.output_buffer())
     }

@@ -20,9 +20,9 @@ const TISSUE: f64 = 2.0;
 
 /// The loop that renders forces at the rate of a device, from the data that a slower simulation publishes.
 ///
-/// It never waits and reads no clock: each tick takes the position of the device and returns the force that is held
-/// until the next. Between two steps the tool is where the tissue of the last step, as a spring, and the coupling are
-/// in equilibrium. Changes by a new step are blended in linearly, over the time of one step.
+/// It never waits and reads no clock: each tick takes the position of the device and returns the force until the next.
+/// Between two steps the tool is where the tissue of the last step, as a spring, and the coupling are in equilibrium.
+/// Changes by a new step are blended in linearly, over the time of one step.
 ///
 /// The device never receives more energy than it has supplied: the coupling is stretched only as far as that energy
 /// allows, whatever the simulation publishes and however late. This is the passive set-position modulation of Lee and
@@ -49,7 +49,7 @@ pub struct ForceLoop {
 }
 
 impl ForceLoop {
-    /// A loop for a device, with the tool as it is before the first step.
+    /// A loop for a device, with the tool before the first step.
     ///
     /// # Errors
     /// [`CouplingError`] for a coupling that the device cannot render.
@@ -129,7 +129,7 @@ impl ForceLoop {
 
     /// The largest force (N) until the next tick that the energy allows, if the device moves along it by up to 1.5
     /// times its last displacement (m). A force that resists a motion may be as large as that of the damper, whose
-    /// energy the motion itself supplies: so a debt, as after a force that was held for too long, is paid back.
+    /// energy the motion itself supplies: so a debt, as after a late update of the force, is paid back.
     fn affordable(&self, resists: bool, moved: f64) -> f64 {
         let Self { device, energy, .. } = self;
         let way = MOST_FASTER * moved + device.resolution;
@@ -143,7 +143,7 @@ impl ForceLoop {
         }
     }
 
-    /// The force (N) that is held now.
+    /// The force (N) that is rendered now.
     #[must_use]
     pub fn force(&self) -> [f64; 3] {
         self.force

@@ -27,7 +27,7 @@ impl Hand {
         }
     }
 
-    /// Sees it at a position (m), with a rotation vector (rad).
+    /// Records its position (m) and rotation vector (rad).
     pub(crate) fn see(&mut self, position: [f64; 3], rotation_vector: [f64; 3]) {
         if self.seen == 0 {
             self.positions = [position; WINDOW];

@@ -1,5 +1,5 @@
-//! Force feedback: a device at 1 kHz feels tissue that is simulated at 100 Hz, and never receives more energy than it
-//! has supplied.
+//! Force feedback: a device at 1 kHz renders tissue that is simulated at 100 Hz, and never receives more energy than
+//! it has supplied.
 //!
 //! A device is connected only to a [`Coupling`], a spring and a damper whose other end is the tool of a simulation.
 //! After each step a simulation publishes the position of its tool, the force of the tissue on it, and the stiffness of

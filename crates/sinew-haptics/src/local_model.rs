@@ -16,7 +16,7 @@ pub(crate) struct LocalModel {
     position: Vector,
     force: Vector,
     stiffness: Matrix,
-    /// The direction in which the tissue pushes, where it cannot pull.
+    /// The direction in which the tissue pushes, if it cannot pull.
     normal: Option<Vector>,
 }
 

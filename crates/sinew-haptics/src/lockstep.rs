@@ -6,8 +6,8 @@ use crate::force_loop::ForceLoop;
 use crate::hand::Hand;
 use crate::published::{Published, Simulated};
 
-/// A device and a simulation at their own rates, one after the other: a run with two threads in which everything is in
-/// time, but without a clock and with the same bits each time.
+/// A device and a simulation at their own rates, one after the other: like a run with two threads that meets all
+/// deadlines, but without a clock and with the same bits each time.
 ///
 /// A step begins with the current motion of the device, and its result comes one step later, as if the computer had
 /// needed all that time.

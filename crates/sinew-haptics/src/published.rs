@@ -3,7 +3,7 @@
 /// A tool after a step, and the resistance of the tissue at it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Published {
-    /// The time (s) of the simulation at which these data hold.
+    /// The time (s) of the simulation at which these data are valid.
     pub t: f64,
     /// The length (s) of the step that ended then.
     pub dt: f64,
@@ -24,7 +24,7 @@ pub struct Published {
     /// The force (N) by which the tissue resists a slow displacement of the tool, over that displacement (m):
     /// symmetric, without negative eigenvalues.
     pub stiffness: [[f64; 3]; 3],
-    /// True if the tissue may also pull, for example because a tool holds it.
+    /// True if the tissue may also pull, for example because a tool grasps it.
     pub may_pull: bool,
 }
 
@@ -48,7 +48,7 @@ impl Published {
     }
 }
 
-/// A device as the simulation sees it at the beginning of a step.
+/// The motion of a device, for the simulation at the beginning of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DeviceMotion {
     /// Position (m).

@@ -120,7 +120,7 @@ where
     }
 }
 
-/// A device that is let go of without a force, also by a panic.
+/// A device whose force is set to zero at the end, even after a panic.
 struct Held<'a, D: Device>(&'a mut D);
 
 impl<D: Device> Drop for Held<'_, D> {

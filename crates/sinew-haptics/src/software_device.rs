@@ -11,7 +11,7 @@ use crate::device::Device;
 const PARTS: usize = 10;
 
 /// A handle with a mass, pulled by the spring and the damper of a model of the user's hand that follows a path, with an
-/// encoder and with forces that are held for a tick.
+/// encoder and with forces that are constant during a tick.
 ///
 /// Time passes with [`Device::render`], by one tick: simulated time, in which nothing depends on a clock.
 pub struct SoftwareDevice {
@@ -79,14 +79,14 @@ impl SoftwareDevice {
         self.velocity
     }
 
-    /// The energy (J) that the handle has taken out of the source of the forces, exact, since it is the work of held
-    /// forces over displacements: negative if it has supplied energy.
+    /// The energy (J) that the handle has taken out of the source of the forces, exact, since it is the work of
+    /// constant forces over displacements: negative if it has supplied energy.
     #[must_use]
     pub fn energy_taken_out(&self) -> f64 {
         self.work[0]
     }
 
-    /// The largest value (J) of [`Self::energy_taken_out`] at any tick so far: at most 0 for what is passive.
+    /// The largest value (J) of [`Self::energy_taken_out`] at any tick so far: at most 0 for a passive source.
     #[must_use]
     pub fn most_energy_taken_out(&self) -> f64 {
         self.work[1]

@@ -5,7 +5,7 @@ use sinew_tools::vector::{Vector, cross, dot, scaled};
 
 use crate::matrix::Matrix;
 
-/// Squared length of the free part of a normal below which a cell counts as held in its direction.
+/// Squared length of the free part of a normal below which a cell counts as fixed in its direction.
 const HELD: f64 = 1e-6;
 
 /// Cells that a tool carries along when it moves.
@@ -28,7 +28,7 @@ impl Cell {
         &mut vector[3 * self.cell as usize..][..3]
     }
 
-    /// The normal of a smooth surface, without the directions in which the cell is held, and the same divided by its
+    /// The normal of a smooth surface, without the fixed directions of the cell, and the same divided by its
     /// squared length; `None` for a cell that is carried fully, or that cannot move along the normal.
     fn normal(&self) -> Option<[Vector; 2]> {
         let Carry::Along(normal) = self.carry else {
@@ -89,7 +89,7 @@ fn add(of_cell: &mut [f64], vector: &Vector, factor: f64) {
 pub enum Carry {
     /// Along this unit normal only, as by a smooth surface.
     Along([f64; 3]),
-    /// In all directions, as by a tool that holds it, or on which it does not slip.
+    /// In all directions, as by a tool that grasps it, or on which it does not slip.
     Fully,
 }
 

@@ -74,7 +74,7 @@ impl ToolSimulation {
         &self.world
     }
 
-    /// The world, for commands of its user beside the device, such as cuts.
+    /// The world, for further commands of its user, such as cuts.
     pub fn world_mut(&mut self) -> &mut World {
         &mut self.world
     }

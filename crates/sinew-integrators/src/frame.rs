@@ -199,7 +199,7 @@ impl<M: Scheme> Integrator for Frame<M> {
 }
 
 impl<M: Scheme> Frame<M> {
-    /// Sets up for a system and a step; what is known of the same ones is kept.
+    /// Sets up for a system and a step; results for the same ones are reused.
     fn set_up(&mut self, system: &dyn System, dt: f64) -> Result<StepReport, SetupError> {
         let same = if self.scheme.depends_on_loads() {
             self.prepared.is_for_loads(system, dt)
@@ -315,7 +315,7 @@ impl<M: Scheme> Frame<M> {
         }
     }
 
-    /// Refuses a system that does not fit what is asked of the machine.
+    /// Refuses a system that does not fit the machine's options.
     fn check_machine(&self, system: &dyn System) -> Result<(), SetupError> {
         self.machine
             .check(system)

@@ -10,7 +10,7 @@ use crate::option_kind::OptionKind;
 pub enum Guard {
     /// One limit for all cells (m/s).
     At(f64),
-    /// Limits by the energy that the loads and the start of the motion bring; steps longer than the method's
+    /// Limits by the energy of the loads and of the start of the motion; steps longer than the method's
     /// stable one are cut.
     Auto,
 }

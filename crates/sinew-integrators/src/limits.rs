@@ -13,11 +13,11 @@ pub(crate) fn lagged(w: f64, d: f64) -> f64 {
     4.0 / (d + (d * d + 4.0 * w * w).sqrt())
 }
 
-/// Largest radius of a disc whose left half the regions of one-step methods used here hold.
+/// Largest radius of a disc whose left half lies in the stability regions of all one-step methods used here.
 const HALF_DISC: f64 = 2.6;
 
 /// The limit of a one-step method with the stability polynomial `1 + c_1 z + c_2 z^2 + ..`: the step at
-/// which the ray of some mode leaves the region `|polynomial| <= 1`. The region must hold the left half of the
+/// which the ray of some mode leaves the region `|polynomial| <= 1`. The region must contain the left half of the
 /// disc of radius 2.6.
 pub(crate) fn within_region_of(polynomial: &[f64], spectrum: &Spectrum) -> StableStep {
     if !spectrum.proportional {

@@ -5,7 +5,7 @@ use sinew_core::{LinearOperators, Load, Ramp};
 /// Loads with one ramp, added up.
 #[derive(Clone, Debug)]
 pub(crate) struct LoadCase {
-    /// The factor over time, however steps take it.
+    /// The factor over time.
     pub(crate) ramp: Ramp,
     /// The force (N) on each degree of freedom.
     pub(crate) force: Vec<f64>,

@@ -81,7 +81,7 @@ pub(crate) fn take_settings(
     })
 }
 
-/// The machines there are, for messages: those of the option's help, and what the program has added.
+/// The available machines, for messages: those of the option's help, and those that the program has added.
 fn known_ids() -> &'static str {
     static TEXTS: Mutex<Vec<(usize, &'static str)>> = Mutex::new(Vec::new());
     let OptionKind::Words(ours) = MACHINE.kind else {

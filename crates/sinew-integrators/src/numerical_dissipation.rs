@@ -3,8 +3,8 @@
 use sinew_core::vectors::{dot, weighted_dot};
 use sinew_core::{LinearOperators, LoadTime};
 
-/// The closed form of the energy that a method takes from a linear system in a step, beside what loads bring as
-/// `du' (F + F+)/2` and damping takes as `du' D du/dt`.
+/// The closed form of the energy that a method dissipates numerically in a step of a linear system: in addition to
+/// the work of loads, `du' (F + F+)/2`, and the energy `du' D du/dt` that damping dissipates.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum NumericalDissipation {
@@ -27,7 +27,8 @@ pub enum NumericalDissipation {
         of_mass: f64,
         /// Share of the old forces in the equation of motion.
         of_forces: f64,
-        /// Steps by which loads are taken beside the ends of the step: their change times that is no loss.
+        /// Offset, in steps, of the times at which loads are taken from the ends of the step: their change times that
+        /// is no loss.
         load_shift: f64,
     },
     /// The implicit Euler method under the mean of the loads in a step: `(dv' M dv + du' K du)/2`, its equation of motion

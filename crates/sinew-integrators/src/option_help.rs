@@ -4,7 +4,7 @@ use sinew_core::{OptionError, OptionValue, Options};
 
 use crate::option_kind::OptionKind;
 
-/// An option: what a method reads it by, and what help and the reference of scenes say about it.
+/// An option of a method, with its description for help and for the reference of scenes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OptionHelp {
     /// Its key.
@@ -19,7 +19,7 @@ pub struct OptionHelp {
     pub default: OptionDefault,
     /// Lines of `[run]` that use it.
     pub example: &'static str,
-    /// A default that results name with the integrator, because it changes what the run means.
+    /// A default that results name with the integrator, because it changes the meaning of the run.
     pub shown_default: Option<f64>,
 }
 
@@ -41,10 +41,10 @@ impl std::fmt::Display for OptionDefault {
 }
 
 impl OptionHelp {
-    /// Reads the option by `read`, where its kind of values fits; `None` where it is absent.
+    /// Reads the option by `read`, if its kind of values fits; `None` if it is absent.
     ///
     /// # Errors
-    /// [`OptionError::Value`] where the value does not fit.
+    /// [`OptionError::Value`] if the value does not fit.
     pub fn read<T>(
         &self,
         options: &Options,
@@ -59,7 +59,7 @@ impl OptionHelp {
     /// The number that is given, if one is.
     ///
     /// # Errors
-    /// [`OptionError::Value`] where the value does not fit.
+    /// [`OptionError::Value`] if the value does not fit.
     pub fn number(&self, options: &Options, integrator: &str) -> Result<Option<f64>, OptionError> {
         self.read(options, integrator, OptionValue::number)
     }

@@ -4,7 +4,7 @@ use std::ops::{Bound, RangeBounds};
 
 use sinew_core::OptionValue;
 
-/// The values that an option takes, as far as one value tells.
+/// The kinds of values that an option takes, each checked without other options.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum OptionKind {
     /// A finite number between two bounds.

@@ -142,8 +142,8 @@ impl Entry {
     }
 }
 
-/// Options with the largest number of threads that is asked for, or else the options' own, or else as many as help. Methods whose
-/// steps no machine takes have one thread: they take it, and "auto", as asked for, and refuse more.
+/// Options with the given largest number of threads, or else the options' own, or else as many as help. Methods
+/// without steps for machines have one thread: they accept it, and "auto", as a request, and refuse more.
 #[must_use]
 pub fn with_threads(id: &str, options: &Options, threads: Option<&OptionValue>) -> Options {
     const KEY: &str = "threads";

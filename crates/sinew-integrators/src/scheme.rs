@@ -23,18 +23,18 @@ pub trait Scheme: Send + Sized + 'static {
     /// Properties that it declares.
     fn properties(&self) -> Properties;
 
-    /// The error (relative) that its user asked for, where there is such an option: a precision that rounds
-    /// more than that is refused.
+    /// The error (relative) that the user asked for, if there is such an option: a precision with a larger rounding
+    /// error is refused.
     fn asked_error(&self) -> Option<f64> {
         None
     }
 
-    /// The energy that it dissipates numerically, where there is a closed form.
+    /// The energy that it dissipates numerically, if a closed form exists.
     fn numerical_dissipation(&self) -> Option<NumericalDissipation> {
         None
     }
 
-    /// The error for a system that lacks what it needs.
+    /// The error for a system without a needed property.
     fn lacking(&self) -> SetupError {
         self.properties().needs.lacking(Self::ID)
     }
@@ -59,7 +59,7 @@ pub trait Scheme: Send + Sized + 'static {
     /// named by [`Properties::needs`].
     ///
     /// # Errors
-    /// [`SetupError`] when the system lacks what the answer needs.
+    /// [`SetupError`] when the system lacks a needed property.
     fn stable_step(
         &self,
         _system: &dyn System,
@@ -144,8 +144,8 @@ pub trait StepByHand: Send {
         false
     }
 
-    /// Moves u and v over a step. The velocity holds at the displacement's time, or in the middle of
-    /// a last step of the same length where steps are staggered.
+    /// Moves u and v over a step. The velocity is at the displacement's time, or in the middle of
+    /// a last step of the same length if steps are staggered.
     ///
     /// # Errors
     /// [`StepError`] when the system refuses a trial state or the step would be wrong.

@@ -8,13 +8,13 @@ use crate::numerical_dissipation::NumericalDissipation;
 
 /// An integrator that may have a program.
 pub trait Stepper: Integrator {
-    /// The program of a step as set-up made it; `None` before set-up and where no program of sweeps
+    /// The program of a step as set-up made it; `None` before set-up and if no program of sweeps
     /// expresses the method.
     fn program(&self) -> Option<Program> {
         None
     }
 
-    /// The energy that it dissipates numerically from a linear system, where there is a closed form.
+    /// The energy that it dissipates numerically from a linear system, if a closed form exists.
     fn numerical_dissipation(&self) -> Option<NumericalDissipation> {
         None
     }
@@ -24,9 +24,9 @@ pub trait Stepper: Integrator {
         StableStep::Unknown
     }
 
-    /// Cuts each substep into which it cuts steps automatically into `_times` substeps from now on; false where steps
-    /// are as long as its caller asks for, or cut into a given number of substeps. A comparison of a run with one of
-    /// shorter steps needs it: half of a step that is cut in two is the same two substeps.
+    /// Divides each automatic substep into `_times` substeps from now on; returns false if steps are as long as its
+    /// caller asks for, or are divided into a given number of substeps. A comparison of a run with one of shorter
+    /// steps needs it: half of a step that is divided in two is the same two substeps.
     fn refine(&mut self, _times: u32) -> bool {
         false
     }

@@ -59,7 +59,7 @@ struct List {
 pub(crate) struct Clients(Mutex<List>);
 
 impl Clients {
-    /// A new client: its number, and the messages for it; `None` where there are too many.
+    /// A new client: its number, and the messages for it; `None` if there are too many.
     pub(crate) fn enter(&self) -> Option<(u32, Receiver<Message>)> {
         let mut list = self.lock();
         if list.clients.len() >= MOST_CLIENTS {
@@ -104,7 +104,7 @@ impl Clients {
         }
     }
 
-    /// Notes that a picture has been sent to a client.
+    /// Records that a picture has been sent to a client.
     pub(crate) fn sent(&self, id: u32) {
         if let Some(client) = self.lock().find(id) {
             client.waiting = client.waiting.saturating_sub(1);
@@ -119,14 +119,15 @@ impl Clients {
     }
 
     /// Time at which the next picture is to be made, which may be in the past, after `changes` changes; `None` if no
-    /// client that holds a credit lacks one.
+    /// client with a credit lacks one.
     pub(crate) fn next_picture(&self, changes: u64) -> Option<Instant> {
         let list = self.lock();
         let lack = list.clients.iter().filter(|client| client.lacks(changes));
         lack.map(Client::next_picture).min()
     }
 
-    /// Sends a picture, and before it the topology where that is new, to all who hold a credit, lack it, and are to have one by this time.
+    /// Sends a picture, and before it the topology if that is new, to all clients with a credit that lack it and
+    /// whose picture is due by this time.
     pub(crate) fn show(&self, picture: Picture<'_>, by: Instant) {
         let Picture {
             message,
@@ -197,7 +198,7 @@ impl List {
 }
 
 impl Client {
-    /// True if it holds a credit and reads its messages: a client that grants credits without reading gets no more.
+    /// True if it has a credit and reads its messages: a client that grants credits without reading gets no more.
     fn wants_a_frame(&self) -> bool {
         self.credits > 0 && self.waiting < MOST_CREDITS
     }

@@ -8,11 +8,11 @@ use sinew_world::{JournalError, Log};
 pub struct Ended {
     /// The simulated time (s).
     pub t: f64,
-    /// The scene: another one than in the beginning where the page changed a tool.
+    /// The scene, with the page's changes of tools.
     pub scene: Scene,
     /// Values that are set in its file to get it, as `KEY=VALUE`.
     pub values: Vec<String>,
-    /// Files of [`Live::keep_logs`](crate::Live::keep_logs) that do not hold their logs to the end.
+    /// Files of [`Live::keep_logs`](crate::Live::keep_logs) with incomplete logs.
     pub unkept: Vec<JournalError>,
     /// The log of each pane.
     pub logs: Vec<Log>,

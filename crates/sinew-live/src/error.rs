@@ -22,7 +22,7 @@ pub enum LiveError {
     /// An integrator that does not exist, or an option that it does not take.
     #[error(transparent)]
     Option(#[from] OptionError),
-    /// A file of the scene that became another one while the page was open.
+    /// A file of the scene that changed while the page was open.
     #[error(
         "{path} has changed since this page was opened, so that its body would be another one: end `sinew live` and start it again",
         path = .path.display()

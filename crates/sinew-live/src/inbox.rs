@@ -52,7 +52,7 @@ pub(crate) struct Waiting {
 }
 
 impl Waiting {
-    /// Forgets what some clients asked for.
+    /// Drops the requests of some clients.
     pub(crate) fn forget(&mut self, is_gone: impl Fn(u32) -> bool) {
         self.poses.retain(|pose| !is_gone(pose.client));
         self.orders.retain(|order| !is_gone(order.client));
@@ -80,7 +80,7 @@ fn setting(order: &Order) -> Option<(usize, Option<&str>)> {
     }
 }
 
-/// The one way from pages to the simulation.
+/// The queue of all requests from pages to the simulation.
 #[derive(Debug, Default)]
 pub(crate) struct Inbox {
     waiting: Mutex<Waiting>,
@@ -121,7 +121,7 @@ impl Inbox {
         self.wake(waiting);
     }
 
-    /// Forgets what a client asked for that has gone.
+    /// Drops the requests of a client that has left.
     pub(crate) fn leave(&self, client: u32) {
         let mut waiting = self.lock();
         waiting.forget(|other| other == client);
@@ -139,8 +139,8 @@ impl Inbox {
         self.wake(waiting);
     }
 
-    /// Moves what waits into `taken`, which keeps its capacity, after at most `patience` of waiting for anything. As
-    /// long as orders are left there, others and the poses behind them continue to wait here.
+    /// Moves waiting requests into `taken`, which keeps its capacity, after waiting for at most `patience`. While
+    /// orders are left there, others and the poses behind them continue to wait here.
     pub(crate) fn take(&self, taken: &mut Waiting, patience: Duration) {
         let mut waiting = self.lock();
         if !waiting.woken && !patience.is_zero() {

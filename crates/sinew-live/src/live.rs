@@ -25,7 +25,7 @@ use crate::scene_values::SceneValues;
 use crate::server::{Guests, Shared, Standing, Token, router};
 use crate::tool_facts::tools_of;
 
-/// Time between two checks of whether the page shall end.
+/// Time between two checks for a request to end.
 const LOOK: Duration = Duration::from_millis(50);
 
 /// Time that the simulation has to end: it does so between steps and orders, and to set up a method may take minutes.
@@ -53,7 +53,7 @@ pub struct Settings {
     pub values: Vec<String>,
     /// The panes to begin with, one or two.
     pub panes: Vec<PaneChoice>,
-    /// The second pane, where it is asked for later.
+    /// The second pane, if it is opened later.
     pub second: PaneChoice,
     /// Loads by which the user pulls; they are 0 at the beginning.
     pub hand: Option<Hand>,
@@ -61,7 +61,7 @@ pub struct Settings {
     pub port: u16,
 }
 
-/// A scene behind a page, which nobody has opened yet.
+/// A scene with its page, before the page is opened.
 pub struct Live {
     runtime: Runtime,
     listener: TcpListener,
@@ -169,7 +169,7 @@ impl Live {
     /// Keeps a file for each pane up to date with its commands, so that a session that is killed can be repeated. Commands reach it within a second.
     ///
     /// # Errors
-    /// [`JournalError`] where a file cannot be written.
+    /// [`JournalError`] if a file cannot be written.
     pub fn keep_logs(&mut self, journals: Vec<Journal>) -> Result<(), JournalError> {
         self.engine.keep_logs(journals)
     }
@@ -177,7 +177,7 @@ impl Live {
     /// Serves the page and simulates until `ends` says so.
     ///
     /// # Errors
-    /// [`LiveError::Serve`] where the system refuses a thread or a connection.
+    /// [`LiveError::Serve`] if the system refuses a thread or a connection.
     pub fn run(self, ends: impl Fn() -> bool) -> Result<Ended, LiveError> {
         let Self {
             runtime,

@@ -8,9 +8,9 @@ const UNDER_WAY: Duration = Duration::from_millis(6);
 /// Time between two draws where a page announces none.
 const BETWEEN_DRAWS: Duration = Duration::from_millis(16);
 
-/// The next draw of a page. A page that can take two pictures gets one at once, so that it never draws without, and
-/// another as late as may be, so that the screen shows what the user did just before; to one that can take a single
-/// picture only the late one goes.
+/// The next draw of a page. A page that can take two pictures gets one immediately, so that it always has one to
+/// draw, and another as late as possible, so that the screen shows the user's latest input; a page that can take a
+/// single picture gets only the late one.
 #[derive(Debug)]
 pub(crate) struct NextDraw {
     /// Time at which the page announced the draw.
@@ -33,7 +33,8 @@ impl NextDraw {
         }
     }
 
-    /// Time at which the next picture is to be made for a page that holds `takes` credits: in the past if at once.
+    /// Time at which the next picture is to be made for a page with `takes` credits; a time in the past means
+    /// immediately.
     pub(crate) fn due(&self, takes: u32) -> Instant {
         match (self.has_early, self.has_late) {
             (false, false) if takes > 1 => self.told,
@@ -43,7 +44,7 @@ impl NextDraw {
         }
     }
 
-    /// Notes that a picture is made.
+    /// Records that a picture is made.
     pub(crate) fn take(&mut self) {
         self.has_early = true;
         self.has_late = Instant::now() >= self.late;

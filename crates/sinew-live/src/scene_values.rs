@@ -1,16 +1,17 @@
-//! A scene with the values that a command line and a page set in it, and what its sessions begin with.
+//! A scene with the values that a command line and a page set in it, and the initial data of its sessions.
 
 use sinew_scene::{Scene, SceneError};
 use sinew_world::{InputFile, Log};
 
 use crate::error::LiveError;
 
-/// A scene with the values that a command line and a page set in its file, as `KEY=VALUE`, and what each session of it begins with.
+/// A scene with the values that a command line and a page set in its file, as `KEY=VALUE`, and the initial data of
+/// its sessions.
 #[derive(Clone, Debug)]
 pub(crate) struct SceneValues {
     pub(crate) scene: Scene,
     pub(crate) values: Vec<String>,
-    /// The files of the scene as they were when the page was opened.
+    /// The files of the scene at the time when the page was opened.
     pub(crate) files: Vec<InputFile>,
     /// Loads whose factors are other than 1 at the beginning.
     pub(crate) first_factors: Vec<(std::sync::Arc<str>, f64)>,
@@ -31,7 +32,8 @@ impl SceneValues {
         })
     }
 
-    /// Refuses the session of this log where a file of the scene is another one now: its body could not be compared with those that are shown.
+    /// Refuses the session of this log if a file of the scene has changed: its body could not be compared with the
+    /// shown ones.
     pub(crate) fn check_files(&self, log: &Log) -> Result<(), LiveError> {
         let now = &log.header().inputs;
         let changed = now.iter().find(|file| !self.files.contains(file));

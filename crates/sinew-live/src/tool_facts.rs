@@ -6,7 +6,7 @@ use sinew_tools::{Convex, Part, Tool};
 
 use crate::protocol::{PartFacts, ToolFacts};
 
-/// The tools of a scene as they are at the beginning.
+/// The tools of a scene at the beginning.
 pub(crate) fn tools_of(body: &BodyModel, simulation: &Simulation) -> Vec<ToolFacts> {
     let Some(tools) = &body.tools else {
         return Vec::new();

@@ -11,7 +11,7 @@ const DASHPOTS: usize = 1;
 /// Number of the forces of elements among the constants.
 pub(crate) const ELEMENTS: usize = 5;
 
-/// Matrices and damping beside the elements of a force law.
+/// Matrices and damping in addition to the elements of a force law.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct BesideElements {
     /// True if K is not 0.
@@ -42,7 +42,7 @@ pub(crate) struct Compiled<T> {
     pub(crate) registers: Vec<bool>,
     /// Registers with a second vector.
     pub(crate) doubled: Vec<bool>,
-    /// The constants, and whether each is used.
+    /// The constants, each with a flag: true if it is used.
     pub(crate) constants: Vec<(Constant, bool)>,
     pub(crate) entry: CompiledSweep<T>,
     /// One for each sweep of the program.

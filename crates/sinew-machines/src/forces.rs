@@ -7,7 +7,7 @@ use sinew_sparse::sweep::{CHUNK, Fields, Numbering, Precision};
 /// The forces of a sweep: written again only when a load's factor changes.
 #[derive(Debug, Default)]
 pub(crate) struct Forces {
-    /// Address of each load that is in the field, and its factor. Loads stay where they are during a batch.
+    /// Address of each load that is in the field, and its factor. Loads do not move during a batch.
     present: Vec<(usize, f64)>,
     /// Identity of the loads in the field; `None` if some are no system's own.
     of: Option<[Revision; 2]>,

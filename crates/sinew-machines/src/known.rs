@@ -6,7 +6,7 @@ use sinew_core::System;
 use crate::settings::{PrecisionName, Settings};
 use crate::unfit::Unfit;
 
-/// A kind of machine: its name, what it runs, and how it is built.
+/// A kind of machine: its name, its check of settings and systems, and its constructor.
 #[derive(Clone, Copy, Debug)]
 pub struct KnownMachine {
     /// The name users type.

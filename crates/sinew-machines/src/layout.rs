@@ -22,10 +22,10 @@ pub struct Layout<T> {
 /// The layout for any matrix.
 struct General<T>(Arc<Layout<T>>);
 
-/// The layout beside the elements of a force law.
+/// The layout used together with the elements of a force law.
 struct BesideElements<T>(Arc<Layout<T>>);
 
-/// The layout of a lattice, where there is one.
+/// The layout of a lattice, if any.
 struct Repeated<T>(Option<Arc<Layout<T>>>);
 
 /// Work of a batch (microseconds, about) below which sleeping threads are not woken.
@@ -66,7 +66,8 @@ impl<T: Precision> Layout<T> {
         Arc::clone(&operators.derived::<General<T>>(of).0)
     }
 
-    /// The matrices beside the elements of a force law, in the order of its forces; made once for all clones of the operators.
+    /// The matrices used together with the elements of a force law, in the order of its forces; made once for all
+    /// clones of the operators.
     #[must_use]
     pub fn beside_elements(forces: &dyn ElementForces) -> Arc<Self> {
         let of = |operators: &LinearOperators| {
@@ -141,7 +142,7 @@ impl<T: Precision> Layout<T> {
         self.blocks * (layers * layers * size_of::<T>() + size_of::<u32>())
     }
 
-    /// The rows that kernels compute with, and what templates save.
+    /// Description of the rows that kernels use, and of the memory that templates save.
     pub(crate) fn in_words(&self) -> String {
         let cells = self.numbering.cells();
         match &self.stiffness {

@@ -1,4 +1,5 @@
-//! The kinds of machines that [`Settings`] and scenes know by their ids: ours, and those that a program adds.
+//! Registry of the kinds of machines that [`Settings`] and scenes know by their ids: ours, and those that a program
+//! adds.
 
 use std::sync::{PoisonError, RwLock};
 
@@ -29,10 +30,10 @@ impl Kind {
 }
 
 impl Settings {
-    /// Checks that what they ask for can be had on a system.
+    /// Checks that a machine with these settings can run a system.
     ///
     /// # Errors
-    /// [`Unfit`] where it cannot.
+    /// [`Unfit`] if it cannot.
     pub fn check(&self, system: &dyn System) -> Result<(), Unfit> {
         let known = self.kind.known();
         (known.check)(self, system)?;

@@ -10,7 +10,8 @@ const NOWHERE: f64 = 1e30;
 /// A position at which no cell is touched.
 const NONE: u32 = u32::MAX;
 
-/// The cells that contact reads, and the blocks of positions that hold any, so that a box is compared with whole vectors of them.
+/// The cells that contact reads, and the blocks of positions that contain any, so that a box is compared with whole
+/// vectors of them.
 #[derive(Debug)]
 pub(crate) struct Touched<T> {
     cells: Vec<u32>,
@@ -44,7 +45,7 @@ impl<T: Precision> Touched<T> {
         }
     }
 
-    /// Takes cells that rest at these places (m), where they are not the same already.
+    /// Sets the cells and their rest places (m), unless they are the same already.
     pub(crate) fn take(&mut self, numbering: &Numbering, cells: &[u32], rest: &[[f64; 3]]) {
         if self.cells == cells && self.rest == rest {
             return;
@@ -133,9 +134,9 @@ impl<T: Precision> Touched<T> {
         places.for_each(|place| self.show(place, &layers, state));
     }
 
-    /// Lists the places of those whose ways in the step may meet a box (m), increasing. No component of a displacement
-    /// is larger than `largest` (m) at either end of a way: where all of a block stays away from the box then, its ways
-    /// are not checked.
+    /// Lists the indices of the cells whose paths in the step may meet a box (m), increasing. No component of a
+    /// displacement is larger than `largest` (m) at either end of a path: if a whole block stays away from the box
+    /// then, its paths are not checked.
     pub(crate) fn list_near(
         &self,
         set: InstructionSet,
@@ -169,7 +170,8 @@ impl<T: Precision> Touched<T> {
         }
     }
 
-    /// A box wider by more than ways are rounded by in this precision: what is listed in vain is left out by contact.
+    /// A box widened by more than the rounding of paths in this precision; contact ignores cells that are listed in
+    /// vain.
     fn with_roundings(&self, [low, high]: [[f64; 3]; 2]) -> [[f64; 3]; 2] {
         let sizes = self.extent.iter().chain([&low, &high]).flatten();
         let largest = sizes.fold(0.0_f64, |largest, x| largest.max(x.abs()));
@@ -189,7 +191,7 @@ fn layers_of<T: Real>(fields: &mut Fields<T>, [u, v]: [usize; 2]) -> Layers<'_, 
     [[a, b, c], [d, e, f]]
 }
 
-/// The search for the blocks in which a way may meet a box.
+/// The search for the blocks in which a path may meet a box.
 struct Search<'a, T> {
     touched: &'a Touched<T>,
     layers: &'a Layers<'a, T>,
@@ -231,7 +233,7 @@ impl<T: Precision> WithReal<T> for Search<'_, T> {
 }
 
 impl<T: Precision> Search<'_, T> {
-    /// Lists the cells of a block whose ways meet the box.
+    /// Lists the cells of a block whose paths meet the box.
     #[inline(always)]
     fn look_at<N: Number<Real = T>>(&mut self, block: usize) {
         let (touched, [us, vs]) = (self.touched, self.layers);
@@ -282,7 +284,7 @@ mod tests {
 
     use super::*;
 
-    /// Every way that meets a box is listed, in every precision and by all instructions, and few others.
+    /// Every path that meets a box is listed, in every precision and by all instructions, and few others.
     fn lists_what_meets_a_box<T: Precision>() {
         let mut seed = 3_u64;
         let mut random = || {

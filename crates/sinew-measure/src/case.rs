@@ -250,7 +250,7 @@ impl Case {
         self.span.duration >= self.whole().duration
     }
 
-    /// 2/omega_max (s) at rest, where something vibrates.
+    /// 2/omega_max (s) at rest, if something vibrates.
     #[must_use]
     pub fn critical_step(&self) -> Option<f64> {
         self.critical_step

@@ -7,7 +7,7 @@ use crate::row::Row;
 /// Measure of the cost of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Cost {
-    /// CPU time as it was measured: what a run takes on this machine.
+    /// Measured CPU time of a run on this machine.
     #[default]
     CpuTime,
     /// Counted work at fixed prices: rough, but the same on every machine and in every repeat.
@@ -24,7 +24,7 @@ const SOLUTION: f64 = 5.0 * SWEEP;
 const FACTORIZATION: f64 = 500.0 * SWEEP;
 
 impl Cost {
-    /// The row with its times replaced by the prices of its work, where work is what counts.
+    /// The row with its times replaced by the prices of its work, if cost is counted by work.
     pub(crate) fn charged(self, row: Row) -> Row {
         if self == Self::CpuTime {
             return row;

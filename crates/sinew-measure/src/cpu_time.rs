@@ -23,7 +23,7 @@ impl CostSince {
         }
     }
 
-    /// Time since then on the clock that whoever took the steps names ([`sinew_core::Integrator::cost_clock`]).
+    /// Time since then on the clock named by the integrator ([`sinew_core::Integrator::cost_clock`]).
     #[must_use]
     pub fn elapsed(&self, clock: CostClock) -> Duration {
         match clock {
@@ -34,8 +34,8 @@ impl CostSince {
     }
 }
 
-/// Thread CPU time since some fixed instant: what other processes do does not count. Wall time
-/// where the platform has no such clock.
+/// Thread CPU time since some fixed instant, without that of other processes. Wall time if the platform has no
+/// such clock.
 #[must_use]
 pub fn thread_cpu_time() -> Duration {
     #[cfg(unix)]

@@ -13,7 +13,7 @@ pub(crate) struct DeformationWatch<'a> {
     /// True if all energy comes from the start and from loads: no part of the body is moved.
     knows_energy: bool,
     smallest_volume_ratio: f64,
-    /// Work (J) of what touches the body, until the last step.
+    /// Work (J) of contact on the body, until the last step.
     work_of_contact: f64,
     /// Displacement (m) and load (N) at the last step, none before the first.
     last: Option<(f64, Vec<f64>)>,
@@ -89,8 +89,8 @@ impl<'a> DeformationWatch<'a> {
         self.smallest_volume_ratio
     }
 
-    /// Largest excess of the energy so far over what start and loads brought in, as a share of the most they did; none where supports
-    /// in motion bring in more.
+    /// Largest excess so far of the energy over the supplied energy (that of the start and the work of loads), as a
+    /// share of its maximum; `None` if supports in motion supply more.
     pub(crate) fn energy_rise(&self) -> Option<f64> {
         (self.knows_energy && self.largest_allowed > 0.0).then(|| self.rise / self.largest_allowed)
     }

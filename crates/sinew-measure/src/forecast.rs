@@ -8,7 +8,7 @@ use sinew_scene::Simulation;
 
 use crate::cpu_time::process_cpu_time;
 
-/// The work and the time that a run of a scene will take, as its first steps tell.
+/// The work and the time of a run of a scene, predicted from its first steps.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Forecast {
     /// Step (s).
@@ -19,13 +19,13 @@ pub struct Forecast {
     pub sweeps_per_step: f64,
     /// Solutions of a linear system of a step, the mean over the run.
     pub solves_per_step: f64,
-    /// Time (s) that set-up took by the clock on the wall; next to none where the integrator was set up already.
+    /// Wall time (s) of set-up; almost 0 if the integrator was set up already.
     pub setup_s: f64,
     /// Time (s) of a step by the clock on the wall.
     pub step_s: f64,
     /// CPU time (s) of a step, that of all threads.
     pub step_cpu_s: f64,
-    /// Steps that were taken to tell: from the first on, or all of them.
+    /// Number of steps on which the prediction is based, from the first on.
     pub seen: usize,
 }
 
@@ -65,8 +65,8 @@ const AGAIN: usize = 4;
 
 impl Forecast {
     /// Sets an integrator up and takes some of the scene's first steps with it, for some hundredths of a second or,
-    /// where steps are long, up to a quarter of a second and a step. Under force laws it continues to the end where
-    /// that is a matter of seconds.
+    /// if steps are long, up to a quarter of a second and a step. Under force laws it continues to the end if
+    /// that takes a few seconds only.
     ///
     /// # Errors
     /// [`ForecastError`].
@@ -160,13 +160,13 @@ impl Forecast {
         Ok((forecast.run_s() > seconds).then_some(forecast))
     }
 
-    /// The part of the motion (s) that was measured; `None` where that is all of it.
+    /// The part of the motion (s) that was measured; `None` if that is all of it.
     #[must_use]
     pub fn seen_s(&self) -> Option<f64> {
         (self.seen < self.steps).then_some(self.seen as f64 * self.dt)
     }
 
-    /// Time (s) of the run by the clock on the wall, set-up included, without what is written.
+    /// Wall time (s) of the run, set-up included, without output.
     #[must_use]
     pub fn run_s(&self) -> f64 {
         self.setup_s + self.step_s * self.steps as f64

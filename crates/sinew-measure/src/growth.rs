@@ -31,7 +31,7 @@ const MARGIN: f64 = 1.5;
 const MARGIN_OF_FEW: f64 = 4.0;
 
 impl ErrorHistory {
-    /// No instants yet, of a system that something damps or nothing does.
+    /// A history without instants, of a damped or undamped system.
     pub(crate) fn new(damped: bool) -> Self {
         Self {
             damped,

@@ -56,7 +56,7 @@ pub fn measure(
 /// Runs an integrator, of this workspace or not, on a case in steps of `dt` (s). The row has `name`
 /// in the place of an integrator's id, and no options.
 ///
-/// Times are told by the clock that the integrator names ([`Integrator::cost_clock`]).
+/// Times are measured by the clock that the integrator names ([`Integrator::cost_clock`]).
 /// Set-up, the run that is compared with the reference and the runs that are timed are separate,
 /// so that neither set-up nor comparison is in the times. An integrator that is set up for the
 /// case and the step already has no set-up left to time.
@@ -184,7 +184,7 @@ pub fn measure_with(
     })
 }
 
-/// The reason for which a step was refused, where that is why a run ended.
+/// The reason for which a step was refused, if that ended the run.
 fn refusal(error: &SimulateError) -> Option<String> {
     match error {
         SimulateError::Step(
@@ -218,7 +218,7 @@ fn work(report: &RunReport, setup_factorizations: u64) -> Work {
     }
 }
 
-/// Most checks of a run for surfaces that may overlap: a check costs as much as some steps.
+/// Most checks of a run for overlapping surfaces: a check costs as much as some steps.
 const LOOKS: usize = 10;
 
 /// Compares each state with the reference as it comes; keeps no copies.
@@ -272,7 +272,7 @@ impl Comparison<'_> {
         self.step == self.steps || self.step > 0 && looks(self.step) > looks(self.step - 1)
     }
 
-    /// Compares what has been received since the last instant: the mean forces of that time.
+    /// Compares the impulses received since the last instant, as mean forces.
     fn compare_impulses(&mut self, moment: &Moment<'_>) {
         let reference = self.track.impulses.get(self.step / self.stride);
         let (Some(contact), Some(reference)) = (moment.system.contact(), reference) else {

@@ -56,7 +56,7 @@ impl MethodChoice {
         self
     }
 
-    /// Writes out the defaults that change what a run means.
+    /// Writes out the defaults that change the meaning of a run.
     #[must_use]
     pub fn showing_defaults(mut self) -> Self {
         let entry = sinew_integrators::entry(&self.integrator);
@@ -71,7 +71,7 @@ impl MethodChoice {
     /// Its largest stable step on a scene.
     ///
     /// # Errors
-    /// [`MethodError`] when its options do not fit or the system lacks what it needs.
+    /// [`MethodError`] when its options do not fit or the system lacks a needed property.
     pub fn stable_step(&self, simulation: &Simulation) -> Result<StableStep, MethodError> {
         Ok(self.build()?.stable_step(simulation.system())?)
     }
@@ -104,7 +104,7 @@ pub enum MethodError {
     /// The integrator is unknown, or its options do not fit.
     #[error(transparent)]
     Options(#[from] OptionError),
-    /// The system lacks what it needs.
+    /// The system lacks a needed property.
     #[error(transparent)]
     Setup(#[from] SetupError),
 }

@@ -44,7 +44,7 @@ pub struct CaseInfo {
     /// Half the range of the reference's worst dof over the last fifth of the run (m).
     #[serde(deserialize_with = "gaps::null_is_nan")]
     pub late_amplitude_m: f64,
-    /// Critical step `2 / omega_max` of the undamped system (s); none where there is no omega_max.
+    /// Critical step `2 / omega_max` of the undamped system (s); none if there is no omega_max.
     #[serde(default)]
     pub critical_step_s: Option<f64>,
     /// The largest stable step of each method that ran and has one (s), by its label.
@@ -108,9 +108,9 @@ pub struct Row {
     /// of the scene was compared.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub expected_error: Option<f64>,
-    /// Largest |component| of the displacement over the run (m); none where not finite.
+    /// Largest |component| of the displacement over the run (m); `None` if not finite.
     pub max_u: Option<f64>,
-    /// Half the range of the worst dof over the last fifth of the steps (m); none where not finite.
+    /// Half the range of the worst dof over the last fifth of the steps (m); `None` if not finite.
     pub late_amplitude: Option<f64>,
     /// Share of the (dof, step) pairs that were saturated (fraction).
     #[serde(deserialize_with = "gaps::null_is_nan")]
@@ -120,7 +120,8 @@ pub struct Row {
     pub guarded: bool,
     /// Inverted elements in the last state.
     pub inverted: u64,
-    /// Depth (m) to which parts or surfaces of the body were in each other at instants spread over the run; none where they were not.
+    /// Depth (m) to which parts or surfaces of the body were in each other at instants spread over the run; none if
+    /// they were not.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub overlap: Option<f64>,
     /// Work counts over the run; they reproduce, seconds do not.
@@ -153,14 +154,14 @@ pub struct Row {
     /// system; of hard cases only.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub energy_drift: Option<f64>,
-    /// Largest excess of the energy over that of the start and the work of loads since, over all the energy they brought in; of bodies that
-    /// follow a force law and of which no part is moved.
+    /// Largest excess of the energy over that of the start and the work of loads since, over all the energy they
+    /// supplied; of bodies that follow a force law and of which no part is moved.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub energy_rise: Option<f64>,
     /// The smallest ratio of an element's volume to that at rest, over all steps; of bodies that follow a force law.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub smallest_volume_ratio: Option<f64>,
-    /// Relative L2 error (fraction) of the mesh and its element, without any error in time, where it is known.
+    /// Relative L2 error (fraction) of the mesh and its element, without any error in time, if known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mesh_error: Option<f64>,
     /// CPU time of the steps over that of the case's run to which costs are compared.
@@ -214,7 +215,7 @@ pub struct Work {
 }
 
 /// The verdict on a run in one word. Stability and accuracy are separate questions; see the
-/// fields of [`Row`] for all the answers.
+/// fields of [`Row`] for details.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum RowVerdict {
@@ -243,7 +244,7 @@ impl RowVerdict {
         Self::Refused,
     ];
 
-    /// A symbol that tells the verdict without colour.
+    /// A symbol that shows the verdict without colour.
     #[must_use]
     pub fn symbol(self) -> &'static str {
         match self {
@@ -277,7 +278,7 @@ impl Row {
         label(&self.integrator, &self.options)
     }
 
-    /// The method, and the law and element where they tell runs apart.
+    /// The method, with the law and the element if they distinguish runs.
     #[must_use]
     pub fn label(&self) -> String {
         match &self.material {
@@ -287,7 +288,7 @@ impl Row {
     }
 
     /// The error in per cent without the sign, as in `1.23`, or as in `< 4.5e-8` where the reference can
-    /// say no more; none where there is no error.
+    /// say no more; none if there is no error.
     #[must_use]
     pub fn error_in_percent(&self) -> Option<String> {
         match self.error_is_below {
@@ -296,13 +297,13 @@ impl Row {
         }
     }
 
-    /// The largest error (fraction) that the run may have by what the reference can tell.
+    /// The largest error (fraction) that the run may have, within the reference's accuracy.
     #[must_use]
     pub fn error_at_most(&self) -> Option<f64> {
         self.error_is_below.or(self.error)
     }
 
-    /// The error, where it means something: of a run that finished bounded with nothing saturated.
+    /// The error, if it is meaningful: of a run that finished bounded with nothing saturated.
     #[must_use]
     pub fn sound_error(&self) -> Option<f64> {
         match self.verdict() {
@@ -343,7 +344,7 @@ impl Row {
     }
 }
 
-/// `Some` where the value is finite, for the fields that JSON must be able to hold.
+/// `Some` if the value is finite, for fields that JSON must represent.
 #[must_use]
 pub fn finite(value: f64) -> Option<f64> {
     value.is_finite().then_some(value)

@@ -11,7 +11,7 @@ use crate::cpu_time::CostSince;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Effort {
     /// Repeats that are aimed at, of which the median counts: fewer where they would pass the
-    /// budget, but always one; more where they take less than a quarter of it. 0: nothing is timed.
+    /// budget, but always one; more if they take less than a quarter of it. 0: nothing is timed.
     pub repeats: usize,
     /// CPU time (s) after which no further repeat is begun.
     pub budget: f64,

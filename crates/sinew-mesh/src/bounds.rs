@@ -23,7 +23,7 @@ impl Bounds {
         }
     }
 
-    /// Widths along x, y and z; 0 where no point was added.
+    /// Widths along x, y and z; 0 if no point was added.
     pub(crate) fn widths(&self) -> [f64; 3] {
         [0, 1, 2].map(|axis| (self.high[axis] - self.low[axis]).max(0.0))
     }

@@ -1,4 +1,4 @@
-//! The kinds of cells a gmsh file can hold, under meshio's names.
+//! The cell types of gmsh files, under meshio's names.
 
 use std::fmt;
 
@@ -135,7 +135,7 @@ impl CellType {
 
     /// The order of VTK's nodes in gmsh's row of a cell: `vtk_row[i] = gmsh_row[order[i]]`.
     ///
-    /// `None` where the two programs agree. As in meshio 5.3.5, `wedge18` and `pyramid14` stay in gmsh's order.
+    /// `None` if the two programs agree. As in meshio 5.3.5, `wedge18` and `pyramid14` stay in gmsh's order.
     #[must_use]
     pub fn vtk_order_in_gmsh_row(self) -> Option<&'static [u8]> {
         Some(match self {

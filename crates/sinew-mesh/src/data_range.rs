@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::fmt;
 
-/// The values of data: how many there are, and from where to where they reach.
+/// The number and the range of the values of data.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DataRange {
     /// Numbers that are there.

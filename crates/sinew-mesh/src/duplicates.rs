@@ -62,7 +62,7 @@ impl Bits {
         (word, 1 << (key & 63))
     }
 
-    /// Adds a key. Returns whether the set seemed to contain it already.
+    /// Adds a key. Returns true if the set seemed to contain it already.
     fn replace(&mut self, key: u64) -> bool {
         let (word, bit) = self.place(key);
         let was_set = self.words[word] & bit != 0;

@@ -92,7 +92,7 @@ impl Mesh {
     /// Adds a group for each value of data that have one whole number for each cell: the cells with the value 2 of `labels` become the
     /// group `labels_2`, and in each dimension one of its own. Groups that cells have stay theirs, and so do the data.
     ///
-    /// Cells without a value get no group. The tag of a group is its value where that is positive and free.
+    /// Cells without a value get no group. The tag of a group is its value, if that is positive and free.
     ///
     /// # Errors
     ///

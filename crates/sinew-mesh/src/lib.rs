@@ -2,7 +2,7 @@
 //! generators.
 //!
 //! A file is read into a [`Mesh`]: all its cells, tags, groups and warnings, arranged as meshio arranges them.
-//! [`Mesh::check`] finds what makes a simulation fail, [`info::MeshInfo`] sums a mesh up, [`write_msh`] and
+//! [`Mesh::check`] finds defects that make a simulation fail, [`info::MeshInfo`] sums a mesh up, [`write_msh`] and
 //! [`vtu::write_vtu`] write it. [`Mesh::to_tet_mesh`] turns it into the [`TetMesh`] that a simulation needs. This crate
 //! knows no mechanics.
 //!

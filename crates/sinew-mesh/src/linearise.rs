@@ -18,7 +18,7 @@ pub struct Linearised {
     /// Nodes that only these cells had, away from their corners; they are dropped.
     pub dropped_nodes: usize,
     /// The greatest distance of a mid-edge node of a second-order line, triangle or tetrahedron from the middle of the straight
-    /// edge, in the mesh's unit: about what a curved boundary loses.
+    /// edge, in the mesh's unit: about the error of a curved boundary.
     pub farthest_from_straight: f64,
 }
 
@@ -26,7 +26,7 @@ impl Mesh {
     /// Makes every cell a linear one with the same corners, and drops the other nodes of the cells unless they are corners
     /// elsewhere. Groups and element tags stay; values at the nodes of cells stay at the corners.
     ///
-    /// A mesh of linear cells stays as it is.
+    /// A mesh of linear cells is unchanged.
     pub fn linearise(&mut self) -> Linearised {
         let mut done = Linearised::default();
         let mut keep = vec![true; self.points.len()];

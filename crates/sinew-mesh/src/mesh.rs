@@ -1,4 +1,4 @@
-//! A mesh as a file holds it: all cell types, tags, groups and data, in meshio's arrangement.
+//! A mesh as in a file: all cell types, tags, groups and data, in meshio's arrangement.
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
@@ -13,7 +13,7 @@ use crate::warning::Warning;
 /// connectivity. Node and element tags, every physical group of a cell and a name table keyed by dimension *and* tag, which
 /// meshio drops, are kept as well.
 ///
-/// To build one by hand, start from [`Mesh::default`] and fill the fields in.
+/// To build one in a program, start from [`Mesh::default`] and fill the fields in.
 #[derive(Debug, Clone, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Mesh {
@@ -142,7 +142,7 @@ pub struct PointData {
     pub time: f64,
     /// Values per point.
     pub components: usize,
-    /// `components` values for each point in turn; NaN where the file gives none.
+    /// `components` values for each point in turn; NaN if the file gives none.
     pub values: Vec<f64>,
 }
 
@@ -157,7 +157,7 @@ pub struct CellData {
     pub time: f64,
     /// Values per cell.
     pub components: usize,
-    /// For each block of [`Mesh::cells`]: `components` values for each cell in turn; NaN where the file gives none.
+    /// For each block of [`Mesh::cells`]: `components` values for each cell in turn; NaN if the file gives none.
     pub blocks: Vec<Vec<f64>>,
 }
 
@@ -172,8 +172,8 @@ pub struct CellNodeData {
     pub time: f64,
     /// Values per node of a cell.
     pub components: usize,
-    /// For each block of [`Mesh::cells`]: `components` values for each node (VTK order) of each cell in turn; NaN where the
-    /// file gives none.
+    /// For each block of [`Mesh::cells`]: `components` values for each node (VTK order) of each cell in turn; NaN if
+    /// the file gives none.
     pub blocks: Vec<Vec<f64>>,
 }
 

@@ -90,7 +90,7 @@ impl PhysicalTags {
 }
 
 impl PartialEq for PhysicalTags {
-    /// Equal if every cell has the same tags, however they are stored.
+    /// Equal if every cell has the same tags, independent of their storage.
     fn eq(&self, other: &PhysicalTags) -> bool {
         self.len() == other.len() && (0..self.len()).all(|cell| self.of(cell) == other.of(cell))
     }

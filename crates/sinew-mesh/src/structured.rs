@@ -41,7 +41,7 @@ pub enum StructuredError {
         /// The requested length.
         size: f64,
     },
-    /// Floating-point numbers cannot tell neighbouring nodes apart, or overflow.
+    /// Floating-point numbers cannot distinguish neighbouring nodes, or overflow.
     #[error(
         "{cells} cells along {axis} on an edge of {size:?} cannot be told apart in floating point"
     )]

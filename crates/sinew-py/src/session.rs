@@ -166,7 +166,7 @@ fn end_of(ended: &Ended, watch: Watch, world: &World) -> PyResult<()> {
 
 #[pymethods]
 impl Session {
-    /// Takes n steps of dt. Raises Diverged or Refused; after that only reset() or restore() goes on. KeyboardInterrupt
+    /// Takes n steps of dt. Raises Diverged or Refused; after that only reset() or restore() continues. KeyboardInterrupt
     /// leaves the session after the last whole step.
     #[pyo3(signature = (n = Steps(1)), text_signature = "($self, n=1)")]
     fn step(&self, py: Python<'_>, n: Steps) -> PyResult<()> {

@@ -115,7 +115,7 @@ impl Tool {
         Ok(report.map_or(0, |report| report.contacts))
     }
 
-    /// Distance (m) to the nearest node or triangle that it may touch, negative inside; inf where there is none.
+    /// Distance (m) to the nearest node or triangle that it may touch, negative inside; inf if there is none.
     #[getter]
     fn gap(&self, py: Python<'_>) -> PyResult<f64> {
         let depth = self.with(py, |world| Ok(world.tool_gap(self.id)))?;

@@ -28,9 +28,9 @@ pub(crate) struct Energies {
     pub(crate) loads: f64,
     /// Work of supports in motion since the beginning.
     pub(crate) supports: f64,
-    /// Work of tools since the beginning, where there are tools.
+    /// Work of tools since the beginning, if there are tools.
     pub(crate) tools: Option<f64>,
-    /// Energy that cuts brought in since the beginning, where the body may be cut: less than 0 for what was taken away.
+    /// Energy added by cuts since the beginning, if the body may be cut: negative for removed energy.
     pub(crate) cuts: Option<f64>,
     /// Energy that damping took since the beginning.
     pub(crate) damped: f64,
@@ -45,7 +45,7 @@ pub(crate) struct Energies {
     pub(crate) taken: Option<f64>,
 }
 
-/// Sums of a balance, all that a checkpoint keeps of it beside the last motion.
+/// Sums of a balance: all that a checkpoint stores of it in addition to the last motion.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Sums {
     first: f64,
@@ -53,19 +53,19 @@ pub(crate) struct Sums {
     supports: f64,
     damped: f64,
     method: f64,
-    /// Work of tools' forces on the nodes, which is less than that of tools by what friction takes.
+    /// Work of tools' forces on the nodes: that of tools less the dissipation of friction.
     at_contacts: f64,
     pub(crate) cuts: f64,
-    /// Energy (J) that damping brought in, which it never should.
+    /// Energy (J) that damping added, which is always an error.
     #[serde(default)]
     pub(crate) driven: f64,
 }
 
-/// Share of the energies below which a fall of what damping took is rounding.
+/// Share of the energies below which a decrease of the dissipated energy is rounding.
 const ROUNDING: f64 = 1e-11;
 
 impl Sums {
-    /// Counts what damping took (J) between two rows, of a motion with this energy (J).
+    /// Adds the energy (J) that damping dissipated between two rows, of a motion with this energy (J).
     fn count_damped(&mut self, taken: f64, energy: f64) {
         self.damped += taken;
         if taken < -ROUNDING * (energy.abs() + self.damped.abs()) {
@@ -79,7 +79,7 @@ impl Sums {
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct LastRow {
     pub(crate) t: f64,
-    /// Time (s) of the row before it; its own where it is the first.
+    /// Time (s) of the row before it; its own if it is the first.
     pub(crate) before: f64,
     pub(crate) u: Vec<f64>,
     pub(crate) v: Vec<f64>,
@@ -171,7 +171,7 @@ fn half_way([last, here]: [&LastRow; 2]) -> LastRow {
     }
 }
 
-/// Displacements (m) of all nodes, held and moved ones included, and the forces (N) that do work on them.
+/// Displacements (m) of all nodes, fixed and moved ones included, and the forces (N) that do work on them.
 struct Nodes {
     u: Vec<f64>,
     loads: Vec<f64>,
@@ -241,7 +241,7 @@ impl Balance {
         self.form.is_some()
     }
 
-    /// True if each step is checked, whether or not a row is due.
+    /// True if each step is checked, even if no row is due.
     pub(crate) fn looks_at_every_step(&self) -> bool {
         self.is_watched
     }
@@ -460,7 +460,7 @@ impl Balance {
         law.is_none_or(ElasticLaw::loads_follow) || !ramps.all(rests)
     }
 
-    /// The acceleration that the method keeps, where it matters; before the first step the consistent one.
+    /// The acceleration that the method keeps, if it matters; before the first step the consistent one.
     fn acceleration(&self, moment: &Moment<'_>, v: &[f64]) -> Result<Vec<f64>, RecordRunError> {
         if self.form.is_none() {
             return Ok(Vec::new());
@@ -473,7 +473,7 @@ impl Balance {
         Ok(a)
     }
 
-    /// The energy (J) that the method takes in a step between two rows, 0 where that is not known.
+    /// The energy (J) that the method takes in a step between two rows, 0 if that is not known.
     fn taken_by_method(&self, last: &LastRow, here: &LastRow, inputs: &Inputs) -> f64 {
         let (Some(form), Some(operators)) = (self.form, self.operators()) else {
             return 0.0;
@@ -508,7 +508,7 @@ impl Balance {
         form.taken(operators, dt, [first, last])
     }
 
-    /// The work (J) of tools' forces on the nodes in the step between two rows, where it is asked for.
+    /// The work (J) of tools' forces on the nodes in the step between two rows, if requested.
     fn work_at_contacts(&self, state: &State, last: &LastRow, here: &LastRow) -> f64 {
         let Some(tools) = self.tools().filter(|_| self.sees_steps()) else {
             return 0.0;

@@ -14,19 +14,19 @@ use crate::request;
 /// Its name.
 pub(crate) const NAME: &str = "checkpoint.bin";
 
-/// The first line, with the version of what follows.
+/// The first line, with the version of the format.
 const HEAD: &str = "sinew checkpoint 10\n";
 
 /// Bytes of the checksum at its end.
 const CHECKSUM: usize = 32;
 
-/// Data from which a run continues beside its world.
+/// Data, besides the world, from which a run continues.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub(crate) struct Checkpoint {
     pub(crate) progress: Progress,
     /// The motion at the last row of energies.
     pub(crate) row: LastRow,
-    /// Displacements (m) of the surface where it was largest so far.
+    /// Displacements (m) of the surface at the instant of the largest one so far.
     pub(crate) largest: Vec<f64>,
 }
 
@@ -77,7 +77,7 @@ impl Checkpoint {
     }
 }
 
-/// The checksum of a checkpoint together with what was run, so that that of another run does not fit.
+/// The checksum of a checkpoint together with the files of the run, so that that of another run does not fit.
 fn checksum(folder: &OwnedFolder, bytes: &[u8]) -> Result<[u8; CHECKSUM], RecordRunError> {
     let mut hash = Sha256::new();
     hash.update(bytes);

@@ -11,7 +11,8 @@ pub(crate) struct Table {
 }
 
 impl Table {
-    /// Reads a table as a run writes it, or says what was expected. Lines that begin with # are comments.
+    /// Reads a table as a run writes it, or returns a message of the expected content. Lines that begin with # are
+    /// comments.
     pub(crate) fn parse(text: &str) -> Result<Self, String> {
         let mut lines = text.lines().filter(|line| !line.starts_with('#'));
         let head = lines.next().ok_or("expected a line of column names")?;

@@ -1,4 +1,4 @@
-//! Energy that a method takes away, where no table of energies is written.
+//! Energy that a method dissipates, if no table of energies is written.
 
 use std::sync::Arc;
 

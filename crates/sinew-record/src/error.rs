@@ -40,7 +40,7 @@ pub enum RecordRunError {
     /// A row of probes that cannot be written.
     #[error(transparent)]
     ProbeRow(#[from] ProbeRowError),
-    /// A field that a .vtu file cannot hold.
+    /// A field that a .vtu file cannot store.
     #[error(transparent)]
     Vtu(#[from] WriteVtuError),
     /// The state of a checkpoint that does not fit.
@@ -75,7 +75,7 @@ pub enum RecordRunError {
         /// The folder.
         folder: PathBuf,
     },
-    /// More results than a folder is meant to hold.
+    /// More results than a folder may contain.
     #[error(
         "the scene asks for {asked} {what}, and {most} are the most: make `{key}` in [output] rarer"
     )]
@@ -84,7 +84,7 @@ pub enum RecordRunError {
         asked: usize,
         /// The kind of results asked for.
         what: &'static str,
-        /// The most that a folder holds.
+        /// The most that a folder may contain.
         most: usize,
         /// The key of the scene that asks for them.
         key: &'static str,

@@ -26,11 +26,11 @@ pub(crate) struct Snapshot {
     pub(crate) u: Vec<f64>,
     /// Velocity (m/s).
     pub(crate) v: Vec<f64>,
-    /// Acceleration (m/s^2); empty where none is asked for.
+    /// Acceleration (m/s^2); empty if none is asked for.
     pub(crate) a: Vec<f64>,
     /// Internal variables.
     pub(crate) internal: Vec<f64>,
-    /// Forces (N) of contact; empty where nothing touches the body.
+    /// Forces (N) of contact; empty if nothing touches the body.
     pub(crate) contact: Vec<f64>,
 }
 
@@ -89,9 +89,9 @@ pub(crate) struct Fields {
     settings: OutputSettings,
     u: Vec<[f64; 3]>,
     v: Vec<[f64; 3]>,
-    /// Accelerations; empty where none are asked for.
+    /// Accelerations; empty if none are asked for.
     a: Vec<[f64; 3]>,
-    /// None where nothing touches the body.
+    /// None if nothing touches the body.
     contact: Option<ContactFields>,
     tets: Tets,
     /// Region of each tetrahedron, counted from 1.
@@ -138,7 +138,7 @@ impl Fields {
         &self.u
     }
 
-    /// Writes a frame, and sees what is largest in it.
+    /// Writes a frame, and updates the extremes.
     pub(crate) fn write(
         &mut self,
         folder: &OwnedFolder,
@@ -226,7 +226,7 @@ impl Fields {
         fields
     }
 
-    /// Makes the fields on tetrahedra of the displacement, and sees what is largest.
+    /// Computes the fields on tetrahedra from the displacement, and updates the extremes.
     fn deform(&mut self, t: f64, internal: &[f64], seen: &mut Seen) -> Result<(), RecordRunError> {
         let (mesh, tets) = (self.body.model.mesh(), &mut self.tets);
         tets.clear();

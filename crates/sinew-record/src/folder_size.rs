@@ -11,7 +11,7 @@ const TEXT: usize = 2000;
 /// Bytes of a number in a table, on average.
 const NUMBER: usize = 21;
 
-/// Files that a run in a folder of its own will write, beside a page, a summary and a checkpoint.
+/// Files that a run in a folder of its own will write, apart from a page, a summary and a checkpoint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct FolderSize {
     /// Frames of fields; none for an oscillator.

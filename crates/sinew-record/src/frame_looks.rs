@@ -11,7 +11,7 @@ use crate::progress::Seen;
 use crate::recorder::Schedules;
 use crate::summary;
 
-/// Extremes of a motion as frames would show them: what warns is the same as in a run with a folder.
+/// Extremes of a motion at the instants of frames: warnings are those of a run with a folder.
 #[derive(Debug, Clone, Default)]
 pub struct Looked {
     seen: Seen,

@@ -1,4 +1,4 @@
-//! Frames written beside the run.
+//! Writing of frames in parallel with the run.
 
 use std::sync::mpsc::{Receiver, Sender, SyncSender, channel, sync_channel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -173,7 +173,7 @@ impl<'a> FrameWriter<'a> {
         let _ = self.to_write.send(Work::Body(Arc::clone(body)));
     }
 
-    /// Waits until all frames are written; then what was seen in them.
+    /// Waits until all frames are written; returns their extremes.
     ///
     /// # Errors
     /// The reason for which one of them cannot be written.

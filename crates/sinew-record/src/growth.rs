@@ -1,4 +1,4 @@
-//! Energy that comes from nothing, where no table of energies is written.
+//! Unphysical growth of energy, if no table of energies is written.
 
 use std::sync::Arc;
 
@@ -15,15 +15,15 @@ const MOST_LOOKS: usize = 16;
 /// Steps per check: a check costs about two evaluations of forces.
 const STEPS_FOR_A_LOOK: usize = 100;
 
-/// Energy, as a multiple of what start and loads account for, from which on a motion is wrong.
+/// Energy, as a multiple of that of the start and the work of loads, above which a motion is wrong.
 const FAR_BEYOND: f64 = 2.0;
 
 /// A recorder that checks the energy of a body in large deformation some times in a run, and reports it if it is far
 /// beyond the energy of the start plus the work of loads and tools.
 ///
 /// Work of loads is summed by component, as absolute values, and damping is left out: an excess that is reported is
-/// real. Scenes are not checked in which other energy may come in unseen: work of moved supports, of loads that come
-/// and go between two checks, or energy that memory stored in a deformed start.
+/// real. Scenes with other sources of energy are not checked: work of moved supports, of loads that begin and end
+/// between two checks, or energy that memory stored in a deformed start.
 #[derive(Debug)]
 pub struct EnergyGrowth {
     /// `None` if nothing is checked.
@@ -69,7 +69,7 @@ impl EnergyGrowth {
         }
     }
 
-    /// A sentence about the energy, where there is too much of it.
+    /// A sentence about the energy, if there is too much of it.
     #[must_use]
     pub fn in_words(&self) -> Option<&str> {
         self.grown.as_deref()

@@ -2,7 +2,7 @@
 
 use sinew_scene::{SceneBody, Simulation, TimeStep};
 
-/// Energy (J) of a degree of freedom in a body at room temperature: what is below is no motion.
+/// Energy (J) of a degree of freedom in a body at room temperature: less energy counts as no motion.
 pub(crate) const THERMAL: f64 = 4e-21;
 
 /// True if the start of a body with memory is deformed: the energy that its memory stored then is not known.

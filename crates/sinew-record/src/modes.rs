@@ -34,7 +34,7 @@ pub struct NaturalMode {
     /// phi of modal mass 1 and e moving all as one (Bathe, Finite Element Procedures, section 9.3).
     pub effective_mass: [f64; 3],
     /// Share of the elastic energy under all loads at their full value, at rest: `(phi' F)^2 / omega^2` over the sum of
-    /// all modes found; NaN where the scene has no loads or the motion is rigid.
+    /// all modes found; NaN if the scene has no loads or the motion is rigid.
     pub of_loads: f64,
     /// Its shape (kg^-1/2) over the degrees of freedom.
     shape: Vec<f64>,
@@ -205,7 +205,7 @@ mod tests {
         scene.build().unwrap()
     }
 
-    /// A bar that is held at one end and moves along itself alone: omega_k = (2k - 1) pi/2 sqrt(E/rho)/L for nu = 0
+    /// A bar that is fixed at one end and moves along itself alone: omega_k = (2k - 1) pi/2 sqrt(E/rho)/L for nu = 0
     /// (Rao, Vibration of Continuous Systems, section 9.2).
     #[test]
     fn a_bar_has_the_frequencies_of_the_wave_equation() {

@@ -5,8 +5,8 @@ use std::time::{Duration, Instant};
 /// Wall time between two checks.
 const LOOK: Duration = Duration::from_millis(40);
 
-/// Number of steps after which a run checks in, to show its progress and to see whether it is to stop: several times a
-/// second, however long a step takes.
+/// Number of steps between two checks of a run, for its progress and for a request to stop: several checks a
+/// second for steps of any length.
 #[derive(Debug, Clone, Copy)]
 pub struct Pace {
     steps: usize,

@@ -110,7 +110,7 @@ pub(crate) struct SeenOverlap {
 }
 
 impl Seen {
-    /// Sees the deformation of a tetrahedron at the time `t` (s), but for whether it is inverted.
+    /// Records the deformation of a tetrahedron at the time `t` (s), apart from inversion.
     pub(crate) fn see_tet(&mut self, t: f64, tet: &DeformedTet, tag: impl Fn() -> u64 + Copy) {
         let [xx, yy, zz, xy, yz, zx] = tet.strain;
         // No principal strain is larger than this norm.
@@ -176,7 +176,7 @@ pub(crate) struct Largest {
 }
 
 impl Largest {
-    /// Takes a value if it is larger than that so far; whether it was.
+    /// Takes a value if it is larger than that so far; returns true if it was.
     pub(crate) fn see(&mut self, value: f64, t: f64, at: impl FnOnce() -> u64) -> bool {
         let larger = value > self.value;
         if larger {

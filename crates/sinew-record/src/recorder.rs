@@ -1,4 +1,4 @@
-//! The recorder of a run: writes what is due after each step.
+//! The recorder of a run: writes the due output after each step.
 
 use std::sync::Arc;
 use std::time::Instant;
@@ -77,7 +77,7 @@ pub(crate) struct Tables {
 }
 
 impl Tables {
-    /// Opens them, cut off after what an earlier run had written at its checkpoint.
+    /// Opens the tables, truncated to their length at an earlier run's checkpoint.
     pub(crate) fn open(
         folder: &OwnedFolder,
         seals: &Seals,
@@ -126,7 +126,7 @@ impl Tables {
     }
 }
 
-/// Writes what is due after each step of a run.
+/// Writes the due output after each step of a run.
 pub(crate) struct RunRecorder<'a> {
     pub(crate) scene: Arc<Simulation>,
     pub(crate) body: Arc<SceneBody>,
@@ -167,7 +167,7 @@ pub(crate) enum Stop {
 }
 
 impl RunRecorder<'_> {
-    /// Writes what is due after this step.
+    /// Writes the due output after this step.
     fn write(&mut self, step: usize, moment: &Moment<'_>) -> Result<Verdict, RecordRunError> {
         let energy = self.schedules.energy.is_due(step);
         let frame = self
@@ -261,8 +261,8 @@ impl RunRecorder<'_> {
         Ok(())
     }
 
-    /// Completes what is being written; then how far the run is, and the displacements (m) of the surface where one of
-    /// them was largest.
+    /// Completes pending writes; returns the progress of the run, and the displacements (m) of the surface at the
+    /// instant of the largest one.
     pub(crate) fn settle(&mut self) -> Result<(Progress, Vec<f64>), RecordRunError> {
         self.tables.secure(self.folder, &mut self.progress.seals)?;
         self.progress.energy = self.balance.sums;

@@ -48,7 +48,7 @@ pub(crate) struct Record {
     pub(crate) warnings: Vec<String>,
     /// Values that the command line set in the scene.
     values: Vec<String>,
-    /// The log of the session that was repeated, beside this file.
+    /// The log of the repeated session, in the same folder as this file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) log: Option<String>,
 }

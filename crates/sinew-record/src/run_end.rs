@@ -11,7 +11,7 @@ use crate::stepping::Stepping;
 pub struct RunEnd {
     /// Reason for the end.
     pub ended: Ended,
-    /// Steps taken, those of an earlier process included.
+    /// Number of steps taken, those of an earlier process included.
     pub steps: usize,
     /// Methods and lengths of the steps.
     pub stepping: Stepping,
@@ -33,7 +33,7 @@ pub struct RunEnd {
     pub remarks: Vec<String>,
     /// Warnings about the motion, one sentence each.
     pub warnings: Vec<String>,
-    /// Fate of the results that the folder held before.
+    /// Fate of the results that the folder had before.
     pub replaced: Replaced,
 }
 

@@ -37,7 +37,7 @@ const MOST_FRAMES: usize = 100_000;
 /// Most numbers of a table, about two gigabytes.
 pub const MOST_NUMBERS: usize = 100_000_000;
 
-/// The folder of a run, open: nobody else writes into it.
+/// The folder of a run, locked against other writers.
 #[derive(Debug)]
 pub struct RunFolder {
     folder: OwnedFolder,
@@ -49,7 +49,7 @@ pub(crate) struct Beginning {
     pub(crate) schedules: Schedules,
     pub(crate) balance: Balance,
     pub(crate) progress: Progress,
-    /// Displacements (m) of the surface where it was largest so far.
+    /// Displacements (m) of the surface at the instant of the largest one so far.
     pub(crate) largest: Vec<f64>,
     /// True if the present state was recorded by an earlier process.
     pub(crate) resumed: bool,
@@ -75,7 +75,7 @@ pub(crate) struct End<'a> {
     pub(crate) before: usize,
     pub(crate) stepping: Stepping,
     pub(crate) remarks: Vec<String>,
-    /// A warning where the step is too long for the body as it is in the end.
+    /// A warning if the step is too long for the body at the end.
     pub(crate) outrun: Option<String>,
     /// Times (s) of all frames.
     pub(crate) times: &'a [f64],
@@ -90,7 +90,8 @@ impl RunFolder {
     /// into a folder at `path`. Changes nothing except that it completes a finished run, see [`RunFolder::settle`].
     ///
     /// # Errors
-    /// [`RecordRunError::Output`] for a folder that holds other things, the inputs included, or cannot be written, and
+    /// [`RecordRunError::Output`] for a folder with other content, the inputs included, or that cannot be written,
+    /// and
     /// [`RecordRunError::Resumable`] for one whose run can be continued, unless it is to be run `again`.
     pub fn check(
         path: &Path,
@@ -114,7 +115,7 @@ impl RunFolder {
         }
     }
 
-    /// Completes a folder whose run came to its end when it was killed before it said so; whether there is one.
+    /// Completes a folder whose run was killed between its end and its completion; returns true if it was one.
     ///
     /// # Errors
     /// [`RecordRunError::Output`].
@@ -142,7 +143,7 @@ impl RunFolder {
     ///
     /// # Errors
     /// [`RecordRunError`] for a folder that may not be used, see [`RunFolder::check`], for more frames than a folder
-    /// holds, and for inputs that cannot be read any more.
+    /// may contain, and for inputs that cannot be read any more.
     pub fn create(
         path: &Path,
         simulation: &Simulation,
@@ -154,7 +155,7 @@ impl RunFolder {
         Self::claim(path, simulation, record, &Schedules::of(simulation), &[])
     }
 
-    /// Makes the folder, with files beside those of a run.
+    /// Creates the folder, with files in addition to those of a run.
     pub(crate) fn claim(
         path: &Path,
         simulation: &Simulation,
@@ -401,7 +402,7 @@ impl RunFolder {
         })
     }
 
-    /// Writes the files that the folder of a finished run holds.
+    /// Writes the files of the folder of a finished run.
     pub(crate) fn complete(
         &self,
         schedules: &Schedules,
@@ -520,7 +521,7 @@ impl RunFolder {
     }
 }
 
-/// Record of what was cut since the body had this mass (kg), if it may be cut.
+/// Record of the cuts since the body had this mass (kg), if it may be cut.
 pub(crate) fn cut_record(world: &World, mass: Option<f64>) -> Option<CutRecord> {
     let cuts = world.cutter().zip(mass);
     cuts.map(|(cutter, mass)| CutRecord::of(cutter, mass))
@@ -529,7 +530,7 @@ pub(crate) fn cut_record(world: &World, mass: Option<f64>) -> Option<CutRecord> 
 /// End of a motion by a refusal, of a law or of a method that found no equilibrium.
 ///
 /// # Errors
-/// Any other error, as it is.
+/// Any other error, unchanged.
 fn refusal(error: AdvanceError, world: &World) -> Result<Ended, RecordRunError> {
     let refused = |t: f64, reason: String| Ok(Ended::Refused { t, reason });
     let is_linear = world.body().system().as_linear().is_some();

@@ -34,7 +34,7 @@ impl<W> Sealing<W> {
         }
     }
 
-    /// The seal of what went through so far.
+    /// The seal of all bytes so far.
     pub(crate) fn seal(&self) -> Seal {
         let digest = self.hash.clone().finalize();
         Seal {
@@ -93,7 +93,7 @@ impl Seal {
         }
     }
 
-    /// Checks that a whole file of a folder is as it was sealed.
+    /// Checks that a whole file of a folder matches its seal.
     ///
     /// # Errors
     /// [`RecordRunError::Altered`].
@@ -145,10 +145,10 @@ pub(crate) struct SealedTable {
 }
 
 impl SealedTable {
-    /// Opens it, cut off after what was sealed; with its head where nothing was.
+    /// Opens the file, truncated after the sealed bytes, or with its head only if nothing was sealed.
     ///
     /// # Errors
-    /// [`RecordRunError`] for a file that is not as it was sealed.
+    /// [`RecordRunError`] for a file that differs from its seal.
     pub(crate) fn open(
         folder: &OwnedFolder,
         name: &'static str,

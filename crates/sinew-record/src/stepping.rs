@@ -76,7 +76,7 @@ impl Stepping {
         }
     }
 
-    /// The options of the method, null where they were not the same in all steps.
+    /// The options of the method, null if they were not the same in all steps.
     pub(crate) fn options(&self) -> Value {
         match &self.methods[..] {
             [(_, options)] => options_json(options).into_iter().collect(),

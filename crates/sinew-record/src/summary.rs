@@ -1,4 +1,4 @@
-//! `summary.json`: what can be said of a run without a reference.
+//! `summary.json`: facts about a run that need no reference.
 
 use serde_json::{Value, json};
 use sinew_integrators::Stepper;
@@ -15,10 +15,10 @@ use crate::tables::{column_name, table_of};
 
 pub(crate) const NAME: &str = "summary.json";
 
-/// Strain up to which small-strain theory holds.
+/// Strain up to which small-strain theory is valid.
 const LARGEST_STRAIN: f64 = 0.1;
 
-/// Rotation (degrees) up to which small-strain theory holds.
+/// Rotation (degrees) up to which small-strain theory is valid.
 const LARGEST_ROTATION: f64 = 15.0;
 
 /// Share of its largest kinetic energy below which a body counts as at rest.

@@ -108,7 +108,7 @@ pub(crate) fn reactions_row(
     Ok(())
 }
 
-/// The table of the scene that holds or moves a part, and the part.
+/// The table of the scene that fixes or moves a part, and the part.
 pub(crate) fn table_of(part: &HeldPlace) -> String {
     format!("{} on {}", part.by, part.on)
 }

@@ -7,7 +7,7 @@ use crate::balance::Energies;
 use crate::fast_loads::unseen;
 use crate::made_energy::{THERMAL, keeper};
 
-/// Share of what was put in from which on it is reported.
+/// Share of the supplied energy above which it is reported.
 const MUCH: f64 = 0.1;
 
 /// The most that was taken (J), and the most that was put in, over all checks.
@@ -21,7 +21,7 @@ pub(crate) struct Taken {
 }
 
 impl Taken {
-    /// Takes note of a row.
+    /// Records a row.
     pub(crate) fn see(&mut self, row: &Energies) {
         self.taken = self.taken.max(row.taken.unwrap_or(0.0));
         self.given = self.given.max(row.given);

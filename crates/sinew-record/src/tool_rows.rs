@@ -33,7 +33,7 @@ impl Received {
         [0, 1].map(|vector| [0, 1, 2].map(|axis| mean(vector, axis)))
     }
 
-    /// Takes note of a row.
+    /// Records a row.
     fn note(&mut self, t: f64, reports: impl Iterator<Item = ToolReport>) {
         self.t = t;
         self.impulses.clear();
@@ -52,7 +52,7 @@ pub(crate) struct ToolRows {
 }
 
 impl ToolRows {
-    /// `None` where there is no tool.
+    /// `None` if there is no tool.
     pub(crate) fn of(body: &SceneBody) -> Option<Self> {
         let tools = Arc::clone(body.model().tools()?);
         Some(Self { tools })
@@ -81,7 +81,7 @@ impl ToolRows {
         columns
     }
 
-    /// Lines that say what is in the columns, and the line of their names.
+    /// Lines that describe the columns, and the line of their names.
     pub(crate) fn head(&self) -> String {
         let mut text = String::new();
         for Tool { name, body, .. } in self.tools.tools() {
@@ -103,7 +103,7 @@ impl ToolRows {
         text
     }
 
-    /// A row, since what tools had received at the one before.
+    /// A row of the mean forces since the row before.
     pub(crate) fn row(&self, out: &mut String, moment: &Moment<'_>, received: &mut Received) {
         out.clear();
         let Moment { state, inputs, .. } = moment;

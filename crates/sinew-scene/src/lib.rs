@@ -1,6 +1,6 @@
 //! Scenes of soft tissue in TOML: read, check, plan, build.
 //!
-//! A [`Scene`] holds what a user wrote, every key checked. [`Scene::build`] turns it into a
+//! A [`Scene`] is the user's text with every key checked. [`Scene::build`] turns it into a
 //! [`Simulation`]: a system that integrators can move, with a printable [`Plan`]. Every mistake is
 //! reported as one [`SceneError`], with its line.
 //!

@@ -59,7 +59,7 @@ impl SceneSource {
     }
 }
 
-/// Sets the value at the parts of a path that are left, within this table, as far as it is described.
+/// Sets the value at the remaining parts of a path, within this table, as far as it is described.
 fn set(
     (table, description): (&mut dyn TableLike, Option<&'static TableDescription>),
     path: &str,
@@ -137,14 +137,14 @@ fn set(
     }
 }
 
-/// A table, or the tables of a list, that a key of a scene holds.
+/// A table, or the tables of a list, as the value of a key.
 #[derive(Clone, Copy)]
 struct Inner {
     of: &'static TableDescription,
     is_list: bool,
 }
 
-/// The table or list of tables that a key of a described table holds, if it holds one.
+/// The table or list of tables that is the value of a key of a described table, if any.
 fn tables_of(within: &'static TableDescription, part: &str) -> Option<Inner> {
     fn of_shape(shape: &Shape) -> Option<Inner> {
         match shape {

@@ -1,4 +1,4 @@
-//! Rows of a table of probes: the time, then what each probe writes down.
+//! Rows of a table of probes: the time, then the values of each probe.
 
 use std::fmt::Write;
 use std::sync::Arc;
@@ -45,7 +45,7 @@ pub enum ProbeRowError {
     Field(#[from] FieldError),
 }
 
-/// Rows of the probes of a simulation. Where all of them write displacements down, a row takes no more than the
+/// Rows of the probes of a simulation. If all of them record displacements, a row needs only the
 /// degrees of freedom that are [watched](ProbeRows::watched), so that a method can take many steps at once.
 #[derive(Debug, Clone)]
 pub struct ProbeRows {
@@ -109,7 +109,7 @@ impl ProbeRows {
         self.probes.iter().any(others)
     }
 
-    /// Degrees of freedom whose displacements a row takes, at least one; none where rows [need
+    /// Degrees of freedom whose displacements a row takes, at least one; none if rows [need
     /// moments](ProbeRows::need_moments).
     #[must_use]
     pub fn watched(&self) -> Vec<u32> {
@@ -119,11 +119,11 @@ impl ProbeRows {
         let nodes = self.probes.iter().flat_map(|probe| &probe.nodes);
         let dofs = nodes.flat_map(|node| &node.dofs);
         let dofs: Vec<u32> = dofs.flatten().map(|dof| *dof as u32).collect();
-        // Steps are shown to those who watch something; where all is held or moved, anything will do.
+        // Steps are shown to those who watch something; where all is fixed or moved, anything will do.
         if dofs.is_empty() { vec![0] } else { dofs }
     }
 
-    /// A row with the end of its line; `moving` holds the displacements (m) of the watched degrees of freedom at time
+    /// A row with the end of its line; `moving` has the displacements (m) of the watched degrees of freedom at time
     /// `t` (s). Numbers are written so that reading them gives the same bits.
     pub fn of_watched(&mut self, t: f64, moving: &[f64]) -> &str {
         self.begin(t);
@@ -156,7 +156,7 @@ impl ProbeRows {
     /// A row of a moment, as [`ProbeRows::of_watched`].
     ///
     /// # Errors
-    /// [`ProbeRowError`] where the system refuses the state.
+    /// [`ProbeRowError`] if the system refuses the state.
     pub fn of_moment(&mut self, moment: &Moment<'_>) -> Result<&str, ProbeRowError> {
         let (t, u) = (moment.state.t(), &moment.state.u);
         self.begin(t);

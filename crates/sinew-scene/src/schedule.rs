@@ -1,4 +1,4 @@
-//! The steps of a run after which something is written.
+//! The steps of a run after which output is written.
 
 use crate::scene::Instants;
 
@@ -13,7 +13,7 @@ const FEWEST_ROWS: usize = 16;
 pub struct Schedule {
     /// Steps of the run.
     steps: usize,
-    /// Steps between two of them, not a whole number where that does not divide the run.
+    /// Steps between two of them, not a whole number if that does not divide the run.
     spacing: f64,
 }
 

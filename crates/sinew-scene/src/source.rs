@@ -1,4 +1,4 @@
-//! The text of a scene and where it came from.
+//! The text of a scene and its origin.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -9,19 +9,19 @@ use std::sync::Arc;
 
 use sinew_mesh::TetMesh;
 
-/// The text of a scene file, kept so that messages can point at a line of it, and the files beside it that a program
-/// holds in memory.
+/// The text of a scene file, kept so that messages can point at a line of it, and further files that a program has in
+/// memory.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct SceneSource {
     path: PathBuf,
     text: String,
-    /// True if the text was made of values that a program gave: nobody has seen its lines.
+    /// True if the text was made of values of a program: the user has no lines.
     is_of_values: bool,
     /// Files by their resolved paths.
     given: BTreeMap<PathBuf, Given>,
 }
 
-/// A file that a program holds in memory.
+/// A file that a program has in memory.
 #[derive(Debug, Clone)]
 struct Given {
     content: Arc<[u8]>,

@@ -1,6 +1,6 @@
 //! Block-sparse matrices on a fixed symmetric pattern.
 //!
-//! A [`Pattern`] says which cells are neighbours; a [`BlockMatrix`] stores one dense block per
+//! A [`Pattern`] lists the neighbours of cells; a [`BlockMatrix`] stores one dense block per
 //! neighbour pair: 3x3 for a network of three coupled layers (x, y, z), 1x1 for a one-layer network.
 //! Vectors are node-major: the `layers` entries of cell 0, then those of cell 1, and so on.
 //!

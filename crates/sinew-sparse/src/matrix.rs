@@ -153,8 +153,8 @@ impl BlockMatrix {
     /// Takes the entries of a matrix of the same layers whose pattern is a part of this one's, and 0 elsewhere.
     ///
     /// # Errors
-    /// [`AssemblyError::NotNeighbours`] where it has a block that is not in the pattern of this one, and
-    /// [`AssemblyError::CellOutOfRange`] where it has more cells. The entries are unspecified then.
+    /// [`AssemblyError::NotNeighbours`] if it has a block that is not in the pattern of this one, and
+    /// [`AssemblyError::CellOutOfRange`] if it has more cells. The entries are unspecified then.
     pub fn set_to(&mut self, other: &Self) -> Result<(), AssemblyError> {
         if Arc::ptr_eq(&self.pattern, &other.pattern) && self.layers == other.layers {
             self.values.copy_from_slice(&other.values);
@@ -169,11 +169,12 @@ impl BlockMatrix {
         Ok(())
     }
 
-    /// Takes over rows, whose matrix is to be symmetric afterwards as it was. Returns true if all rows were laid out
+    /// Takes over rows; the matrix must be symmetric afterwards. Returns true if all rows were laid out
     /// again, which reserves space for `spare_cells` more than these: without it nothing is allocated.
     ///
     /// # Errors
-    /// [`AssemblyError::Row`] and [`AssemblyError::CellOutOfRange`] where rows have other columns than they may; nothing is changed then.
+    /// [`AssemblyError::Row`] and [`AssemblyError::CellOutOfRange`] if rows have invalid columns; nothing is changed
+    /// then.
     pub fn take_rows(
         &mut self,
         rows: &RowsOfCells,
@@ -260,7 +261,7 @@ impl BlockMatrix {
         self.pattern.cells() * self.layers.count()
     }
 
-    /// The block at (`row`, `column`), row-major; `None` where the two cells are not neighbours.
+    /// The block at (`row`, `column`), row-major; `None` if the two cells are not neighbours.
     #[must_use]
     pub fn block(&self, row: usize, column: usize) -> Option<&[f64]> {
         let len = self.layers.block_len();
@@ -291,7 +292,7 @@ impl BlockMatrix {
     }
 
     /// Multiplies every scalar row by its entry of `scale` (length [`BlockMatrix::dofs`]);
-    /// rows beyond the end of `scale` stay as they are.
+    /// rows beyond the end of `scale` are unchanged.
     pub fn scale_rows(&mut self, scale: &[f64]) {
         let layers = self.layers.count();
         let len = self.layers.block_len();
@@ -335,7 +336,7 @@ impl BlockMatrix {
 
     /// Sets the scalar rows and columns of the marked degrees of freedom to zero.
     ///
-    /// `pinned` has length [`BlockMatrix::dofs`]. A component held fixed at a cell whose other
+    /// `pinned` has length [`BlockMatrix::dofs`]. A fixed component of a cell whose other
     /// components move keeps its place in the vectors and simply never feels a force.
     pub fn clear_pinned(&mut self, pinned: &[bool]) {
         let layers = self.layers.count();

@@ -13,7 +13,7 @@ pub struct Pattern {
     starts: Vec<usize>,
     /// Blocks of each row.
     counts: Vec<u32>,
-    /// Column of the block at each position; what rows have left behind is not read.
+    /// Column of the block at each position; positions that rows have left are not read.
     columns: Vec<u32>,
     /// Place of the cell itself among its neighbours.
     diagonal: Vec<u32>,
@@ -68,8 +68,8 @@ impl Pattern {
         Ok(pattern)
     }
 
-    /// The pattern of those cells that `keep` chooses, renumbered in the same order: what remains of a matrix when the
-    /// rows and columns of the other cells are struck out.
+    /// The pattern of the cells that `keep` chooses, renumbered in the same order: that of the submatrix of their
+    /// rows and columns.
     #[must_use]
     pub fn restricted(&self, keep: impl Fn(u32) -> bool) -> Self {
         let mut number = vec![None; self.cells()];
@@ -119,7 +119,7 @@ impl Pattern {
         self.blocks = self.columns.len();
     }
 
-    /// The same pattern with its rows one after the other, and space for `cells` further cells and `blocks` further
+    /// The same pattern with contiguous rows, and space for `cells` further cells and `blocks` further
     /// blocks.
     pub(crate) fn packed(&self, cells: usize, blocks: usize) -> Self {
         let mut packed = Self::with_room(self.cells() + cells, self.blocks + blocks);

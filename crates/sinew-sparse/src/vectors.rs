@@ -65,7 +65,7 @@ pub fn norm(a: &[f64]) -> f64 {
     dot(a, a).sqrt()
 }
 
-/// The largest |a_i|, 0 without any; infinite where one is not a number.
+/// The largest |a_i|, 0 without any; infinite if one is not a number.
 #[must_use]
 pub fn largest(a: &[f64]) -> f64 {
     a.iter().fold(0.0, |most, value| larger(most, value.abs()))

@@ -1,5 +1,5 @@
 //! Bodies at random: blocks of tetrahedra that were jittered, renumbered, made of one or two
-//! materials and held somewhere.
+//! materials and given supports somewhere.
 
 use proptest::array::uniform3;
 use proptest::collection::vec;
@@ -12,7 +12,7 @@ use sinew_fem::{
 use sinew_mesh::structured::{self, Split};
 use sinew_mesh::{Group, GroupMembers, TetMesh};
 
-/// A body, what acts on it and how it moves at first.
+/// A body with its loads and its initial motion.
 #[derive(Clone)]
 pub struct Body {
     /// The tetrahedra.
@@ -41,8 +41,8 @@ impl Body {
         Model::build(&self.mesh, &self.problem).unwrap()
     }
 
-    /// The first state: displacements up to `u` and velocities up to `v`, none where a component
-    /// is held.
+    /// The first state: displacements up to `u` and velocities up to `v`, none if a component
+    /// is fixed.
     pub fn state(&self, model: &Model, u: f64, v: f64) -> State {
         let of = |which: usize, size: f64| {
             let nodes = model.nodes().iter().map(|node| *node as usize);
@@ -54,13 +54,13 @@ impl Body {
         State::new(of(0, u), of(1, v))
     }
 
-    /// The same body with nothing held.
+    /// The same body without supports.
     pub fn free(mut self) -> Self {
         self.problem.fixed.clear();
         self
     }
 
-    /// The same body held at its bottom and nowhere else, with what loads still act.
+    /// The same body fixed at its bottom and nowhere else, with the loads that still act.
     pub fn on_the_ground(mut self) -> Self {
         self.problem.fixed = vec![Fixed::at("bottom")];
         self.without_what_cannot_be()
@@ -91,7 +91,7 @@ impl Body {
         self
     }
 
-    /// Leaves out supports that hold everything and loads on nothing.
+    /// Leaves out supports that fix everything and loads on nothing.
     fn without_what_cannot_be(mut self) -> Self {
         while let Err(error) = Model::build(&self.mesh, &self.problem) {
             match error.item() {
@@ -104,7 +104,7 @@ impl Body {
     }
 }
 
-/// 2/omega_max, or the time in which the fastest damping acts where that is shorter (s): the scale
+/// 2/omega_max, or the time in which the fastest damping acts if that is shorter (s): the scale
 /// of an explicit step.
 pub fn fastest_time(model: &Model) -> f64 {
     let spectrum = Spectrum::of(model.operators());
@@ -112,7 +112,7 @@ pub fn fastest_time(model: &Model) -> f64 {
     spectrum.critical_step().min(1.0 / damping)
 }
 
-/// Bodies of up to `cells` grid cells each way.
+/// Bodies of up to `cells` grid cells along each axis.
 pub fn bodies_up_to(cells: usize) -> impl Strategy<Value = Body> {
     let split = prop_oneof![Just(Split::Kuhn), Just(Split::Mirrored)];
     let size = uniform3(0.01..0.04);
@@ -138,7 +138,7 @@ pub fn bodies_up_to(cells: usize) -> impl Strategy<Value = Body> {
     })
 }
 
-/// Bodies of up to four grid cells each way.
+/// Bodies of up to four grid cells along each axis.
 pub fn bodies() -> impl Strategy<Value = Body> {
     bodies_up_to(4)
 }
@@ -253,7 +253,7 @@ fn renumbered(mesh: &TetMesh, order: &[u32]) -> TetMesh {
     }
 }
 
-/// A modulus [Pa] of soft tissue or of something stiffer.
+/// A modulus [Pa] of soft tissue or of a stiffer material.
 fn modulus() -> impl Strategy<Value = f64> {
     (2.0..5.0).prop_map(|power| 10.0_f64.powf(power))
 }

@@ -38,7 +38,7 @@ pub fn dense_damping(operators: &LinearOperators) -> Dense {
     matrix
 }
 
-/// The sum of one row times a vector, and of the sizes of its terms: what rounding is measured by.
+/// The sum of one row times a vector, and that of the sizes of its terms, a scale for rounding.
 pub fn row_product(row: &[f64], x: &[f64]) -> (f64, f64) {
     let terms = row.iter().zip(x).map(|(entry, x)| entry * x);
     terms.fold((0.0, 0.0), |(sum, size), term| {

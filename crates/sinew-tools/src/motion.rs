@@ -10,7 +10,7 @@ use crate::vector::scaled;
 /// Pose of a tool as a function of time.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Motion {
-    /// A tool that stays where it is.
+    /// A tool at rest.
     Held(Pose),
     /// A tool that moves at constant velocity and does not turn.
     Steady {
@@ -19,7 +19,7 @@ pub enum Motion {
         /// Its velocity (m/s).
         velocity: [f64; 3],
     },
-    /// A tool that goes from pose to pose.
+    /// A tool that moves from pose to pose.
     Table(Table),
     /// A tool that follows another motion until it is steered from outside.
     Steered(Box<Motion>, Steering),

@@ -14,7 +14,7 @@ pub struct Pose {
     rotation: Matrix,
 }
 
-/// A pose as it is written.
+/// The serialised form of a pose.
 #[cfg(feature = "serde")]
 #[derive(serde::Serialize, serde::Deserialize)]
 struct Written {
@@ -95,13 +95,13 @@ impl Pose {
         self.turned_back(sub(point, self.position))
     }
 
-    /// A vector of the own frame as it is in the world, without the position.
+    /// Rotates a vector from the own frame to the world.
     #[must_use]
     pub fn turned(&self, vector: [f64; 3]) -> [f64; 3] {
         rotation::times(&self.rotation, vector)
     }
 
-    /// A vector of the world as it is in the own frame.
+    /// Rotates a vector from the world to the own frame.
     #[must_use]
     pub fn turned_back(&self, vector: [f64; 3]) -> [f64; 3] {
         rotation::times(&rotation::transposed(&self.rotation), vector)
@@ -144,7 +144,7 @@ impl Pose {
         rotation::vector(&rotation::product(&after.rotation, &back))
     }
 
-    /// The pose at this share of the way to `after`, to which `turn` is the turn.
+    /// The pose at this share of the motion to `after`, with `turn` the whole rotation.
     pub(crate) fn on_the_way(&self, after: &Self, turn: [f64; 3], share: f64) -> Self {
         let turned = rotation::matrix(scaled(turn, share));
         Self {

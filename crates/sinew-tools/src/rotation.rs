@@ -39,7 +39,7 @@ pub(crate) fn matrix(vector: Vector) -> Matrix {
 
 /// The rotation vector of a matrix, with an angle of at most pi.
 ///
-/// By way of a quaternion, whose largest component is found first (Shepperd 1978): that keeps all digits at angles near 0 and
+/// It is found from a quaternion, largest component first (Shepperd 1978): that keeps all digits at angles near 0 and
 /// near pi.
 pub(crate) fn vector(matrix: &Matrix) -> Vector {
     let m = matrix;
@@ -77,7 +77,8 @@ pub(crate) fn vector(matrix: &Matrix) -> Vector {
     imaginary.map(|value| value / size * angle)
 }
 
-/// The spin (rad/s) of what turns by a rotation vector that changes at a rate (rad/s): `I + (1 - cos a)/a^2 W + (a - sin a)/a^3 W^2` times the rate.
+/// The spin (rad/s) of a body whose rotation vector changes at a rate (rad/s):
+/// `I + (1 - cos a)/a^2 W + (a - sin a)/a^3 W^2` times the rate.
 pub(crate) fn spin(vector: Vector, rate: Vector) -> Vector {
     let angle = length(vector);
     let second = sine_over_angle(angle / 2.0).powi(2) / 2.0;

@@ -5,9 +5,9 @@ use sinew_core::{Between, Channel, Clock, InputError, Inputs};
 use crate::pose::Pose;
 use crate::vector::{scaled, sub};
 
-/// The channels of [`Inputs`] by which a tool is steered: its position (m) and rotation vector (rad), and whether it holds what it touches.
+/// The channels of [`Inputs`] by which a tool is steered: its position (m), rotation vector (rad) and jaws.
 ///
-/// Between two instants at which it is given a pose a tool goes straight, turning by the shortest way; after the last it stays where it is.
+/// Between two given poses a tool moves straight and turns by the shortest rotation; after the last it is at rest.
 ///
 /// ```
 /// use sinew_core::Inputs;
@@ -59,12 +59,12 @@ impl Steering {
         )
     }
 
-    /// Forgets poses before the one that holds, or the way that is passed, at `t` (s).
+    /// Forgets poses before the one, or the segment, that applies at `t` (s).
     pub fn forget_before(&self, inputs: &mut Inputs, t: f64) {
         inputs.forget_channels_before(&self.pose, t);
     }
 
-    /// Closes the jaws from `t` (s) on, by which the tool holds what it touches, or opens them.
+    /// Closes the jaws from `t` (s) on, so that the tool grasps the tissue it touches, or opens them.
     ///
     /// # Errors
     /// [`InputError`] for a time that is not finite or does not rise, and inputs without the channel.
@@ -81,7 +81,8 @@ impl Steering {
 
     /// The pose at `t` (s); `None` before the first that is given.
     ///
-    /// The end of a step is computed in two ways that differ by rounding; both are the instant for which a pose was given.
+    /// The end of a step is computed by two formulas that differ by rounding; both count as the instant of a given
+    /// pose.
     pub(crate) fn at(&self, t: f64, inputs: &Inputs) -> Option<Pose> {
         let slack = Clock::ROUNDING * t.abs();
         let (times, _) = inputs.course(self.pose[0]);

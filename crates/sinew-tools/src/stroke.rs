@@ -1,4 +1,4 @@
-//! The motion of a part of a tool over a step, and what it meets.
+//! The motion of a part of a tool over a step, and its contacts.
 
 use crate::pose::Pose;
 use crate::shape::{Convex, Hull, Part, Touch, Triangle, TriangleTouch};
@@ -7,13 +7,14 @@ use crate::vector::{between, length, sub};
 /// The largest turn (rad) of a tool in one pass: the chord of a path then leaves it by at most turn^2/8 of its distance.
 const LARGEST_TURN: f64 = 0.1;
 
-/// The longest way of a round tool in one pass, in radii: normals of the first contact still fit the contact at the end.
+/// The longest path of a round tool in one pass, in radii: normals of the first contact still fit the contact at the
+/// end.
 const LONGEST_WAY: f64 = 0.5;
 
 const MOST_PASSES: f64 = 1000.0;
 
-/// The motion of one part of a tool over a step: straight for the tool's origin, and a steady turn about it by the shortest
-/// way.
+/// The motion of one part of a tool over a step: straight for the tool's origin, with a steady shortest rotation
+/// about it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stroke {
     part: Part,
@@ -52,7 +53,8 @@ impl Stroke {
         self.passes
     }
 
-    /// The straight pieces in which the way of a node is followed in the part's own frame: where the tool does not turn it is straight.
+    /// The number of straight pieces that approximate the path of a node in the part's own frame: one if the tool
+    /// does not turn.
     #[must_use]
     pub fn pieces(&self) -> u32 {
         if self.turns() { self.passes } else { 1 }
@@ -76,7 +78,7 @@ impl Stroke {
     /// The first contact of a node that moves straight from `from` to `to` (m, in the world) over the step.
     ///
     /// The share is that of the step; point and normal are in the part's own frame, [`Self::pose_at`] takes them to the
-    /// world. In that frame the way of the node is followed by straight [`Self::pieces`].
+    /// world. In that frame the path of the node is divided into straight [`Self::pieces`].
     #[must_use]
     pub fn first_contact(&self, from: [f64; 3], to: [f64; 3]) -> Option<Touch> {
         let pieces = self.pieces();
@@ -130,12 +132,13 @@ impl Stroke {
         Hull::of(&self.part.convex)?.overlap(&own)
     }
 
-    /// Half the width (m) of the part where it is thinnest; infinite for a plane.
+    /// Half the smallest width (m) of the part; infinite for a plane.
     pub(crate) fn half_width(&self) -> f64 {
         self.part.convex.half_width()
     }
 
-    /// The depth (m) in the part up to which triangles that go so far (m) in a step are left in it, and pushed out by the next; infinite for a plane.
+    /// The depth (m) in the part up to which triangles that move by `way` (m) in a step are left in it, and pushed
+    /// out by the next; infinite for a plane.
     pub(crate) fn left_to_triangles(&self, way: f64) -> f64 {
         let [before, after] = self.tool.map(|pose| pose.position());
         let own = length(sub(after, before)) + self.largest_arc().unwrap_or(0.0);

@@ -6,9 +6,9 @@ use crate::stroke::Stroke;
 use crate::vector::Vector;
 
 /// A box (m, lowest and highest corner) that contains a tool during a whole step, from the pose before to the pose after;
-/// none for a tool with a plane.
+/// `None` for a tool with a plane.
 ///
-/// A node that moves straight meets the tool only if the box about its own way meets this one.
+/// A node that moves straight meets the tool only if the box about its own path meets this one.
 #[must_use]
 pub fn swept_box(shape: &Shape, before: &Pose, after: &Pose) -> Option<[[f64; 3]; 2]> {
     let parts = shape.parts().iter();

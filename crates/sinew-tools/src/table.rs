@@ -1,4 +1,4 @@
-//! Poses that a tool takes one after the other.
+//! Poses of a tool over time, from a table.
 
 use crate::pose::Pose;
 use crate::rotation;

@@ -37,7 +37,7 @@ pub fn cross(a: Vector, b: Vector) -> Vector {
     ]
 }
 
-/// The point at this share of the way from `a` to `b`; exactly `a` wherever `b` is the same.
+/// The point at this share of the segment from `a` to `b`; exactly `a` in components with equal `b`.
 #[must_use]
 pub fn between(a: Vector, b: Vector, share: f64) -> Vector {
     add(a, scaled(sub(b, a), share))

@@ -40,7 +40,7 @@ pub fn of_law(law: Law, element: Element) -> Problem {
     Problem::of([Region::new(law, DENSITY).with_element(element)])
 }
 
-/// A support that holds components of displacement.
+/// A support that fixes components of displacement.
 pub fn held(on: impl Into<On>, axes: [bool; 3]) -> Fixed {
     Fixed::at(on).along(axes)
 }

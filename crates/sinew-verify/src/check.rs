@@ -1,4 +1,4 @@
-//! A figure that the library is held to, as data with the function that computes it.
+//! A required figure of the library, as data with the function that computes it.
 
 use serde::Serialize;
 
@@ -64,15 +64,15 @@ impl Asked {
     }
 }
 
-/// The origin of what is asked.
+/// The source of a required figure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(tag = "kind", content = "reference", rename_all = "kebab-case")]
 pub enum Source {
-    /// A formula, and where it stands or how it follows.
+    /// A formula, with its reference or derivation.
     ClosedForm(&'static str),
     /// A figure or a table in print.
     Literature(&'static str),
-    /// A second computation that shares no code with what it checks.
+    /// A second computation that shares no code with the checked one.
     Independent(&'static str),
 }
 

@@ -3,8 +3,8 @@
 use std::error::Error;
 use std::fmt;
 
-/// A reason for which there is no figure: an error of what was called, or a sentence. Reasons are read, and nobody
-/// tells them apart.
+/// A reason for which there is no figure: the error of a call, or a sentence. Reasons are for reading; no code
+/// distinguishes them.
 pub struct LabError(Box<dyn Error + Send + Sync>);
 
 impl LabError {
@@ -20,7 +20,7 @@ impl LabError {
         Self(error)
     }
 
-    /// A scene or a system that lacks what is computed on.
+    /// A scene or a system without the body that a computation needs.
     #[must_use]
     pub fn no_body() -> Self {
         Self::new("the scene has no body")

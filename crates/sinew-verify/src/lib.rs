@@ -1,4 +1,4 @@
-//! Every figure that the library is held to: closed forms, figures in print, independent computations. Each is asked for with
+//! Every required figure of the library: closed forms, figures in print, independent computations. Each has
 //! a tolerance and a source, computed in each run, and passes or fails.
 //!
 //! A subject is a file under `subjects` with a list of checks, each a function that computes one or more figures.

@@ -43,7 +43,7 @@ fn cpu_model() -> Option<String> {
     linux.or_else(|| first_line("sysctl", &["-n", "machdep.cpu.brand_string"], None))
 }
 
-/// The git revision of the work tree at `directory`, marked where it has changes; `unknown`
+/// The git revision of the work tree at `directory`, marked if it has changes; `unknown`
 /// outside a repository.
 #[must_use]
 pub fn revision(directory: &Path) -> String {

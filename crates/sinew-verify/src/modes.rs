@@ -6,7 +6,8 @@ use sinew_integrators::{Combination, Factor};
 
 use crate::error::LabError;
 
-/// The lowest angular frequency (rad/s) of a system that is held, with a mass of its own: `multiply(x, out)` writes `out = M x`.
+/// The lowest angular frequency (rad/s) of a system with supports, with a mass matrix of its own: `multiply(x, out)`
+/// writes `out = M x`.
 ///
 /// # Errors
 /// [`LabError`].

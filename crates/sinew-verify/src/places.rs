@@ -5,7 +5,7 @@ use sinew_mesh::{GroupMembers, TetMesh};
 use crate::error::LabError;
 use crate::vector::{difference, norm};
 
-/// The nodes at places for which `belongs` holds.
+/// The nodes at places for which `belongs` is true.
 pub(crate) fn nodes_where(mesh: &TetMesh, belongs: impl Fn([f64; 3]) -> bool) -> Vec<u32> {
     let nodes = (0..).zip(&mesh.points);
     let nodes = nodes.filter_map(|(node, point)| belongs(*point).then_some(node));
@@ -20,7 +20,7 @@ pub(crate) fn node_at(points: &[[f64; 3]], place: [f64; 3]) -> Result<u32, LabEr
         .ok_or_else(|| LabError::new(format!("the mesh has no node at {place:?}")))
 }
 
-/// The triangles of a group all of whose corners are at places for which `belongs` holds.
+/// The triangles of a group with all corners at places for which `belongs` is true.
 ///
 /// # Errors
 /// [`LabError`].

@@ -22,7 +22,7 @@ pub(crate) struct Pressed {
 }
 
 impl Pressed {
-    /// The body of a problem under a tool that touches the nodes at which `may_touch` holds.
+    /// The body of a problem under a tool that touches the nodes for which `may_touch` is true.
     pub(crate) fn new(
         mesh: &TetMesh,
         problem: &Problem,
@@ -127,7 +127,7 @@ impl Pressed {
         (momentum / mass, mass)
     }
 
-    /// Kinetic and elastic energy (J) of a linear body whose velocity holds at its time.
+    /// Kinetic and elastic energy (J) of a linear body with its velocity at the displacement's time.
     pub(crate) fn energy(&self) -> Result<f64, LabError> {
         let energy = self.model.energy(&self.state.u, &self.state.v);
         Ok(energy.ok_or_else(LabError::no_body)?.total())

@@ -5,7 +5,7 @@ use sinew_fem::Model;
 
 use crate::error::LabError;
 
-/// A time (s) beside which that of any motion of a body counts for nothing.
+/// A time (s) much longer than that of any motion of a body.
 pub(crate) const SLOW: f64 = 1e6;
 
 /// The state after each of `parts` equal parts of [`SLOW`], and the Newton iterations of each: implicit Euler, with

@@ -10,7 +10,7 @@ use crate::verdict::MarkVerdict;
 /// Version of the format of `verification.json`.
 pub const SCHEMA: u32 = 1;
 
-/// A whole verification: what `verification.json` holds.
+/// A whole verification: the content of `verification.json`.
 #[derive(Clone, Debug, Serialize)]
 pub struct Verification {
     /// Version of the format, [`SCHEMA`].
@@ -41,7 +41,7 @@ pub struct VerifiedSubject {
     pub quoted: &'static [Quoted],
 }
 
-/// A figure that the library is held to, and what it gives.
+/// A required figure of the library, and the computed one.
 #[derive(Clone, Debug, Serialize)]
 pub struct VerifiedRow {
     /// The case.
@@ -50,12 +50,12 @@ pub struct VerifiedRow {
     pub figure: String,
     /// Requirement for the figure.
     pub asked: Asked,
-    /// The figure; none where it could not be computed or is not finite.
+    /// The figure; none if it could not be computed or is not finite.
     pub got: Option<f64>,
     /// Reason why there is none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub missing: Option<String>,
-    /// The origin of what is asked.
+    /// The source of the required figure.
     pub source: Source,
     /// Verdict.
     pub verdict: MarkVerdict,

@@ -20,7 +20,7 @@ use crate::verdict::MarkVerdict;
 pub struct VerifyPlan {
     /// Root of the repository, whose meshes and scenes checks read.
     pub root: PathBuf,
-    /// Subjects by their short names; all where there are none.
+    /// Subjects by their short names; all if it is empty.
     pub only: Vec<String>,
     /// True if rows that take long run too.
     pub long: bool,

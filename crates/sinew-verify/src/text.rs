@@ -42,7 +42,7 @@ impl VerifiedRow {
         }
     }
 
-    /// The difference from what is asked, in units of the tolerance or as a share of the bound.
+    /// The difference from the required figure, in units of the tolerance or as a share of the bound.
     pub(crate) fn of_tolerance(&self) -> Option<f64> {
         match self.asked {
             Asked::Value { value, tolerance } if tolerance > 0.0 => {

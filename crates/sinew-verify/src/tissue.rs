@@ -41,7 +41,7 @@ pub const EDGES: Element = Element::FbarEdge {
     patch: None,
 };
 
-/// A body that stands on its bottom, which is held.
+/// A body on its fixed bottom.
 pub fn standing(law: Law, element: Element) -> Problem {
     Problem {
         fixed: vec![held("bottom", [true; 3])],
@@ -130,7 +130,7 @@ impl Specimen {
         Ok(self.track(&mut integrator, dt, steps, instants)?.0)
     }
 
-    /// A vector at each free node by its place (m); components that are held are 0.
+    /// A vector at each free node by its place (m); fixed components are 0.
     pub fn field(&self, of: impl Fn([f64; 3]) -> [f64; 3]) -> Vec<f64> {
         let points = &self.model.mesh().points;
         let nodes = self.model.nodes().iter();
@@ -144,7 +144,7 @@ impl Specimen {
     }
 }
 
-/// Error of displacements at all instants over the size of exact ones; infinite where there are fewer.
+/// Error of displacements at all instants over the size of exact ones; infinite if there are fewer.
 pub fn relative_error(found: &[Vec<f64>], exact: &[Vec<f64>]) -> f64 {
     if found.len() != exact.len() {
         return f64::INFINITY;
@@ -152,7 +152,7 @@ pub fn relative_error(found: &[Vec<f64>], exact: &[Vec<f64>]) -> f64 {
     ErrorNorm::between(found, exact)
 }
 
-/// A cube that is stretched by half along z at the volume of rest, and let go.
+/// A cube that is stretched by half along z at constant volume, and released.
 ///
 /// # Errors
 /// [`LabError`].

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Verdict on a figure that something is asked of.
+/// Verdict on a figure with a requirement.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum MarkVerdict {
@@ -14,7 +14,7 @@ pub enum MarkVerdict {
 }
 
 impl MarkVerdict {
-    /// The verdict for a condition that holds or does not.
+    /// The verdict for a condition: pass if `holds`.
     #[must_use]
     pub fn of(holds: bool) -> Self {
         match holds {

@@ -72,9 +72,9 @@ pub enum Command {
         /// Name of the tool.
         tool: Arc<str>,
     },
-    /// Forces (N) on nodes (0-based) of the body as it is now, besides all loads, in the place of those of the last such
-    /// command. They stay with their nodes when the body is cut; a part on fixed components goes into the supports
-    /// and is in no reaction.
+    /// Forces (N) on nodes (0-based) of the current body, in addition to all loads; they replace those of the last such
+    /// command. They stay with their nodes when the body is cut; a part on fixed components goes into the supports and is
+    /// in no reaction.
     Forces(Vec<(u32, [f64; 3])>),
     /// Another integrator, which continues from the state.
     Integrator {

@@ -133,7 +133,7 @@ pub enum ReportError {
 /// Reasons for which [`crate::World::restore`] fails.
 #[derive(Debug, thiserror::Error)]
 pub enum RestoreError {
-    /// A motion that was kept by a world that follows its scene, and this one takes commands; or the other way round.
+    /// A motion saved by a world that follows its scene, for one that takes commands; or the reverse.
     #[error(
         "this motion was kept by a world that was built in another way, by `World::new` or `World::following`"
     )]

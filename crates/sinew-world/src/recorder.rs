@@ -5,7 +5,7 @@ use std::sync::Arc;
 use sinew_core::{Inputs, Moment, RecordError, RecordedSteps, State, StepReport, Verdict};
 use sinew_scene::{ProbeCsv, SceneBody};
 
-/// A recorder that is notified when the body becomes another one.
+/// A recorder that is notified of changes of the body.
 pub trait Recorder: sinew_core::Recorder {
     /// Continues with another body, or with loads that follow inputs.
     ///
@@ -52,11 +52,11 @@ pub struct BodyCut {
     pub before: State,
     /// The state after it, before the step.
     pub after: State,
-    /// The energy (J) that it brought in.
+    /// The energy (J) that it added.
     pub energy: f64,
 }
 
-/// A recorder and the steps it has seen: it sees one motion, however many calls take the steps.
+/// A recorder and the steps it has received: it receives one motion, however many calls take the steps.
 pub struct Shown<'r, R: Recorder + ?Sized> {
     pub(crate) steps: RecordedSteps<'r, R>,
     pub(crate) body: Arc<SceneBody>,
@@ -80,7 +80,7 @@ impl<R: Recorder + ?Sized> Shown<'_, R> {
         self.steps.recorder()
     }
 
-    /// Notifies the recorder of a body that is another one than it has seen.
+    /// Notifies the recorder of a body that differs from the last one it received.
     pub(crate) fn follow(
         &mut self,
         body: &Arc<SceneBody>,

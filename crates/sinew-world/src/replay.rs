@@ -139,7 +139,7 @@ impl Replay {
     /// Takes the next step, and gives the commands that came after it; `None` at the end.
     ///
     /// # Errors
-    /// [`ReplayError`] where the session did not fail. A step that diverged then is repeated, and counts.
+    /// [`ReplayError`] if the session did not fail. A step that diverged then is repeated, and counts.
     pub fn step(&mut self) -> Result<Option<StepReport>, ReplayError> {
         let step = self.world.steps();
         if step >= self.log.steps() {

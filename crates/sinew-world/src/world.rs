@@ -30,9 +30,8 @@ pub use saved::Saved;
 /// A scene in motion: the only thing that takes its steps.
 ///
 /// It owns the scene, which is constant, and the body, state, integrator, tools and inputs, which change. A
-/// [`Recorder`](crate::Recorder)
-/// observes the motion of [`World::advance`]; [`Command`](crate::Command)s between steps steer tools, scale loads, cut, and switch
-/// methods.
+/// [`Recorder`](crate::Recorder) observes the motion of [`World::advance`]; [`Command`](crate::Command)s between
+/// steps steer tools, scale loads, cut, and switch methods.
 ///
 /// A world of [`World::new`] takes commands, and its [`Log`] repeats it bit for bit. Without commands it takes the
 /// steps of [`World::following`], with the same bits, unless a tool is smaller than the surface triangles somewhere off
@@ -54,7 +53,7 @@ pub use saved::Saved;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub struct World {
-    /// The scene as it was built.
+    /// The scene, unchanged since it was built.
     scene: Arc<Simulation>,
     identity: SceneIdentity,
     /// The body as it moves: its loads follow inputs from the first load factor on. Until then they are known in
@@ -130,7 +129,7 @@ type Sheet = [[[f64; 3]; 2]; 2];
 struct Method {
     integrator: Box<dyn Stepper>,
     dt: f64,
-    /// Its id and options, as they were asked for.
+    /// Its id and options, as requested.
     asked: (String, Options),
     stable_step: OnceCell<Option<f64>>,
 }
@@ -317,7 +316,7 @@ impl World {
         self
     }
 
-    /// The scene as it was built, which stays.
+    /// The scene, which does not change.
     #[must_use]
     pub fn scene(&self) -> &Arc<Simulation> {
         &self.scene

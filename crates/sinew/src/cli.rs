@@ -1,4 +1,4 @@
-//! The `sinew` command as a function, for programs that bring it under another name.
+//! The `sinew` command as a function, for programs that offer it under another name.
 
 use std::ffi::OsString;
 use std::io::ErrorKind;

@@ -6,7 +6,7 @@
 //!
 //! 1. The tool of the scene is a body of its own on a virtual coupling, whose other end the device moves.
 //! 2. [`ToolSimulation`] steps the [`World`], and finds how stiff the tissue at the tool is.
-//! 3. [`real_time::run`] has both run in a thread each, and says how regular the ticks were.
+//! 3. [`real_time::run`] runs both in a thread each, and reports the regularity of the ticks.
 //!
 //! ```sh
 //! cargo run --release

@@ -22,7 +22,7 @@ impl Driver {
     /// Compiles the program into a folder.
     ///
     /// # Errors
-    /// One line that says what is missing.
+    /// One line that names the missing program.
     pub(super) fn build(folder: &Path) -> Result<Self, String> {
         std::fs::create_dir_all(folder)
             .map_err(|error| format!("{}: {error}", folder.display()))?;

@@ -42,7 +42,7 @@ pub(crate) fn run(program: Program, bench: &Bench) -> Result<(), Failure> {
     }
 }
 
-/// Factorises and solves in turn with CHOLMOD, where it is installed.
+/// Factorises and solves in turn with CHOLMOD, if it is installed.
 fn beside_cholmod(bench: &Bench) -> Result<(), Failure> {
     let folder = root().join("target").join("beside").join("cholmod");
     let driver = match Driver::build(&folder) {

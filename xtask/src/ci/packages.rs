@@ -57,8 +57,9 @@ pub(super) fn check() -> Result<(), Failure> {
     finish(&mut run)
 }
 
-/// The manifest of a program that needs the facade and takes every crate as it was packed. What others wrote has the flags of the
-/// workspace and is shared with it; packed crates are built once, for this program alone, and as fast as can be.
+/// The manifest of a program that needs the facade and uses every crate as packed. Third-party crates have the flags
+/// of the workspace and are shared with it; packed crates are built once, for this program alone, and as fast as
+/// possible.
 fn manifest(names: &[String], version: &str, workspace: &str) -> String {
     let mut text = format!(
         "[package]\nname = \"consumer\"\nversion = \"0.0.0\"\nedition = \"2024\"\npublish = false\n\n[workspace]\n\n\

@@ -18,7 +18,7 @@ pub(super) enum Difference {
     Count { expected: usize, read: usize },
 }
 
-/// The lines that `xtask/python/read_meshes.py` prints where it reads everything as it was written.
+/// The lines that `xtask/python/read_meshes.py` prints if it reads everything as it was written.
 pub(super) fn of(mesh: &Mesh, overlapping: &Mesh) -> String {
     let mut lines = String::new();
     for (file, ..) in MSH {
@@ -125,7 +125,7 @@ pub(super) fn compare(read: &str, expected: &str) -> Result<usize, Difference> {
     }
 }
 
-/// A line with its numbers as Rust shows them, since Python shows some in another way.
+/// A line with its numbers as Rust prints them, since Python prints some differently.
 fn normalised(line: &str) -> String {
     let word = |word: &str| match word.parse::<f64>() {
         Ok(number) => format!("{number:?}"),

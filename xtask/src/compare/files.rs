@@ -51,7 +51,7 @@ pub(super) const OVERLAPPING_VTU: &str = "overlapping.vtu";
 /// The tetrahedra alone, with whole numbers at nodes and tetrahedra.
 pub(super) const GRID: &str = "grid.vtu";
 
-/// A value for each of `count` nodes or tetrahedra, beyond what a 32-bit float could hold.
+/// A value for each of `count` nodes or tetrahedra, beyond the precision of a 32-bit float.
 pub(super) fn integers(count: usize) -> Vec<i64> {
     (0..).take(count).map(|i: i64| (1 << 40) - 3 * i).collect()
 }

@@ -8,7 +8,7 @@ use crate::failure::Failure;
 /// Requirements of a program.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) enum Needs {
-    /// No library of the system: it brings all it needs.
+    /// No library of the system: the program contains all it needs.
     Nothing,
     /// The C library of GNU from this version on: major, minor, patch.
     Glibc([u32; 3]),
@@ -29,10 +29,10 @@ impl fmt::Display for Needs {
     }
 }
 
-/// Reads what a program for this target needs from its symbols.
+/// Reads the needs of a program for this target from its symbols.
 ///
 /// # Errors
-/// [`Failure::Chore`] where it cannot be read.
+/// [`Failure::Chore`] if it cannot be read.
 pub(super) fn of(program: &Path, target: &str) -> Result<Needs, Failure> {
     if !target.contains("linux") {
         return Ok(Needs::System);

@@ -17,7 +17,7 @@ const FILES: [&str; 5] = ["license", "licence", "copying", "copyright", "notice"
 /// Their file in the archive.
 pub(super) const NAME: &str = "THIRD-PARTY-LICENSES.txt";
 
-/// The C library, where it is part of the command.
+/// The C library, if it is part of the command.
 const LIBC: &str = "the GNU C library, linked statically: LGPL-2.1-or-later, https://www.gnu.org/software/libc; the sources of sinew build the command with any \
                     other version of it\n";
 
@@ -33,7 +33,7 @@ struct Package {
 /// The text of all notices for a target, whose C library is linked or not, and the number of packages: each licence text once, with the packages that have it.
 ///
 /// # Errors
-/// [`Failure::Chore`] where cargo fails, and for a package without any licence.
+/// [`Failure::Chore`] if cargo fails, and for a package without any licence.
 pub(super) fn of(target: &str, has_libc: bool) -> Result<(String, usize), Failure> {
     let mut cargo = Command::new(env!("CARGO"));
     cargo

@@ -4,7 +4,7 @@ use std::process::Command;
 
 use crate::failure::Failure;
 
-/// Runs a program that says itself what is wrong.
+/// Runs a program that reports its own errors.
 pub(crate) fn finish(command: &mut Command) -> Result<(), Failure> {
     let status = command.status().map_err(|error| missing(command, &error))?;
     match status.success() {

@@ -10,10 +10,10 @@ use crate::failure::Failure;
 
 const SCENE: &str = "scenes/ready/held-cube.toml";
 
-/// Unpacks the archive in a new temporary folder and runs what its README tells there.
+/// Unpacks the archive in a new temporary folder and runs the commands of its README there.
 ///
 /// # Errors
-/// [`Failure::Chore`] where the command fails or does not say what it should.
+/// [`Failure::Chore`] if the command fails or does not print the expected text.
 pub(super) fn run(archive: &Path, name: &str) -> Result<(), Failure> {
     let folder = std::env::temp_dir().join(format!("sinew-trial-{}", std::process::id()));
     fs::create_dir(&folder).map_err(Failure::chore)?;

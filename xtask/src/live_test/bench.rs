@@ -34,7 +34,7 @@ impl Bench {
     }
 }
 
-/// A sentence where something does not hold.
+/// A failure with a sentence if `holds` is false.
 pub(super) fn require(holds: bool, what: impl FnOnce() -> String) -> Result<(), Failure> {
     match holds {
         true => Ok(()),

@@ -12,7 +12,7 @@ use super::served::Served;
 use crate::failure::Failure;
 use crate::repository::root;
 
-/// A slab at rest, which all methods cut in the same way.
+/// A slab at rest, for the same cut by all methods.
 pub(super) const SLAB: &str = include_str!("slab.toml");
 
 /// Tissue is cut by a drag and by keys in two panes, made whole again, and cut by the strokes of a scene.

@@ -9,7 +9,7 @@ use tungstenite::{Message, WebSocket, client};
 
 use crate::failure::Failure;
 
-/// Longest time for an answer.
+/// Longest time for a response.
 const PATIENCE: Duration = Duration::from_secs(60);
 
 /// A tab.
@@ -79,7 +79,7 @@ impl Tab {
             .map_err(|reason| Failure::Chore(format!("`{expression}` fails on the page: {reason}")))
     }
 
-    /// The value of an expression on the page, or what it throws.
+    /// The value of an expression on the page, or the exception.
     fn evaluate(&mut self, expression: &str) -> Result<Result<Value, Value>, Failure> {
         let question =
             json!({ "expression": expression, "returnByValue": true, "awaitPromise": true });
@@ -91,7 +91,7 @@ impl Tab {
         })
     }
 
-    /// The number that an expression has; not a number where it has none.
+    /// The number that is the value of an expression; NaN if it is none.
     pub(super) fn number(&mut self, expression: &str) -> Result<f64, Failure> {
         Ok(self.value(expression)?.as_f64().unwrap_or(f64::NAN))
     }

@@ -16,7 +16,7 @@ const NAMES: [&str; 4] = [
     "google-chrome-stable",
 ];
 
-/// Pictures by Mesa's software renderer where there is no graphics card: the fastest that Chromium has.
+/// Options for Mesa's software renderer, the fastest of Chromium without a graphics card.
 const FLAGS: [&str; 10] = [
     "--headless=new",
     "--no-sandbox",
@@ -39,7 +39,7 @@ pub(super) struct Chromium {
     _folder: TempDir,
 }
 
-/// The program, where it is installed.
+/// The program, if it is installed.
 pub(super) fn find() -> Option<PathBuf> {
     let path = std::env::var_os("PATH")?;
     let folders = std::env::split_paths(&path);

@@ -15,7 +15,7 @@ use crate::failure::Failure;
 const PULLS: &str =
     "window.sinew.scenery.hand.loads.map((load) => window.sinew.settings.factors[load])";
 
-/// Moves the first of some fingers by a way (CSS pixels) in equal parts; all stay down.
+/// Moves the first of some fingers by a vector (CSS pixels) in equal parts; all stay down.
 fn slide(tab: &mut Tab, from: [f64; 2], by: [f64; 2]) -> Result<[f64; 2], Failure> {
     let mut at = from;
     for number in 1..=20 {

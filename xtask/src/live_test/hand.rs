@@ -59,7 +59,7 @@ fn force(tab: &mut Tab) -> Result<f64, Failure> {
     tab.number(&mean)
 }
 
-/// A ball is pressed into a cube and held, while methods and steps are switched.
+/// A ball is pressed into a cube and kept there, while methods and steps are switched.
 pub(super) fn press_hold_and_switch(bench: &Bench) -> Result<(), Failure> {
     let scene = bench.scene(10, "symplectic-euler", 0.001)?;
     let served = Served::start(&bench.sinew, &[scene])?;

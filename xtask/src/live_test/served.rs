@@ -85,7 +85,7 @@ impl Served {
         self.connect(&format!("http://{}", self.host()))
     }
 
-    /// Memory (MB) that it holds.
+    /// Memory (MB) that it uses.
     pub(super) fn memory(&self) -> f64 {
         let status = std::fs::read_to_string(format!("/proc/{}/status", self.child.id()));
         let status = status.unwrap_or_default();
@@ -99,7 +99,8 @@ impl Served {
         matches!(self.child.try_wait(), Ok(None))
     }
 
-    /// Presses Ctrl-C, or asks in the other way for the end where this program was started to ignore that, as background jobs are.
+    /// Presses Ctrl-C, or requests the end differently if this program was started to ignore that, as background jobs
+    /// are.
     pub(super) fn interrupt(mut self) -> Result<Ended, Failure> {
         let id = self.child.id().to_string();
         let signal = if ignores_interrupts() {

@@ -52,6 +52,13 @@ pub(crate) enum Breach {
     NoSuchPath { name: String },
     #[error("{path} links to {link}, which does not exist")]
     DeadLink { path: String, link: String },
+    #[error("{path}:{line}: a doc comment says \"{words}\"; better: {better}")]
+    DocWord {
+        path: String,
+        line: usize,
+        words: &'static str,
+        better: &'static str,
+    },
 }
 
 /// Reasons why the rules are not known to be kept.

@@ -1,4 +1,4 @@
-//! The code of a Rust file as tokens, without what is compiled for tests only.
+//! The code of a Rust file as tokens, without code for tests only.
 
 use proc_macro2::{Delimiter, Group, Spacing, TokenStream, TokenTree};
 
@@ -143,10 +143,10 @@ pub(super) fn path(tokens: &[TokenTree], mut at: usize) -> (Vec<String>, usize) 
     (segments, at)
 }
 
-/// One name that a `use` brings in.
+/// One name that a `use` imports.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Import {
-    /// The path of what is imported.
+    /// The imported path.
     pub(super) path: Vec<String>,
     /// The name that it gets; `None` for all names in `path` (`*`).
     pub(super) name: Option<String>,

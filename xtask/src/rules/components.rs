@@ -36,7 +36,7 @@ fn reachable<N: Ord + Clone>(edges: &Edges<N>, node: &N) -> BTreeSet<N> {
     seen
 }
 
-/// The shortest way from `node` back to itself, `node` at both ends.
+/// The shortest circle through `node`, with `node` at both ends.
 pub(super) fn shortest_circle<N: Ord + Clone>(edges: &Edges<N>, node: &N) -> Option<Vec<N>> {
     let mut before: BTreeMap<N, N> = BTreeMap::new();
     let mut waiting = VecDeque::from([node.clone()]);

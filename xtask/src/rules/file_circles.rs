@@ -1,4 +1,4 @@
-//! No two files of a crate, and no two modules at its top, import each other, directly or by way of others.
+//! No two files of a crate, and no two modules at its top, import each other, directly or indirectly.
 
 use std::path::Path;
 
@@ -30,7 +30,7 @@ fn circles(edges: &Edges<String>) -> Vec<Breach> {
     components(edges).into_iter().map(breach).collect()
 }
 
-/// The imports between the modules at the top of each crate. Its root shows what is public, and imports nothing.
+/// The imports between the modules at the top of each crate. Its root re-exports public items, and imports nothing.
 fn of_modules(files: &Edges<String>) -> Edges<String> {
     let module = |file: &String| {
         let (above, rest) = file.split_once("/src/")?;

@@ -12,7 +12,7 @@ pub(super) struct Light {
     with_features: bool,
     /// Libraries, and features of any crate, that have no place in its tree.
     banned: &'static [&'static str],
-    /// The most crates in its tree, itself included, where there is such a bound.
+    /// The most crates in its tree, itself included, if bounded.
     most: Option<usize>,
 }
 
@@ -45,13 +45,13 @@ pub(super) const LIGHT: &[Light] = &[
 
 const HEAVY: &[&str] = &["faer", "nalgebra", "rayon"];
 
-/// Libraries of the `sinew` command, which the library of that name must not bring along.
+/// Libraries of the `sinew` command, on which the library of that name must not depend.
 const COMMAND: &[&str] = &["clap", "comfy-table", "annotate-snippets", "axum", "tokio"];
 
 /// Checks for tests, which a release has no use for.
 const CHECKS: &[&str] = &["\"conformance\"", "sinew-testkit", "proptest"];
 
-/// Checks the trees of the light crates, without what their tests need.
+/// Checks the trees of the light crates, without dependencies of their tests.
 pub(super) fn check(root: &Path, crates: &[Light]) -> Result<Vec<Breach>, RuleError> {
     let mut breaches = Vec::new();
     for light in crates {

@@ -5,6 +5,7 @@ mod breach;
 mod code;
 mod components;
 mod dev_cycles;
+mod doc_words;
 mod document_links;
 mod file_circles;
 mod files;
@@ -33,6 +34,7 @@ pub(crate) fn check(root: &Path) -> Result<(), RuleError> {
         file_circles::check(root)?,
         architecture_paths::check(root)?,
         document_links::check(root)?,
+        doc_words::check(root)?,
     ]
     .into_iter()
     .flatten()
@@ -48,7 +50,7 @@ pub(crate) fn check(root: &Path) -> Result<(), RuleError> {
 ///
 /// # Errors
 ///
-/// [`RuleError`] where cargo cannot tell.
+/// [`RuleError`] if cargo cannot tell.
 pub(crate) fn published(root: &Path) -> Result<Vec<String>, RuleError> {
     let packages = workspace::packages(root)?.into_iter();
     let published = packages.filter(|package| package.is_published);

@@ -28,14 +28,14 @@ struct Module {
     parent: Option<usize>,
     /// Several under one name where `cfg` chooses between files.
     children: BTreeMap<String, Vec<usize>>,
-    /// Names of what is defined here.
+    /// Names of the items defined here.
     items: BTreeSet<String>,
     imports: Vec<Import>,
     /// Paths in code outside imports, those of a single name as well.
     paths: BTreeSet<Vec<String>>,
 }
 
-/// True if the identifier at `at` belongs to what precedes it: `value.name`, `Type::<T>::name`.
+/// True if the identifier at `at` belongs to the tokens before it: `value.name`, `Type::<T>::name`.
 fn is_member(tokens: &[TokenTree], at: usize) -> bool {
     let is_dot = |back: usize| at >= back && is_punct(tokens.get(at - back), '.');
     let is_range = is_dot(1) && is_dot(2);

@@ -25,7 +25,8 @@ pub(super) const PURE: &[&str] = &[
 /// Modules of the standard library that reach outside the program.
 const IMPURE: &[&str] = &["fs", "net", "process", "time"];
 
-/// The files that may read a clock: by one threads tell whether they help, by the other a device and a simulation keep time.
+/// The files that may read a clock: one measures whether threads help, the other runs a device and a simulation in
+/// real time.
 const CLOCKS: &[&str] = &[
     "crates/sinew-machines/src/crew/mod.rs",
     "crates/sinew-haptics/src/real_time.rs",
@@ -119,7 +120,7 @@ impl Seen {
         }
     }
 
-    /// Takes note of a path that leads to an impure module.
+    /// Records a path that leads to an impure module.
     fn name(&mut self, path: &[String]) {
         if let [first, second, ..] = path
             && first == "std"
@@ -150,7 +151,7 @@ fn is_restriction(token: Option<&TokenTree>) -> bool {
     matches!(first.as_deref(), Some("crate" | "super" | "self" | "in"))
 }
 
-/// The part of `tokens` up to the end of what is declared: a body's brace, `;`, or the comma behind a field.
+/// The part of `tokens` up to the end of the declaration: a body's brace, `;`, or the comma behind a field.
 ///
 /// The braces of traits and enums are part of it, without the bodies of provided methods.
 fn signature(tokens: &[TokenTree]) -> Vec<TokenTree> {

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::breach::Breach;
 use super::workspace::Package;
 
-/// The crates of the workspace that each may depend on. Data walks one way; nothing walks back.
+/// The crates of the workspace that each may depend on. Dependencies go in one direction only.
 pub(super) const ROOMS: &[(&str, &[&str])] = &[
     ("sinew-sparse", &[]),
     ("sinew-mesh", &[]),

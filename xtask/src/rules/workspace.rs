@@ -1,4 +1,4 @@
-//! The crates of the workspace and what they depend on, as cargo tells.
+//! The crates of the workspace and their dependencies, as reported by cargo.
 
 use std::path::Path;
 use std::process::Command;

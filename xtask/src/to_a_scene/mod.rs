@@ -1,5 +1,5 @@
-//! `cargo xtask to-a-scene`: the scripts and commands of docs/to-a-scene.md, and those that errors name for files of other programs,
-//! run as they are written there.
+//! `cargo xtask to-a-scene`: runs the scripts and commands of docs/to-a-scene.md, and those that errors name for
+//! files of other programs, as written there.
 
 mod advice;
 mod page;
@@ -31,7 +31,7 @@ pub(crate) fn run() -> Result<(), Failure> {
 /// A Python that has the packages.
 ///
 /// # Errors
-/// [`Failure::Input`] where there is no Python 3 or no pip, [`Failure::Chore`] where pip fails.
+/// [`Failure::Input`] if there is no Python 3 or no pip, [`Failure::Chore`] where pip fails.
 pub(crate) fn python() -> Result<Python, Failure> {
     Python::with(&PACKAGES, &root().join("target"))
 }

@@ -18,10 +18,10 @@ const FILES: [&str; 6] = [
     "system.json",
 ];
 
-/// Files of an exported case: little-endian arrays without heads, and `system.json`, which holds
+/// Files of an exported case: little-endian arrays without heads, and `system.json` with
 /// their lengths, the duration (s) and the number of samples.
 ///
-/// | file | holds |
+/// | file | content |
 /// | --- | --- |
 /// | `row-starts.i32`, `columns.i32`, `values.f64` | K (N/m) in compressed rows, exact zeros left out |
 /// | `mass.f64` | lumped mass of each degree of freedom (kg) |
@@ -38,7 +38,7 @@ pub struct Exported {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ExportError {
-    /// The other program would solve something else.
+    /// The other program would solve a different problem.
     #[error(
         "{case}: {what}; only an undamped linear body at rest under constant loads can run beside another program"
     )]

@@ -28,7 +28,7 @@ pub trait Rival {
     /// An error of the other program.
     fn lap(&mut self) -> Result<f64, RivalError>;
 
-    /// Displacement (m) at the case's samples, t = 0 first, from a run that nobody times.
+    /// Displacement (m) at the case's samples, t = 0 first, from a run that is not timed.
     ///
     /// # Errors
     /// An error of the other program.
@@ -61,7 +61,7 @@ impl Pair {
     }
 }
 
-/// Our methods beside another program.
+/// Our methods compared with another program.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Beside {
     /// The other program.
@@ -191,7 +191,7 @@ impl Contender {
     }
 }
 
-/// Relative L2 difference over all samples; infinite where they are not the same in number.
+/// Relative L2 difference over all samples; infinite if they are not the same in number.
 fn apart(a: &[Vec<f64>], b: &[Vec<f64>]) -> f64 {
     if a.len() != b.len() || a.iter().zip(b).any(|(a, b)| a.len() != b.len()) {
         return f64::INFINITY;

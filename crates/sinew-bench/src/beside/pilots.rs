@@ -17,8 +17,8 @@ pub struct Target {
 /// Errors (fractions) that are sought.
 const ERRORS: [f64; 3] = [1e-2, 1e-3, 1e-6];
 
-/// The same method and step as the other program's first, then the cheapest run for each error, as
-/// far as there is one. Cost is CPU time of set-up and steps for the case's duration.
+/// The same method and step as the other program's first, then the cheapest run for each error, if
+/// there is one. Cost is CPU time of set-up and steps for the case's duration.
 ///
 /// # Errors
 /// [`MeasureError`] when the other program's own method cannot run here.

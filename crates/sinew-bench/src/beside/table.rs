@@ -1,4 +1,4 @@
-//! Ratios as people read them, each with both errors beside it.
+//! Table of ratios, each with both errors.
 
 use std::fmt;
 

@@ -7,7 +7,7 @@ use crate::planned::{FinerMeshes, PlannedCase, energy, yardstick};
 /// Steps (s) that divide the time between the scenes' instants.
 const STEPS: &[f64] = &[1e-2, 5e-3, 2e-3, 1e-3, 5e-4, 2e-4];
 
-/// Cubes of growing size, pressed by the same ball: cells along an edge in the id and in what the scene changes.
+/// Cubes of growing size, pressed by the same ball: id, with the cells along an edge, and changed keys of the scene.
 const LINEAR: [(&str, &[&str]); 3] = [
     ("press-20", &["mesh.cube.cells=20"]),
     ("press-30", &["mesh.cube.cells=30"]),
@@ -120,7 +120,7 @@ pub(super) fn all(quick: bool) -> Vec<PlannedCase> {
     cases
 }
 
-/// Every method there is: those that tools cannot push are listed with the reason.
+/// All methods: those without support for tools are listed with the reason.
 fn methods() -> Vec<MethodChoice> {
     let mut methods = vec![yardstick()];
     let all = sinew_integrators::ids().into_iter();

@@ -121,7 +121,7 @@ fn real_time(sizes: &Sizes, rows: &[Row]) -> Mark {
     }
 }
 
-/// Cells along an edge, as the end of an id says; ten where it says nothing.
+/// Cells along an edge, from the end of an id; ten by default.
 fn cells(case: &str) -> f64 {
     let last = case.rsplit('-').next();
     last.and_then(|last| last.parse().ok()).unwrap_or(10.0)

@@ -1,4 +1,5 @@
-//! Hands on tissue: what tools press, draw along and lift, by every method that can, with the errors of motion and of force.
+//! Tools on tissue: pressing, dragging and lifting, by every method that supports it, with the errors of motion and
+//! of force.
 
 mod cases;
 mod marks;
@@ -23,7 +24,7 @@ impl HandsBench {
     /// Measures every case on one thread. A method that tools cannot push is listed with its reason.
     ///
     /// # Errors
-    /// [`BenchError`] where no scene can be read.
+    /// [`BenchError`] if no scene can be read.
     pub fn run(
         &self,
         revision: String,

@@ -16,7 +16,7 @@ const AT_REST: f64 = 1e-3;
 /// distance from equilibrium at the end and the drift of its energy.
 ///
 /// # Errors
-/// [`LabError`] when the method cannot run on this case at all.
+/// [`LabError`] when the method cannot run on this case.
 pub(crate) fn hard_row(
     case: &mut Case,
     method: &MethodChoice,

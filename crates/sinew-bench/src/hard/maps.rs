@@ -191,7 +191,7 @@ pub(crate) fn ids(quick: bool) -> Vec<&'static str> {
     wanted(quick).map(|varied| varied.id).collect()
 }
 
-/// The maps, and what is missing of them with its reason; `begins` is notified of each. A quick run makes one of them,
+/// The maps, and missing ones with their reason; `begins` is notified of each. A quick run makes one of them,
 /// coarser.
 pub(crate) fn all(quick: bool, mut begins: impl FnMut(&str)) -> (Vec<StabilityMap>, Vec<Missing>) {
     let (mut maps, mut missing) = (Vec::new(), Vec::new());

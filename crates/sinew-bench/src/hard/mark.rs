@@ -1,4 +1,4 @@
-//! Marks in the making: what is asked, and the figure that is put to it.
+//! Marks in the making: the requirement, and the figure compared with it.
 
 use crate::results::Mark;
 use sinew_verify::MarkVerdict;
@@ -65,7 +65,7 @@ impl Mark {
     }
 }
 
-/// The largest of several figures and what gave it; one that is not a number is the largest of all.
+/// The largest of several figures and its origin; NaN counts as the largest.
 #[derive(Debug, Default)]
 pub(crate) struct Worst {
     pub(crate) figure: f64,

@@ -4,8 +4,8 @@ use sinew_mesh::structured::{Split, StructuredError, cube};
 use sinew_mesh::{Group, GroupMembers, TetMesh};
 
 /// A structured cube in which one tetrahedron in the middle is `thinness` times flatter than the
-/// others: a node is put over the middle of a face, at that share of the height, and cuts the
-/// tetrahedron into the flat one on the face and three beside it.
+/// others: a node is put over the middle of a face, at that share of the height, and divides the
+/// tetrahedron into the flat one on the face and three others.
 ///
 /// # Errors
 /// [`StructuredError`] for a cube that cannot be.

@@ -41,7 +41,7 @@ impl HardBench {
     /// marks on a scene that cannot be read, which is listed too.
     ///
     /// # Errors
-    /// [`BenchError`] where no scene can be read.
+    /// [`BenchError`] if no scene can be read.
     pub fn run(
         &self,
         revision: String,

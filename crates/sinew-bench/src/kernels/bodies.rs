@@ -17,7 +17,7 @@ pub(super) struct Body {
     pub(super) model: Model,
 }
 
-/// The peers' cube at several sizes, a body that no lattice fits, an organ and, where there is one, a larger mesh
+/// The peers' cube at several sizes, a body that no lattice fits, an organ and, if any, a larger mesh
 /// of a mesh generator.
 pub(super) fn bodies(
     meshes: &Path,

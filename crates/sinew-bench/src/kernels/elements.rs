@@ -1,4 +1,4 @@
-//! Forces of hyperelastic elements, beside those of plain tetrahedra and beside plain numbers.
+//! Forces of hyperelastic elements, compared with those of plain tetrahedra and with scalar code.
 
 use serde::Serialize;
 use sinew_core::{
@@ -102,7 +102,7 @@ const SOURCE: usize = 0;
 const OUT: usize = 1;
 
 impl<T: ElementPrecision> Of<T> {
-    /// The sweep of a model about a displacement; `None` where it is no force law.
+    /// The sweep of a model about a displacement; `None` if it is no force law.
     fn new(model: &Model, u: &[f64], set: InstructionSet) -> Option<Self> {
         let Equations::Forces(law) = model.equations() else {
             return None;

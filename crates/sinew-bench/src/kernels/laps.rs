@@ -156,7 +156,7 @@ pub(super) fn central_difference(
     Ok(method.program().map(|program| (Arc::new(program), dt)))
 }
 
-/// Floating-point operations of a step: two for each entry of a matrix, in whatever way it is stored, and those
+/// Floating-point operations of a step: two for each entry of a matrix, independent of its storage, and those
 /// of the cells' own maps.
 fn operations(program: &Program, model: &dyn LinearSystem) -> f64 {
     let stiffness = model.operators().stiffness();
@@ -176,7 +176,7 @@ fn operations(program: &Program, model: &dyn LinearSystem) -> f64 {
         + repeats * (own * stiffness.dofs()) as f64
 }
 
-/// A machine of this kind; `None` where the body has no templates.
+/// A machine of this kind; `None` if the body has no templates.
 fn runner(variant: Variant, model: &sinew_fem::Model, program: &Arc<Program>) -> Option<Runner> {
     match variant.precision {
         PrecisionName::F64 => runner_in::<f64>(variant, model, program),
@@ -222,7 +222,7 @@ impl Runner {
         self.difference = size(&off) / size(&expected.u);
     }
 
-    /// Allocations in a step of a batch of ten; `None` where the program's allocator does not count.
+    /// Allocations in a step of a batch of ten; `None` if the program's allocator does not count.
     fn allocations(&mut self, model: &dyn System, dt: f64) -> Result<Option<f64>, TimedRunError> {
         let counts = CountingAllocator::count(|| drop(std::hint::black_box(vec![0_u8; 100])));
         if counts == 0 {

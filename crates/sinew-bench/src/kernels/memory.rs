@@ -9,7 +9,8 @@ use sinew_sparse::sweep::read_all;
 /// Bytes read in a measurement, at least.
 const READ: usize = 400_000_000;
 
-/// Bytes per second that one thread reads of `bytes` bytes, over and over: those of the cache that they fit into.
+/// Bytes per second at which one thread reads `bytes` bytes repeatedly: the bandwidth of the cache that they fit
+/// into.
 pub(super) fn bandwidth(bytes: usize) -> f64 {
     let words = (bytes / 8).max(4096);
     let values = vec![1.0_f64; words];

@@ -1,4 +1,4 @@
-//! Steps of programs on every machine, beside plain loops and beside what the memory can do.
+//! Steps of programs on every machine, compared with plain loops and with memory bandwidth.
 
 use sinew_verify::LabError;
 mod baseline;
@@ -33,8 +33,8 @@ use sinew_verify::Progress;
 pub struct KernelBench {
     /// Folder of the repository's meshes.
     pub meshes: PathBuf,
-    /// A mesh of some ten thousand tetrahedra from a mesh generator, with surfaces "bottom" and "top", where there
-    /// is one.
+    /// A mesh of some ten thousand tetrahedra from a mesh generator, with surfaces "bottom" and "top", if
+    /// there is one.
     pub generated: Option<PathBuf>,
     /// One small body and few laps, to see that everything runs.
     pub quick: bool,
@@ -49,13 +49,13 @@ pub struct KernelResults {
     pub machine: Machine,
     /// Peak rates of one thread of it.
     pub roofs: Roofs,
-    /// Ratios that tell when kernels lost what makes them fast.
+    /// Ratios that detect kernels which have become slow.
     pub guards: Vec<Guard>,
     /// One row for each body, machine, precision and number of threads.
     pub rows: Vec<KernelRow>,
     /// Forces of hyperelastic elements: one row for each body, law, element, precision and instruction set.
     pub elements: Vec<ElementRow>,
-    /// Steps of a pulled cube, beside a plain scalar loop and in automatic steps.
+    /// Steps of a pulled cube, compared with a plain scalar loop, and automatic steps.
     pub pulled: Vec<PulledRow>,
     /// Marks for ratios of these.
     pub marks: Vec<ElementMark>,

@@ -1,4 +1,4 @@
-//! A plain scalar loop over deformed tetrahedra: what forty lines reach.
+//! A plain scalar loop over deformed tetrahedra, of about forty lines, for comparison.
 
 use sinew_core::LinearSystem;
 use sinew_fem::{Model, tetra};
@@ -12,7 +12,7 @@ pub(super) struct PlainTets {
     /// Volumes (m^3).
     volumes: Vec<f64>,
     lame: [f64; 2],
-    /// Inverse masses (1/kg), 0 where nodes are held.
+    /// Inverse masses (1/kg), 0 at fixed nodes.
     inverse: Vec<f64>,
     /// Loads (N).
     loads: Vec<[f64; 3]>,

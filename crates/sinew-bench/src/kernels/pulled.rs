@@ -1,4 +1,4 @@
-//! Steps of a pulled cube: beside a plain scalar loop, and automatic ones beside fixed ones.
+//! Steps of a pulled cube: compared with a plain scalar loop, and automatic steps with fixed ones.
 
 use serde::Serialize;
 use sinew_core::{Options, Run, StableStep, State, StepReport, System};
@@ -34,7 +34,7 @@ pub struct PulledRow {
     pub operations: f64,
     /// Bytes of a step that have to come from memory once: nodes and shapes of tetrahedra, and where their forces are summed up.
     pub bytes: f64,
-    /// Rate of operations over the lower of what the instructions and the memory allow.
+    /// Rate of operations over the lower of the limits by instructions and by memory.
     pub share_of_roof: f64,
     /// Relative difference of the displacement from the plain loop's after as many steps; of plain tetrahedra.
     pub off_plain: Option<f64>,
@@ -42,7 +42,7 @@ pub struct PulledRow {
     pub error: f64,
     /// The same of `dt = "auto"`.
     pub error_of_automatic: f64,
-    /// Forces that automatic steps took, over those of the fixed ones.
+    /// Force evaluations of automatic steps over those of the fixed ones.
     pub forces_of_automatic: f64,
     /// CPU time of the run in automatic steps over that of as many forces in fixed steps, median of laps.
     pub over_fixed: f64,

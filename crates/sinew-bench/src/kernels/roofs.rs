@@ -22,7 +22,7 @@ pub struct Roofs {
 /// The rate at which one thread reads a number of bytes over and over.
 #[derive(Clone, Debug, Serialize)]
 pub struct ReadRate {
-    /// The memory that holds them: "L2", "L3" or "DRAM".
+    /// The memory that contains them: "L2", "L3" or "DRAM".
     pub memory: &'static str,
     /// The bytes.
     pub bytes: usize,
@@ -41,14 +41,14 @@ pub struct OperationRate {
     pub operations_per_s: f64,
 }
 
-/// Sizes of caches (bytes) where the system does not tell.
+/// Sizes of caches (bytes) if the system does not report them.
 const CACHES: [usize; 2] = [1 << 20, 32 << 20];
 
 /// Most bytes that are read to measure memory.
 const MOST: usize = 1 << 30;
 
 impl Roofs {
-    /// Measures all rates; a quick measurement leaves out what is large.
+    /// Measures all rates; a quick measurement leaves out large sizes.
     pub(super) fn measure(quick: bool) -> Self {
         let l2 = cache(2).unwrap_or(CACHES[0]);
         let l3 = cache(3).unwrap_or(CACHES[1]);
@@ -91,7 +91,7 @@ fn rate<T: Precision>(set: InstructionSet, quick: bool) -> OperationRate {
     }
 }
 
-/// Bytes of a processor's cache of this level, where Linux tells.
+/// Bytes of a processor's cache of this level, if Linux reports it.
 fn cache(level: u32) -> Option<usize> {
     let of = |index: u32, name: &str| {
         let path = format!("/sys/devices/system/cpu/cpu0/cache/index{index}/{name}");

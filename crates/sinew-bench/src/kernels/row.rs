@@ -7,7 +7,7 @@ use serde::Serialize;
 pub struct KernelRow {
     /// The body.
     pub mesh: String,
-    /// Its nodes, held ones too.
+    /// Number of its nodes, fixed ones included.
     pub nodes: usize,
     /// Its tetrahedra.
     pub tets: usize,
@@ -19,8 +19,8 @@ pub struct KernelRow {
     pub instructions: &'static str,
     /// Threads that it may use.
     pub threads: usize,
-    /// Time of a step of plain loops over its own, median of alternating laps: CPU time, or wall time where
-    /// there are several threads.
+    /// Time of a step of plain loops over its own, median of alternating laps: CPU time, or wall time with
+    /// several threads.
     pub ratio_to_b1: f64,
     /// The same over plain loops that check no bounds of values and columns.
     pub ratio_to_b1_without_checks: f64,
@@ -33,17 +33,17 @@ pub struct KernelRow {
     pub difference: f64,
     /// Bytes that a step moves: matrices or templates, and vectors.
     pub bytes_per_step: f64,
-    /// Floating-point operations of a step: two for each entry of the matrix, however it is stored, and those of
-    /// the cells' own maps.
+    /// Floating-point operations of a step: two for each entry of the matrix, independent of its storage, and those
+    /// of the cells' own maps.
     pub operations_per_step: f64,
     /// Operations a second, in thousands of millions.
     pub gflops: f64,
     /// Operations for each byte that a step moves.
     pub intensity: f64,
-    /// The bytes of a step in the time of a step over what one thread reads of as many, measured in the same run.
+    /// Bandwidth of a step over that at which one thread reads this many bytes, measured in the same run.
     pub share_of_bandwidth: f64,
     /// Templates, where rows are stored once.
     pub templates: Option<usize>,
-    /// Allocations of the calling thread in a step; `None` where nothing counts them.
+    /// Allocations of the calling thread in a step; `None` if nothing counts them.
     pub allocations_per_step: Option<f64>,
 }

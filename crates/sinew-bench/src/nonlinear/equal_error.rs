@@ -34,9 +34,9 @@ const LAW: &str = Hyperelastic::IDS[0];
 /// A body that bends or bulges, on meshes of any fineness.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Shape {
-    /// Ten times as long as thick, held at its root and pulled sideways at its tip.
+    /// Ten times as long as thick, fixed at its root and pulled sideways at its tip.
     Cantilever,
-    /// A cube held at its four sides and pressed from above.
+    /// A cube fixed at its four sides and pressed from above.
     HeldCube,
 }
 
@@ -67,7 +67,7 @@ const COMPARISONS: [Comparison; 2] = [
 /// Poisson's ratios.
 const RATIOS: [f64; 3] = [0.45, 0.49, 0.499];
 
-/// A body of one kind of element and its errors beside 10-node tetrahedra.
+/// A body of one kind of element and its errors against 10-node tetrahedra.
 struct Candidate {
     cells: usize,
     element: Element,

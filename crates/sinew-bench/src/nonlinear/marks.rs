@@ -8,7 +8,7 @@ use crate::report::{number, percent};
 use crate::results::Mark;
 use sinew_verify::MarkVerdict;
 
-/// Largest rise of the energy, over all that was brought in, by which rounding is not exceeded.
+/// Largest rise of the energy, over all supplied energy, that counts as rounding.
 const ROUNDING: f64 = 1e-11;
 
 /// All marks; `begins` is notified of each that takes time.
@@ -88,11 +88,12 @@ fn steps_follow_the_stiffness(rows: &[Row]) -> Mark {
     }
 }
 
-/// Errors at 10 ms of an independent implementation, of the methods of a quick run behind the yardstick, and whether
-/// that takes the same steps: its sweeps set out from rest, and those here from the displacement by the velocity.
+/// Errors at 10 ms of an independent implementation, for the methods of a quick run after the yardstick, each with a
+/// flag: true if it takes the same steps. Its sweeps set out from rest, and those here from the displacement by the
+/// velocity.
 const OF_OTHERS: [(f64, bool); 2] = [(0.0044, true), (0.0178, false)];
 
-/// The pushed cube at 10 ms, beside an independent implementation.
+/// The pushed cube at 10 ms, compared with an independent implementation.
 fn errors_are_those_of_others(rows: &[Row]) -> Mark {
     let asked = mark(
         "errors are those of an independent implementation",

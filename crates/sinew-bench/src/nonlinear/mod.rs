@@ -1,6 +1,6 @@
-//! Large deformations: every method, law and element on scenes where tissue is pressed, twisted and let go.
+//! Large deformations: every method, law and element on scenes with tissue that is pressed, twisted and released.
 //!
-//! Errors in time are against a reference of the same body in steps of no length; errors of the mesh, against finer
+//! Errors in time are against a reference of the same body, extrapolated to step 0; errors of the mesh, against finer
 //! meshes, are listed separately.
 
 mod cases;
@@ -28,11 +28,11 @@ pub struct NonlinearBench {
 }
 
 impl NonlinearBench {
-    /// Measures every case on one thread. A run that is refused or diverges is a row like any other; a method that cannot run on a body at
-    /// all is listed with its reason.
+    /// Measures every case on one thread. A run that is refused or diverges is a row like any other; a method that
+    /// cannot run on a body is listed with its reason.
     ///
     /// # Errors
-    /// [`BenchError`] where no scene can be read.
+    /// [`BenchError`] if no scene can be read.
     pub fn run(
         &self,
         revision: String,

@@ -20,7 +20,7 @@ const SHARE_OF_ORDER_2: f64 = 0.6;
 
 /// A scene's motion without errors of the mesh, at the nodes of its own mesh.
 pub(super) struct MeshReference {
-    /// The places (m) of the nodes, in units that tell them apart.
+    /// The positions of the nodes, in integer units that distinguish them.
     nodes: Vec<[i64; 3]>,
     /// Displacements (m) of all nodes at each instant.
     motion: Vec<Vec<f64>>,
@@ -81,7 +81,7 @@ fn places(simulation: &Simulation) -> Result<Vec<[i64; 3]>, LabError> {
     Ok(body.mesh.points.iter().copied().map(place).collect())
 }
 
-/// Displacements (m) of nodes at these places; those that are held stay, or move as their support does.
+/// Displacements (m) of nodes at these places; fixed ones stay, or move with their support.
 fn at_nodes(simulation: &Simulation, u: &[f64], nodes: &[[i64; 3]]) -> Result<Vec<f64>, LabError> {
     let body = simulation.model().body().ok_or_else(LabError::no_body)?;
     let found: HashMap<[i64; 3], u32> = (0..)

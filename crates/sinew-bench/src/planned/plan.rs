@@ -36,10 +36,10 @@ impl Plan {
         file_names(&ids, &[])
     }
 
-    /// Measures every case on one thread, then the marks, which see the rows and tell what they begin.
+    /// Measures every case on one thread, then the marks, which receive the rows and announce their runs.
     ///
     /// # Errors
-    /// [`BenchError`] where no scene can be read.
+    /// [`BenchError`] if no scene can be read.
     pub(crate) fn run(
         &self,
         results: BenchResults,

@@ -13,14 +13,14 @@ use super::methods::yardstick;
 use crate::results::{BenchResults, Skipped};
 use sinew_verify::Progress;
 
-/// A body of a case: its law and element where the case has several, and what its scene changes to have them.
+/// A body of a case: its law and element, if the case has several, and the changes of its scene for them.
 struct Body {
     material: Option<String>,
     law: Option<&'static str>,
     values: Vec<String>,
 }
 
-/// A bench under way.
+/// A bench in progress.
 pub(super) struct Running<'a> {
     pub(super) done: usize,
     pub(super) of: usize,

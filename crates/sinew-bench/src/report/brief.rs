@@ -9,7 +9,7 @@ use sinew_verify::ruled;
 
 /// Most rows of a table.
 const MOST_ROWS: usize = 18;
-/// Most marks, and most scenes, that fit beside each other.
+/// Most marks, and most scenes, that fit side by side.
 const FEW: usize = 8;
 /// Most lines of a list.
 const MOST_ITEMS: usize = 4;
@@ -17,8 +17,8 @@ const MOST_ITEMS: usize = 4;
 const HEAD: [&str; 6] = ["scene", "error at most", "cheapest", "dt", "error", "CPU"];
 const UNITS: [&str; 6] = ["", "[%]", "", "[ms]", "[%]", "[s/s]"];
 
-/// The answer of a bench for a terminal, at most 35 lines: the marks where there are some, the cheapest run of each
-/// scene for errors of at most 10, 1 and 0.1 % without marks or with few; then what was not run, and what is missing.
+/// The answer of a bench for a terminal, at most 35 lines: the marks, if any, the cheapest run of each
+/// scene for errors of at most 10, 1 and 0.1 % without marks or with few; then skipped runs, and missing results.
 #[must_use]
 pub fn brief(results: &BenchResults) -> String {
     let mut parts = Vec::new();

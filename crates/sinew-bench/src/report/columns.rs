@@ -5,7 +5,7 @@ use sinew_measure::Row;
 
 use super::{missing::shown, number, verdict};
 
-/// A column: its head, its cells, what it is sorted by.
+/// A column: its head, its cells, its key for sorting.
 pub(super) struct Column {
     pub(super) head: &'static str,
     pub(super) unit: &'static str,
@@ -190,7 +190,7 @@ static OTHER_COLUMNS: [Column; 8] = [
     },
 ];
 
-/// The columns of a table of these rows: those of hard cases and large deformations only where a row has such a figure.
+/// The columns of a table of these rows: those of hard cases and large deformations only if a row has such a figure.
 pub(super) fn columns_of(rows: &[&Row]) -> Vec<&'static Column> {
     let filled = |column: &&Column| rows.iter().any(|row| !(column.cell)(row).is_empty());
     COLUMNS
@@ -213,7 +213,7 @@ fn sweeps(row: &Row) -> String {
     }
 }
 
-/// A share in per cent where there is one.
+/// A share in per cent, if there is one.
 fn share(value: Option<f64>) -> String {
     value.map_or_else(String::new, |x| shown(x, number::percent))
 }

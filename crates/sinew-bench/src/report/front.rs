@@ -11,7 +11,7 @@ use crate::results::BenchResults;
 
 /// The paper's network.
 const PAPER: &str = Cnn::ID;
-/// The method that knows the whole body, against which local ones are held.
+/// The global method with which local ones are compared.
 const NON_LOCAL: &str = Modal::ID;
 /// Errors below which they are compared (fraction).
 const COMPARED_BELOW: f64 = 0.01;
@@ -84,7 +84,7 @@ fn member(group: &[&Row], above: Option<f64>) -> FrontMember {
     }
 }
 
-/// A sentence on the paper's network beyond forward Euler's limit; `None` where it did not run there.
+/// A sentence on the paper's network beyond forward Euler's limit; `None` if it did not run there.
 #[must_use]
 pub fn paper_sentence(results: &BenchResults, case: &CaseInfo) -> Option<String> {
     let rows = || {

@@ -228,7 +228,7 @@ fn draw_run(svg: &mut Svg, cell: Frame, run: &MapRun, limit: Option<f64>) {
     }
 }
 
-/// The middle of a cell, or of its larger part where a line would go through the sign.
+/// The middle of a cell, or of its larger part if a line would cross the sign.
 fn sign_place(cell: Frame, limit: Option<f64>) -> f64 {
     let middle = cell.left + 0.5 * cell.width;
     match limit {
@@ -240,7 +240,7 @@ fn sign_place(cell: Frame, limit: Option<f64>) -> f64 {
     }
 }
 
-/// A sign for what colour alone must not say.
+/// A sign for facts that colour alone must not show.
 fn sign(run: &MapRun) -> &'static str {
     match run.verdict() {
         RowVerdict::Accurate => "",
@@ -249,7 +249,7 @@ fn sign(run: &MapRun) -> &'static str {
     }
 }
 
-/// The stable step of each row, joined from row to row; along the edge where it lies outside.
+/// The stable step of each row, joined from row to row; along the edge if it lies outside.
 fn draw_limit(svg: &mut Svg, steps: &Steps, panel: &MapPanel, frame: Frame) {
     let mut line = Vec::new();
     let mut lines = Vec::new();

@@ -258,7 +258,7 @@ mod tests {
         );
     }
 
-    /// Runs that end in all ways on the peers' cube, a mark, a map, and what is missing.
+    /// Runs that end in all ways on the peers' cube, a mark, a map, and missing results.
     fn every_kind_of_result() -> BenchResults {
         let mut results = BenchResults::new("r", Machine::default());
         results.cases.push(CaseInfo {

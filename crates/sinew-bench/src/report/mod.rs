@@ -1,4 +1,4 @@
-//! Tables, plots and a page of a bench. No speed is shown without its error beside it.
+//! Tables, plots and a page of a bench. No speed is shown without its error.
 
 mod brief;
 mod case_section;

@@ -51,7 +51,7 @@ pub(super) fn error(row: &Row) -> String {
     }
 }
 
-/// The error with its unit where it is a number.
+/// The error with its unit, if it is a number.
 pub(super) fn error_with_unit(row: &Row) -> String {
     match (row.outcome, row.bounded) {
         (RowOutcome::Finished, _) if row.error.is_none_or(|error| !error.is_finite()) => error(row),

@@ -1,4 +1,4 @@
-//! Work-precision plot: what a method's accuracy costs.
+//! Work-precision plot: the cost of a method's accuracy.
 
 use sinew_draw::{Axis, Colour, Dash, Plot, Point, Series, Style};
 use sinew_measure::{Row, RowOutcome};
@@ -9,7 +9,7 @@ use crate::results::BenchResults;
 /// Errors above this (fraction) are drawn in the lane of the unbounded runs.
 const LARGEST_SHOWN_ERROR: f64 = 100.0;
 
-/// Errors below this (fraction) are drawn in a lane of their own: what matters lies above.
+/// Errors below this (fraction) are drawn in a lane of their own: relevant ones lie above.
 pub(super) const LEAST_SHOWN_ERROR: f64 = 1e-8;
 
 /// Error over CPU time of the runs of a case: a line per method over its steps, and the Pareto
@@ -85,7 +85,7 @@ fn point(row: &Row, ringed: bool) -> Point {
     }
 }
 
-/// The error as drawn: infinite where it has no place in the frame, minus infinity below it.
+/// The error as drawn: infinite if it has no place in the frame, minus infinity below it.
 fn shown_error(row: &Row) -> f64 {
     match (row.outcome, row.error_at_most()) {
         (RowOutcome::Finished, Some(error)) if row.bounded && error <= LARGEST_SHOWN_ERROR => {

@@ -1,4 +1,4 @@
-//! Files of a bench, each there as a whole or not at all.
+//! Files of a bench, each written as a whole or not at all.
 
 use std::path::PathBuf;
 
@@ -30,7 +30,7 @@ pub enum WriteError {
     /// The results cannot be JSON.
     #[error("cannot write {}: {source}", path.display())]
     Results {
-        /// The file that was to hold them.
+        /// The file for them.
         path: PathBuf,
         /// The reason.
         source: ResultsError,

@@ -5,7 +5,7 @@ use super::runs::{LARGE, Runs, SMALL, VOLTAGES};
 use crate::report::three;
 use sinew_measure::Row;
 
-/// A claim of the paper and what was measured.
+/// A claim of the paper and the measurement.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Claim {
     /// The place in the paper.
@@ -21,11 +21,11 @@ pub struct Claim {
 /// Verdict on a claim.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Holds {
-    /// It holds as it is written.
+    /// It is true as written.
     Yes,
-    /// It holds in the part that the measurement names.
+    /// It is true in the part that the measurement names.
     InPart,
-    /// It does not hold.
+    /// It is not true.
     No,
 }
 

@@ -140,7 +140,7 @@ pub(super) fn percent(fraction: f64) -> String {
     format!("{} %", three(100.0 * fraction))
 }
 
-/// The error of a run, or what became of it.
+/// The error of a run, or its outcome.
 pub(super) fn error_in_words(row: &Row) -> String {
     match row.error {
         Some(error) if row.bounded => percent(error),

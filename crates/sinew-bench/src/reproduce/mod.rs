@@ -20,7 +20,7 @@ use sinew_measure::Case;
 /// Runs everything the paper shows, on its oscillator (section 4.1) and its cube (section 4.2).
 ///
 /// # Errors
-/// [`LabError`] when a run fails or a case is not what the paper describes.
+/// [`LabError`] when a run fails or a case differs from the paper's description.
 pub fn reproduce(oscillator: &mut Case, cube: &mut Case) -> Result<Reproduction, LabError> {
     let runs = runs::Runs::of(oscillator, cube)?;
     Ok(Reproduction {

@@ -14,7 +14,7 @@ pub(super) const LARGE: [f64; 2] = [0.015, 0.02];
 /// The paper's saturation voltages (m/s).
 pub(super) const VOLTAGES: [f64; 3] = [4.0, 3.2, 2.0];
 
-/// Displacement over time, and what a measured run says. As the curves show every step, the error
+/// Displacement over time, and the row of a measured run. As the curves show every step, the error
 /// is taken over every step.
 #[derive(Clone, Debug)]
 pub(super) struct History {
@@ -152,7 +152,7 @@ fn histories(case: &mut Case, method: &MethodChoice) -> Result<[History; 3], Lab
     Ok([history(SMALL)?, history(LARGE[0])?, history(LARGE[1])?])
 }
 
-/// (t (s), u (m)) of the first degree of freedom, from the start on, however far it goes.
+/// (t (s), u (m)) of the first degree of freedom, from the start on, without a divergence limit.
 fn follow(
     case: &Case,
     method: &MethodChoice,

@@ -35,7 +35,7 @@ impl BenchResults {
         Ok(json)
     }
 
-    /// Reads what [`Self::to_json`] wrote.
+    /// Reads the output of [`Self::to_json`].
     ///
     /// # Errors
     /// [`ResultsError`] when it is not JSON, not a bench, or of another schema.

@@ -11,10 +11,10 @@ use sinew_measure::Gap;
 pub struct Missing {
     /// Id of the case or the map; the file where a scene could not be read.
     pub scene: String,
-    /// The run, or the value of a map's parameter; none where it concerns the scene as a whole.
+    /// The run, or the value of a map's parameter; none if it concerns the scene as a whole.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub row: Option<String>,
-    /// The number's field; none where more than a number is missing.
+    /// The number's field; `None` if more than a number is missing.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub field: Option<String>,
     /// The text that replaces a number, such as `inf`; `None` without any.
@@ -44,7 +44,7 @@ impl Missing {
         }
     }
 
-    /// The scene, and the run where there is one.
+    /// The scene, with the run if there is one.
     #[must_use]
     pub fn place(&self) -> String {
         match &self.row {

@@ -9,7 +9,7 @@ use sinew_measure::{Row, RowOutcome, RowVerdict};
 pub struct StabilityMap {
     /// Name for files and anchors.
     pub id: String,
-    /// Description of the scene and of what is varied.
+    /// Description of the scene and of the varied parameter.
     pub title: String,
     /// The parameter that is varied, with its unit.
     pub parameter: String,
@@ -27,9 +27,9 @@ pub struct MapPanel {
     /// The method with its options.
     pub method: String,
     /// The largest stable step (s) at each value of the parameter, as the method computes it from
-    /// the matrices; none where it is stable at any step or cannot tell.
+    /// the matrices; `None` if it is stable at any step or cannot compute it.
     pub stable_steps: Vec<Option<f64>>,
-    /// True if there is a value at which the method cannot tell its stable step.
+    /// True if there is a value at which the method cannot compute its stable step.
     #[serde(default)]
     pub cannot_tell: bool,
     /// The run at each step, for each value of the parameter.
@@ -39,7 +39,7 @@ pub struct MapPanel {
 /// The part of a run that a map keeps.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct MapRun {
-    /// Relative error (fraction); none where diverged.
+    /// Relative error (fraction); `None` if diverged.
     pub error: Option<f64>,
     /// End of the run.
     pub outcome: RowOutcome,

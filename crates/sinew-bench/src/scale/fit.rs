@@ -15,7 +15,7 @@ pub struct ScaleFit {
     pub threads: usize,
     /// Sizes that were measured.
     pub sizes: usize,
-    /// Powers of the number of tetrahedra, of the line of least squares through the logarithms; none where
+    /// Exponents over the number of tetrahedra, by least squares of the logarithms; `None` if
     /// fewer than two sizes have the figure.
     pub exponents: Exponents,
     /// Tetrahedra of the largest body in real time: where wall time is simulated time, between the two sizes
@@ -113,7 +113,7 @@ pub(super) fn fits(rows: &[ScaleRow]) -> Vec<ScaleFit> {
     fits
 }
 
-/// The size at which wall time (s per s) over sizes, increasing, is 1, and whether it lies beyond them.
+/// The size at which wall time (s per s) over sizes, increasing, is 1, with a flag: true if it lies beyond them.
 fn real_time(points: &[(f64, f64)]) -> (Option<f64>, bool) {
     let crossing = points
         .windows(2)

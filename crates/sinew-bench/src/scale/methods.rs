@@ -34,7 +34,7 @@ pub(super) struct Variant {
     pub(super) factorises: bool,
 }
 
-/// Threads where there are several.
+/// Number of threads of runs with several.
 const SEVERAL: usize = 2;
 
 pub(super) fn has_several_threads() -> bool {

@@ -8,7 +8,7 @@ const LONGEST: f64 = 90.0;
 /// Share of the available memory that a factor may take.
 const SHARE: f64 = 0.5;
 
-/// Memory (bytes) where the system does not tell how much there is.
+/// Memory (bytes) assumed if the system does not report it.
 const ASSUMED: f64 = 4e9;
 
 /// Powers of the number of unknowns by which memory and time of a factor of a cube grow at least with the

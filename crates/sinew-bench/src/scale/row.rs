@@ -7,7 +7,7 @@ use serde::Serialize;
 pub struct ScaleBody {
     /// Its name, by the nodes on an edge.
     pub mesh: String,
-    /// Its nodes, held ones too.
+    /// Number of its nodes, fixed ones included.
     pub nodes: usize,
     /// Its tetrahedra.
     pub tets: usize,
@@ -19,7 +19,7 @@ pub struct ScaleBody {
     pub critical_step_s: f64,
     /// Wall time (s) in which mesh and matrices were made.
     pub build_wall_s: f64,
-    /// Memory (bytes per tetrahedron) of mesh and matrices; none where no allocator counts it.
+    /// Memory (bytes per tetrahedron) of mesh and matrices; none if no allocator counts it.
     pub bytes_per_tet: Option<f64>,
     /// Description of the method of the reference and its check.
     pub reference: String,
@@ -38,7 +38,7 @@ pub struct ScaleBody {
 pub struct ScaleRow {
     /// The cube, by the nodes on an edge.
     pub mesh: String,
-    /// Its nodes, held ones too.
+    /// Number of its nodes, fixed ones included.
     pub nodes: usize,
     /// Its tetrahedra.
     pub tets: usize,
@@ -62,8 +62,8 @@ pub struct ScaleRow {
     pub simulated_s: f64,
     /// Relative L2 error of the displacement (fraction); none of a run that diverged.
     pub error: Option<f64>,
-    /// Bound (fraction) below which the error lies, where it is too small for the reference; `error` is no
-    /// figure to quote then.
+    /// Bound (fraction) below which the error lies, if it is too small for the reference; `error` must not be
+    /// quoted then.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub error_is_below: Option<f64>,
     /// The reference's own estimated relative error (fraction).
@@ -78,7 +78,7 @@ pub struct ScaleRow {
     pub setup_cpu_s: f64,
     /// Wall time (s) of the set-up.
     pub setup_wall_s: f64,
-    /// Memory (bytes per tetrahedron) that the method keeps besides mesh and matrices; none where no
+    /// Memory (bytes per tetrahedron) that the method keeps besides mesh and matrices; none if no
     /// allocator counts it.
     pub bytes_per_tet: Option<f64>,
 }

@@ -79,7 +79,7 @@ fn row_here(cube: &mut Cube, variant: &Variant) -> Result<ScaleRow, LabError> {
     })
 }
 
-/// A body on matrices of its own, of which nothing has been derived yet: what a method's first set-up finds.
+/// A body on matrices of its own, without any derived data: for the first set-up of a method.
 struct Fresh<'a> {
     body: &'a dyn System,
     operators: LinearOperators,

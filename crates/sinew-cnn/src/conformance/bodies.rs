@@ -131,7 +131,7 @@ pub fn bodies_move_as_by_the_reference(
     assert!(count > 0, "no method takes any of the bodies");
 }
 
-/// Every way of cutting a run into batches gives the same bits of u and v, the same clock and the same work.
+/// Every division of a run into batches gives the same bits of u and v, the same clock and the same work.
 pub fn batches_of_bodies_change_not_a_bit(methods: &[Method], bodies: &[Body], make: &Make) {
     for run in runs(methods, bodies) {
         let (whole, work) = run.by_a_fresh_one(make, &[13]);

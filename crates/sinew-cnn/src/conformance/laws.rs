@@ -69,7 +69,7 @@ fn ways() -> [(Vec<usize>, bool); 5] {
     ]
 }
 
-/// Every way of cutting a run into batches, by one machine or by a fresh one for each, gives the same
+/// Every division of a run into batches, by one machine or by a fresh one for each, gives the same
 /// bits of u, v and a, the same clock and the same work.
 pub fn batches_change_not_a_bit(methods: &[Method], make: &Make) {
     let kinds: Vec<Kind> = Kind::all()

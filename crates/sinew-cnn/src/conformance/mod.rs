@@ -65,7 +65,7 @@ use crate::{Machine, Program};
 /// Makes a fresh machine.
 pub type Make = dyn Fn() -> Box<dyn Machine>;
 
-/// Builds a method's program for a system and a step of the caller (s); `None` where the method takes
+/// Builds a method's program for a system and a step of the caller (s); `None` if the method takes
 /// no such system.
 pub type ProgramOf = Box<dyn Fn(&dyn System, f64) -> Option<Program> + Send + Sync>;
 

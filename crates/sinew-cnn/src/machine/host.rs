@@ -6,7 +6,7 @@ use sinew_core::{Inputs, LinearOperators, Load, LoadTime, Step};
 
 use crate::program::{LoadAt, Loads, Moments, Program, Sweep, Weight, When};
 
-/// The time over which a sweep's step goes.
+/// The time span of a sweep's step.
 #[derive(Clone, Copy, Debug)]
 pub struct StepTime<'a> {
     inputs: &'a Inputs,

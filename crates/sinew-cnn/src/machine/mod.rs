@@ -18,8 +18,8 @@ use crate::Program;
 ///
 /// Its internals (other precision, another numbering, another memory) are free; the
 /// [`State`] stays f64, node-major. Every machine gives the results of [`ReferenceMachine`], to its own
-/// rounding, and the same bits for every way of cutting a run into batches. The module `conformance` (feature `conformance`)
-/// checks that.
+/// rounding, and the same bits for every division of a run into batches. The module `conformance` (feature
+/// `conformance`) checks that.
 pub trait Machine: Send + std::fmt::Debug {
     /// Its name, as plans and results show it.
     fn name(&self) -> &'static str;
@@ -34,7 +34,7 @@ pub trait Machine: Send + std::fmt::Debug {
         "plain loops in f64".to_owned()
     }
 
-    /// The clock that tells the cost of its steps: the calling thread's unless it works elsewhere.
+    /// The clock that measures the cost of its steps: the calling thread's unless it works elsewhere.
     fn cost_clock(&self) -> CostClock {
         CostClock::default()
     }

@@ -128,7 +128,8 @@ impl Program {
         }
     }
 
-    /// The size (m/s) beyond which a component of the velocity moves the displacement no faster; infinite where nothing saturates.
+    /// The size (m/s) beyond which a component of the velocity moves the displacement no faster; infinite if nothing
+    /// saturates.
     #[must_use]
     pub fn saturation(&self) -> f64 {
         let updates = self.step.iter().flat_map(|sweep| &sweep.updates);

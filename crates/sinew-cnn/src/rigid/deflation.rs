@@ -63,7 +63,8 @@ impl Deflation {
         self.parts.iter().map(|part| part.rigid.count()).sum()
     }
 
-    /// Takes the motions about where cells rest, or about where displacements (m) have brought them, S as `factor` times the blocks `added`, `B^-1` times `of_inverse` as
+    /// Sets the motions about the rest positions of cells, or about those displaced by displacements (m), S as
+    /// `factor` times the blocks `added`, `B^-1` times `of_inverse` as
     /// `inverse`, all row by row, and M' by its diagonal.
     pub fn weigh(
         &mut self,

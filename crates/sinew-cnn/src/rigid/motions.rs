@@ -21,8 +21,8 @@ pub struct RigidMotions {
     pub(crate) weighted: Vec<[f64; LAYERS]>,
     /// The factor of the metric of the part's own twists.
     factor: Factor,
-    /// The point (m) that these turn about: one that moves with an unsupported part, so that they stay independent
-    /// however far it goes.
+    /// The centre (m) of these rotations: it moves with an unsupported part, so that they stay independent
+    /// at any displacement.
     origin: [f64; 3],
 }
 

@@ -276,8 +276,8 @@ pub fn a_hardening_spring_swings_as_in_closed_form(make: &dyn Fn() -> Boxed) {
 /// A system that refuses a trial state ends the run with an error that names the time, the element
 /// and the reason, at the same step however the steps were taken. What was recorded and watched
 /// until then is that of a run in which nothing was refused, and the integrator can be used again. A method that solves
-/// equations may come to the last step by another way, around a trial that is refused, and one whose energy never rises keeps away from
-/// what is refused and runs to the end.
+/// equations may reach the last step through other trials, avoiding one that is refused, and one whose energy never
+/// rises avoids refused states and runs to the end.
 pub fn a_refusal_ends_the_run_and_keeps_what_was(make: &dyn Fn() -> Boxed) {
     if make().properties().needs == Needs::Matrices {
         return;

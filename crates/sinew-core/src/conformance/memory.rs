@@ -32,8 +32,8 @@ impl Maxwell {
         }
     }
 
-    /// The dashpot's elongation `dt` (s) after it was `z`, the mass having gone to `u` at the constant
-    /// speed `v`: exact for such a way, and so of order 2 in dt.
+    /// The dashpot's elongation `dt` (s) after it was `z`, the mass having moved to `u` at the constant
+    /// speed `v`: exact for such a path, and so of order 2 in dt.
     fn elongation(z: f64, u: f64, v: f64, dt: f64) -> f64 {
         let behind = u - RELAXATION * v;
         behind + (z - behind + v * dt) * (-dt / RELAXATION).exp()

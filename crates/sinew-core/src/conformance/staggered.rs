@@ -27,7 +27,7 @@ fn leapfrog(problem: &Problem, dt: f64, kept: Acceleration) -> State {
     state
 }
 
-/// A state whose velocity a leapfrog left half a step behind is taken over by way of
+/// A state whose velocity a leapfrog left half a step behind is taken over through
 /// [`State::synchronise`], to the last bit: whether it keeps the acceleration of its last kick or
 /// not, after steps of the same length and of another. Only a method that is staggered itself
 /// continues differently, and only with the same step.

@@ -68,7 +68,8 @@ impl LinearOperators {
     /// `spare_cells` more than these.
     ///
     /// # Errors
-    /// [`OperatorError`] where the rows fit neither each other nor the matrix, or where damping has a matrix of its own; nothing is changed then.
+    /// [`OperatorError`] if the rows fit neither each other nor the matrix, or where damping has a matrix of its own;
+    /// nothing is changed then.
     pub fn take_cut_rows(
         &mut self,
         cut: &CutRows,

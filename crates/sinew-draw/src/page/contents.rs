@@ -7,7 +7,7 @@ use crate::markup::{escape, prose};
 /// Fewest sections that are worth a list.
 const FEWEST: usize = 3;
 
-/// Anchors and headings of a page's sections; a list of links where there are several.
+/// Anchors and headings of a page's sections; a list of links if there are several.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Contents(Vec<(String, String)>);
 

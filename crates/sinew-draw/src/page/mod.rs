@@ -112,7 +112,7 @@ impl Page {
         self.markup("</details>\n");
     }
 
-    /// HTML as given, for what the other methods cannot say.
+    /// HTML as given, for content without a method of its own.
     pub fn markup(&mut self, html: &str) {
         if self.contents.is_empty() {
             self.lead.push_str(html);

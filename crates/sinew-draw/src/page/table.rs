@@ -5,7 +5,7 @@ use std::fmt::{self, Display};
 use crate::markup::{attribute, escape, prose};
 use crate::style::Colour;
 
-/// A table, which scrolls within the page where it is wider.
+/// A table, which scrolls within the page if it is wider.
 #[derive(Clone, Debug, Default)]
 pub struct Table {
     /// Its columns.
@@ -14,7 +14,7 @@ pub struct Table {
     pub rows: Vec<TableRow>,
     /// True if a click on a head sorts the rows.
     pub is_sortable: bool,
-    /// A name for rules of style; none where it is empty.
+    /// A name for rules of style; none if it is empty.
     pub class: String,
 }
 
@@ -118,7 +118,7 @@ impl Cell {
         }
     }
 
-    /// A cell with a number as it is written, and as rows are sorted by it.
+    /// A cell with the text of a number, and its value for sorting.
     #[must_use]
     pub fn number(text: impl Into<String>, key: f64) -> Self {
         Self {

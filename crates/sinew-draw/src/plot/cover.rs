@@ -5,7 +5,7 @@ const NEAR: f64 = 4.0;
 /// The most rims that are drawn round one another.
 const MOST: usize = 3;
 
-/// A place in the picture (px); none where a point is not shown.
+/// A place in the picture (px); none if a point is not shown.
 pub(super) type Place = Option<(f64, f64)>;
 
 /// The places of all series, in the order in which they are drawn.

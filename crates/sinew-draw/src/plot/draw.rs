@@ -9,7 +9,7 @@ use crate::style::{Colour, Marker, Style};
 use crate::svg::{Paint, Stroke, Svg, Text};
 
 const MARKER: f64 = 4.2;
-/// Width of a rim (px) round what lies upon a line or a marker.
+/// Width of a rim (px) round lines and markers that cover others.
 const RIM: f64 = 1.6;
 /// The colour of signs that belong to no series.
 const NEUTRAL: Colour = Colour(0x77, 0x77, 0x77);
@@ -17,8 +17,8 @@ const NEUTRAL: Colour = Colour(0x77, 0x77, 0x77);
 const LEAVES: &str = "leaves the frame";
 
 impl Plot {
-    /// The picture as a file of its own or for a page. Lines and markers that lie upon one another show as
-    /// rims; lines without markers are thinned to what pixels can show.
+    /// The picture as a file of its own or for a page. Covered lines and markers show as rims; lines without
+    /// markers are thinned to the resolution of pixels.
     #[must_use]
     pub fn svg(&self) -> String {
         draw(self)

@@ -1,4 +1,4 @@
-//! A line on its way out of the frame.
+//! A line that leaves the frame.
 
 /// Place as shares of the frame: to the right, and upwards.
 type Place = (f64, f64);

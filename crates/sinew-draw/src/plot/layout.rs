@@ -136,7 +136,7 @@ impl Layout {
         }
     }
 
-    /// The place of a point in shares of the frame; none where it cannot be shown.
+    /// The place of a point in shares of the frame; none if it cannot be shown.
     pub(super) fn shares(&self, point: &Point) -> Option<(f64, f64)> {
         let (x, y) = (self.x.share(point.x), self.y.share(point.y));
         let share = |middle: f64| (self.frame.bottom() - middle) / self.frame.height;

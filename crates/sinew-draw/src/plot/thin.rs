@@ -1,4 +1,4 @@
-//! Long lines, thinned to what a picture can show.
+//! Long lines, thinned to the resolution of a picture.
 
 /// A line in pixels of which, among neighbours in the same column of pixels, only the first, the lowest, the
 /// highest and the last are kept: it looks the same.

@@ -76,7 +76,7 @@ pub(super) fn edges(bounds: [[f64; 3]; 2]) -> (Vec<Edge>, Vec<Edge>) {
         })
 }
 
-/// The box that a picture has to hold.
+/// The box that a picture has to contain.
 #[derive(Debug)]
 pub(super) struct Extent {
     low: (f64, f64),

@@ -8,7 +8,7 @@ use crate::style::{Colour, Dash};
 /// A colour: of the data, or one that follows the page.
 #[derive(Clone, Copy, Debug)]
 pub enum Paint {
-    /// A colour that means something, the same on light and dark pages.
+    /// A colour with a meaning, the same on light and dark pages.
     Data(Colour),
     /// The page.
     Paper,

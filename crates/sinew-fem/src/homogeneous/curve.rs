@@ -32,7 +32,7 @@ pub struct LoadState {
     pub nominal: f64,
     /// Nominal stress (Pa) along the second axis on the face across it.
     pub nominal_across: f64,
-    /// Cauchy stress (Pa) where the nominal one is `nominal`: on faces as they are deformed.
+    /// Cauchy stress (Pa) at the nominal stress `nominal`: on deformed faces.
     pub cauchy: f64,
     /// J, the ratio of volumes.
     pub volume_ratio: f64,
@@ -40,7 +40,7 @@ pub struct LoadState {
     pub is_stable: bool,
 }
 
-/// An end of the stable range about rest, and what else happens on that side.
+/// An end of the stable range about rest, with other limits on that side.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct End {
     /// The last stable amount, if the curve continues beyond it.
@@ -56,7 +56,7 @@ pub struct End {
 const STEP: f64 = 0.005;
 /// The most steps to one side, at which a stretch is 5e-5 or 2e4: no step of a logarithm leads to a stretch of 0 or less.
 const STEPS: usize = 2000;
-/// Halvings of the way to the next state before the curve ends.
+/// Halvings of the step to the next state before the curve ends.
 const HALVINGS: u32 = 12;
 /// Halvings by which the limit of stability is found.
 const BISECTIONS: usize = 40;
@@ -202,7 +202,7 @@ impl Loaded<'_> {
         None
     }
 
-    /// The free strains at an amount, by way of states between it and the last one where it cannot be reached at once.
+    /// The free strains at an amount, through states between it and the last one if it cannot be reached directly.
     fn follow(&self, last: &Found, before: Option<&Found>, amount: f64) -> Option<DVector<f64>> {
         let ahead = before.and_then(|before| {
             let share = (amount - last.amount) / (last.amount - before.amount);

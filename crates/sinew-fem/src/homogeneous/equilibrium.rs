@@ -62,8 +62,7 @@ impl Loaded<'_> {
         slopes
     }
 
-    /// Newton's method with shorter steps where the whole one does not bring the stresses down; `None` where it finds
-    /// no equilibrium.
+    /// Newton's method with a line search on the stresses; `None` if it finds no equilibrium.
     pub(super) fn solve(&self, amount: f64, guess: &DVector<f64>) -> Option<DVector<f64>> {
         let mut free = guess.clone();
         let mut at = self.gradient(amount, &free);

@@ -9,7 +9,7 @@ pub enum Load {
     Uniaxial,
     /// A sheet that is stretched alike along the first and the second axis.
     Equibiaxial,
-    /// A wide sheet that is stretched along the first axis and held along the second: pure shear.
+    /// A wide sheet that is stretched along the first axis, with constant length along the second: pure shear.
     Planar,
     /// `F = I + g e1 (x) e2`.
     SimpleShear,
@@ -64,7 +64,7 @@ impl Load {
         }
     }
 
-    /// The gradient of the displacement in the axes of the load, with 0 where it is free.
+    /// The gradient of the displacement in the axes of the load, with 0 for free components.
     pub(super) fn prescribed(self, amount: f64) -> [[f64; 3]; 3] {
         let along = amount - self.rest();
         let mut h = [[0.0; 3]; 3];

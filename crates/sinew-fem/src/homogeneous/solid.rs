@@ -8,13 +8,13 @@ use crate::tetra;
 use crate::tissue::Direction;
 use crate::{Law, Region};
 
-/// The material of a region at a point, by its moduli as they are stated: instantaneous or long-term ones where stress
+/// The material of a region at a point, with its moduli as stated: instantaneous or long-term ones if stress
 /// relaxes.
 #[derive(Clone, Debug)]
 pub struct Solid {
     matrix: Matrix,
     fibres: Vec<(Fibres, [f64; 3])>,
-    /// The material's axes by rows, where its law has some that are not those of coordinates.
+    /// The material's axes by rows, if its law has axes other than those of coordinates.
     axes: Option<Tensor<f64>>,
 }
 
@@ -104,7 +104,7 @@ impl Solid {
         }
     }
 
-    /// First Piola-Kirchhoff stress (Pa) by the gradient of the displacement; `None` where the law is not defined.
+    /// First Piola-Kirchhoff stress (Pa) by the gradient of the displacement; `None` if the law is not defined.
     pub(super) fn stress(&self, h: Tensor<f64>) -> Option<Tensor<f64>> {
         let deformation = Deformation::of(h);
         let isotropic = match &self.matrix {

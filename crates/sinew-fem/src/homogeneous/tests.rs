@@ -1,4 +1,4 @@
-//! Curves beside closed forms and solutions by other ways.
+//! Comparison of curves with closed forms and independent solutions.
 
 use super::*;
 use crate::hyperelastic::fibres::{Fibres, Stiffening};
@@ -30,7 +30,7 @@ fn with_fibres(mut region: Region, kind: Stiffening, direction: [f64; 3]) -> Reg
     region
 }
 
-/// Treloar, The Physics of Rubber Elasticity (1975), chapter 5; what is left is compressibility, some mu/lambda.
+/// Treloar, The Physics of Rubber Elasticity (1975), chapter 5; the difference is compressibility, some mu/lambda.
 #[test]
 fn a_nearly_incompressible_neo_hookean_body_has_the_curves_of_rubber() {
     let (mu, nu) = (1000.0, 0.499_999_9);
@@ -250,7 +250,7 @@ fn fibres_across_a_shear_stretch_one_way() {
     assert!(error(&curve, formula) < 1e-12);
 }
 
-/// No work is done by what is free or held, so the nominal stress is the slope of the energy of all states.
+/// Free and fixed components do no work, so the nominal stress is the slope of the energy of all states.
 #[test]
 fn oblique_fibres_are_pulled_at_the_least_energy() {
     let kind = Stiffening::Exponential {

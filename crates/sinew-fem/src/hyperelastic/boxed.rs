@@ -31,7 +31,7 @@ pub trait PointLaw: Debug + Send + Sync {
         None
     }
 
-    /// A number above 0 where the law is defined, J aside ([`HyperelasticLaw::margin`]).
+    /// A number above 0 if the law is defined, J aside ([`HyperelasticLaw::margin`]).
     fn margin(&self, _h: Tensor<f64>) -> f64 {
         1.0
     }

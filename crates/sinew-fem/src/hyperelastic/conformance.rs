@@ -73,7 +73,7 @@ use super::tensor::Tensor;
 ///
 /// # Panics
 ///
-/// Where one fails, with what was expected.
+/// If one fails, with the expected result.
 pub fn check<L: HyperelasticLaw>(law: L) {
     at_rest_there_is_no_stress_and_no_energy(law);
     match L::HAS_AXES {
@@ -458,7 +458,7 @@ pub fn node_blocks_are_semidefinite<L: HyperelasticLaw>(law: L) {
     }
 }
 
-/// Node blocks are those of the tangent that the law says, to 1e-13 of what cancels.
+/// Node blocks are those of the law's tangent, to 1e-13 of the terms that cancel.
 pub fn node_blocks_belong_to_their_tangent<L: HyperelasticLaw>(law: L) {
     for (mut random, h) in deformations(law) {
         let at = law.at(h);
@@ -505,7 +505,7 @@ pub fn wave_moduli_are_sums_of_node_blocks<L: HyperelasticLaw>(law: L) {
     }
 }
 
-/// The stress that forces go by is the local one and that of the dilation, to 1e-13 of what cancels.
+/// The stress of force loops is the sum of the local one and that of the dilation, to 1e-13 of the terms that cancel.
 pub fn stress_of_shares_is_their_sum<L: HyperelasticLaw>(law: L) {
     for (mut random, h) in deformations(law) {
         let at = law.at(h);

@@ -37,7 +37,8 @@ impl Corotational {
         [system, cofactor.scaled(over)]
     }
 
-    /// The change of R by a change of F: `R W`, with `W S + S W = R'dF - dF'R` for a skew W. 0 where that has no solution.
+    /// The change of R by a change of F: `R W`, with `W S + S W = R'dF - dF'R` for a skew W. 0 if that has no
+    /// solution.
     #[inline(always)]
     fn rotation_change<N: Number>(at: &Point<N, Rotated<N>>, change: Tensor<N>) -> Tensor<N> {
         let rotation = at.own.rotation;

@@ -58,7 +58,7 @@ impl<N: Number> SingularValues<N> {
     }
 }
 
-/// Rotates columns P and Q so that they are orthogonal; whether they had been, in all lanes.
+/// Rotates columns P and Q so that they are orthogonal; returns true if they already were, in all lanes.
 #[inline(always)]
 fn orthogonalise<N: Number, const P: usize, const Q: usize>(
     a: &mut [[N; 3]; 3],
@@ -165,8 +165,8 @@ pub(super) fn rotation<N: Number>(gradient: Tensor<N>, volume_ratio: N) -> Tenso
 /// Lanes at most of any number.
 pub(super) const MOST_LANES: usize = 16;
 
-/// The rotations where the volume ratio is above [`FLAT`], and elsewhere those by singular values, lane by lane: rare, and long
-/// where it is inlined.
+/// The rotations of lanes with a volume ratio above [`FLAT`]; those of the others by singular values, lane by lane:
+/// rare, and too long to be inlined.
 #[cold]
 #[inline(never)]
 fn mended<N: Number>(gradient: Tensor<N>, rotation: Tensor<N>, volume_ratio: N) -> Tensor<N> {

@@ -50,7 +50,7 @@ pub struct FibrePoint<N> {
     stretch: N,
     /// First and second derivative of the energy by X.
     derivatives: [N; 2],
-    /// The second derivative that it has, or would have as soon as it is pulled.
+    /// The second derivative, or that in tension if it is idle.
     second_when_pulled: N,
     /// The second derivative at rest on the side of tension, and 0 in compression.
     viscosity: N,
@@ -66,7 +66,7 @@ impl Fibres {
     ///
     /// # Errors
     ///
-    /// [`ParameterError`] where a number is outside its range.
+    /// [`ParameterError`] if a number is outside its range.
     pub fn new(stiffening: Stiffening) -> Result<Self, ParameterError> {
         let modulus = "a finite modulus above 0 Pa";
         match stiffening {
@@ -180,7 +180,7 @@ impl Fibres {
         }
     }
 
-    /// Half of dX/dF at rest, where X is freed of volume change as far as it is so.
+    /// Half of dX/dF at rest, X being the invariant, isochoric or not as the law takes it.
     #[must_use]
     pub(crate) fn half_slope_at_rest(&self, direction: [f64; 3]) -> Tensor<f64> {
         self.at(&Deformation::of(Tensor::zero()), direction).slope
@@ -192,7 +192,8 @@ impl Fibres {
         self.split
     }
 
-    /// A number that is not below 0 where the energy is of a size to compute with: an exponential grows beyond all numbers.
+    /// A number that is not below 0 if the energy is of a size to compute with: an exponential grows beyond all
+    /// numbers.
     #[inline(always)]
     pub(crate) fn margin<N: Number>(&self, at: &FibrePoint<N>) -> N {
         let most = N::of(largest_lawful_exponent::<N>());
@@ -251,8 +252,8 @@ impl Fibres {
         turned.scaled(N::of(2.0) * first).plus(along, at.slope)
     }
 
-    /// A positive semidefinite tangent: the exact one, or where the invariants are freed of volume change only what the second derivative of the energy
-    /// brings.
+    /// A positive semidefinite tangent: the exact one, or for isochoric invariants only the part from the second
+    /// derivative of the energy.
     #[inline(always)]
     pub(crate) fn semidefinite_tangent<N: Number>(
         &self,
@@ -307,7 +308,7 @@ impl Fibres {
 }
 
 impl<N: Number> FibrePoint<N> {
-    /// The same with the stiffness and the viscosity of fibres in tension where they are idle: no state near this one is stiffer by much.
+    /// The same with idle fibres as stiff and as viscous as in tension: no state near this one is stiffer by much.
     #[must_use]
     pub(crate) fn as_if_pulled(self) -> Self {
         let [first, _] = self.derivatives;

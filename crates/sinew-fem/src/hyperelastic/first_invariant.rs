@@ -80,8 +80,8 @@ pub(super) fn tangent<N: Number>(
         .plus(curvature * twice * twice * half.contracted(change), half)
 }
 
-/// A node's own block of [`tangent`] and of `of_volume/2 (J - 1)^2`, exact and positive semidefinite where no slope is
-/// below 0: the gradient of i is an outer product in it, and i is rank-one convex.
+/// A node's own block of [`tangent`] and of `of_volume/2 (J - 1)^2`, exact and, unless a slope is below 0, positive
+/// semidefinite: the gradient of i is an outer product in it, and i is rank-one convex.
 #[inline(always)]
 pub(super) fn node_block<N: Number>(
     deformation: &Deformation<N>,

@@ -1,4 +1,4 @@
-//! Laws of large deformation and what every one of them can tell.
+//! Laws of large deformation and the interface of a law.
 
 use std::fmt::Debug;
 use std::ops::Deref;
@@ -36,7 +36,7 @@ pub trait HyperelasticLaw: Copy + Debug + Send + Sync {
     const MEANING: &'static str;
     /// Parameters, each a key of scenes.
     const PARAMETERS: &'static [LawParameter];
-    /// Warning to whoever takes the law in a scene, and advice; `None` for most.
+    /// Warning for scenes with the law, and advice; `None` for most.
     const WEAKNESS: Option<[&'static str; 2]> = None;
     /// True if the law overrides [`Self::dilation`], so that its viscosity takes that measure of volume in place of
     /// `J - 1`.
@@ -106,7 +106,7 @@ pub trait HyperelasticLaw: Copy + Debug + Send + Sync {
     /// The change of the local stress by a change of F.
     fn tangent<N: Number>(&self, at: &Point<N, Self::Own<N>>, change: Tensor<N>) -> Tensor<N>;
 
-    /// [`Self::tangent`] with rotations held fast, which is positive semidefinite; for laws that have a rotation.
+    /// [`Self::tangent`] at constant rotations, which is positive semidefinite; for laws that have a rotation.
     #[inline(always)]
     fn frozen_tangent<N: Number>(
         &self,
@@ -195,7 +195,7 @@ pub trait HyperelasticLaw: Copy + Debug + Send + Sync {
         None
     }
 
-    /// A number above 0 where the law is defined, elsewhere 0 or below, or not a number; that J is above 0 need not
+    /// A number above 0 if the law is defined, elsewhere 0 or below, or not a number; that J is above 0 need not
     /// show in it. It goes with [`Self::limit`].
     #[inline(always)]
     fn margin<N: Number>(&self, _at: &Point<N, Self::Own<N>>) -> N {
@@ -240,7 +240,7 @@ pub trait HyperelasticLaw: Copy + Debug + Send + Sync {
             .plus(bulk.stress, self.dilation_gradient(at))
     }
 
-    /// `share` times the local stress and `bulk` (Pa) times d theta/dF, the sum that forces go by.
+    /// `share` times the local stress and `bulk` (Pa) times d theta/dF, the sum used by force loops.
     #[inline(always)]
     fn stress_of<N: Number>(&self, at: &Point<N, Self::Own<N>>, share: N, bulk: N) -> Tensor<N> {
         let local = self.stress(at).scaled(share);
@@ -261,7 +261,7 @@ pub trait HyperelasticLaw: Copy + Debug + Send + Sync {
             .plus(bulk.modulus * gradient.contracted(change), gradient)
     }
 
-    /// [`Self::tangent_with`] with rotations held fast; for laws that have a rotation.
+    /// [`Self::tangent_with`] at constant rotations; for laws that have a rotation.
     #[inline(always)]
     fn frozen_tangent_with<N: Number>(
         &self,
@@ -299,7 +299,7 @@ impl<N, Own> Deref for Point<N, Own> {
 pub struct Bulk<N> {
     /// First derivative by theta (Pa): `lambda theta`, where theta may be the mean over a patch.
     pub stress: N,
-    /// Second derivative by theta of this very tetrahedron (Pa): lambda, or 0 where the mean's share is added elsewhere.
+    /// Second derivative by theta of this very tetrahedron (Pa): lambda, or 0 if the mean's share is added elsewhere.
     pub modulus: N,
 }
 
@@ -321,7 +321,7 @@ impl<N: Number> Bulk<N> {
 pub enum NodeBlock {
     /// The exact one, whose own blocks are positive semidefinite without a correction.
     Exact,
-    /// The exact one and something positive semidefinite, where that is needed.
+    /// The exact one plus a positive semidefinite term, if that is needed.
     Majorant,
 }
 

@@ -44,11 +44,11 @@ pub(crate) trait LawAt<N: Number> {
 
     fn frozen_tangent_with(&self, bulk: Bulk<N>, change: Tensor<N>) -> Option<Tensor<N>>;
 
-    /// Replaces changes of F by those of the stress, all with one call: [`HyperelasticLaw::tangent_with`], or the frozen
-    /// one of a law that has it.
+    /// Replaces changes of F by changes of the stress, all with one call: [`HyperelasticLaw::tangent_with`], or the
+    /// frozen one of a law that has it.
     fn tangents_with(&self, bulk: Bulk<N>, is_exact: bool, changes: &mut [Tensor<N>]);
 
-    /// True if the law has a tangent with rotations held fast.
+    /// True if the law has a tangent at constant rotations.
     fn freezes(&self) -> bool;
 
     fn node_block(&self, bulk: Bulk<N>, gradient: [N; 3]) -> Tensor<N>;

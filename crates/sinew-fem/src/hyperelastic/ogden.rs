@@ -243,8 +243,8 @@ impl HyperelasticLaw for Ogden {
     }
 
     /// In the axes, with `m_ab = F v_a . dF v_b`, `o_a = 1/l_a^2` and tau's slopes A by the logarithms of stretches:
-    /// `o_a (A_ab o_b m_bb - tau_a o_a m_aa)` on the diagonal and `o_a D m_ab + K o_a o_b m_ba` beside it, where D is the
-    /// difference of tau over that of l^2, and `K = ((l_a^2 + l_b^2) D - tau_a - tau_b)/2`.
+    /// `o_a (A_ab o_b m_bb - tau_a o_a m_aa)` on the diagonal and `o_a D m_ab + K o_a o_b m_ba` off it, where D is
+    /// the difference of tau over that of l^2, and `K = ((l_a^2 + l_b^2) D - tau_a - tau_b)/2`.
     #[inline(always)]
     fn tangent<N: Number>(&self, at: &Point<N, Spectral<N>>, change: Tensor<N>) -> Tensor<N> {
         let own = &at.own;

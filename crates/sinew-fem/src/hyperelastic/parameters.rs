@@ -91,7 +91,7 @@ pub enum Presence {
     Required,
     /// Exactly one of these parameters is given.
     OneOf(&'static [&'static str]),
-    /// These numbers: one, or those of a list.
+    /// A number, or several as a list.
     Default(&'static [f64]),
 }
 
@@ -226,7 +226,7 @@ impl LawParameter {
         column.map_or(self.range, |column| column.range)
     }
 
-    /// Values as they are written: a number, a list, or a list of lists.
+    /// Text of values: a number, a list, or a list of lists.
     #[must_use]
     pub fn written(&self, values: &[f64]) -> String {
         match (self.list, values) {
@@ -350,7 +350,7 @@ impl Parameters {
         values.map(|(name, value)| (*name, value.as_slice()))
     }
 
-    /// Young's modulus (Pa) and Poisson's ratio as they are stated; `None` for one that is not.
+    /// Young's modulus (Pa) and Poisson's ratio as stated; `None` for one that is not.
     pub(crate) fn stated(&self) -> [Option<f64>; 2] {
         let names = [LawParameter::YOUNGS_MODULUS, LawParameter::POISSONS_RATIO];
         names.map(|parameter| self.number(parameter.name))

@@ -15,7 +15,7 @@ use super::tensor::Tensor;
 pub(crate) struct Linearised<'a, N, A: ?Sized> {
     at: &'a A,
     bulk: Bulk<N>,
-    /// `None` where the law's own form serves.
+    /// `None` if the law's own form serves.
     projection: Option<Projected<N>>,
     is_exact: bool,
 }
@@ -58,7 +58,7 @@ impl<'a, N: Number, A: LawAt<N> + ?Sized> Linearised<'a, N, A> {
         frozen.unwrap_or_else(|| self.at.tangent_with(self.bulk, change))
     }
 
-    /// Replaces changes of F by those of the stress.
+    /// Replaces changes of F by changes of the stress.
     #[inline(always)]
     pub(crate) fn on_all(&self, changes: &mut [Tensor<N>]) {
         match &self.projection {

@@ -34,7 +34,7 @@ pub struct TermStep {
 ///
 /// # Errors
 ///
-/// [`ParameterError`] where a share or a time is not above 0, or where nothing of the stress would stay.
+/// [`ParameterError`] if a share or a time is not above 0, or where nothing of the stress would stay.
 pub fn check(terms: &[Term]) -> Result<(), ParameterError> {
     for term in terms {
         let expected = "a finite number above 0";
@@ -86,7 +86,7 @@ impl Term {
 }
 
 impl TermStep {
-    /// `e^-x`, x = dt/tau: what is left of the memory.
+    /// `e^-x`, x = dt/tau: the factor by which a memory decays in a step.
     #[inline(always)]
     #[must_use]
     pub fn decay(&self) -> f64 {
@@ -110,7 +110,7 @@ impl TermStep {
     }
 }
 
-/// The stress: what stays of S0, and the memories of all terms.
+/// The stress: the long-term part of S0, and the memories of all terms.
 #[inline(always)]
 #[must_use]
 pub fn stress<N: Number>(

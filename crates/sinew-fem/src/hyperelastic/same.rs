@@ -3,7 +3,7 @@
 use super::law::HyperelasticLaw;
 use super::samples::sample_deformations;
 
-/// Holds the local energy, stress and tangent of a law against those of another with the same constants, at all
+/// Compares the local energy, stress and tangent of a law with those of another with the same constants, at all
 /// samples of the first.
 pub(super) fn are_one_law<A: HyperelasticLaw, B: HyperelasticLaw>(
     law: A,

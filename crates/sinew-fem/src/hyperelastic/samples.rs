@@ -73,8 +73,8 @@ pub(super) fn deformations<L: HyperelasticLaw>(
 }
 
 /// 200 pairs of a displacement gradient and a change of it, at which a law can be compared with another program: J from .2 to 3, and
-/// from -3 to -.2 in every second one if the law is defined for inverted tetrahedra. Those of a law with a limit are
-/// smaller where they would come near to it.
+/// from -3 to -.2 in every second one if the law is defined for inverted tetrahedra. They are reduced near the limit
+/// of a law that has one.
 pub fn sample_deformations<L: HyperelasticLaw>(law: L) -> impl Iterator<Item = [Tensor<f64>; 2]> {
     deformations(law).map(|(mut random, h)| [h, random.tensor()])
 }

@@ -5,8 +5,8 @@ use sinew_sparse::simd::Number;
 use super::decomposition::SingularValues;
 use super::tensor::Tensor;
 
-/// [`semidefinite`] with what that loses by rounding where negative eigenvalues are the larger ones: the own block of a
-/// node for a tangent that may be indefinite.
+/// [`semidefinite`] plus its rounding error, which matters if negative eigenvalues are the larger ones: the own block
+/// of a node for a tangent that may be indefinite.
 #[inline(always)]
 pub(super) fn surely_semidefinite<N: Number>(block: Tensor<N>) -> Tensor<N> {
     let rounding = block.largest() * N::of(8.0 * N::EPSILON);

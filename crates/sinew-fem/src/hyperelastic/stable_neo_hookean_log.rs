@@ -28,7 +28,7 @@ impl StableNeoHookeanLog {
         4.0 / 3.0 * self.mu
     }
 
-    /// The part of `lambda' (J - 1)` that lambda does not bring (Pa).
+    /// The part of `lambda' (J - 1)` not due to lambda (Pa).
     #[inline(always)]
     fn rest_of_lambda(&self) -> f64 {
         5.0 / 6.0 * self.mu

@@ -6,7 +6,7 @@ use super::deformation::Deformation;
 use super::powers::{NEAR, artanh_share, ln_1p};
 use super::tensor::{Tensor, add, dot, scale};
 
-/// Principal stretches of a deformation, by what is small near rest.
+/// Principal stretches of a deformation, by quantities that are small near rest.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Stretches<N> {
     /// Axes in the material: orthogonal unit vectors, in no order and of either hand.
@@ -25,8 +25,8 @@ pub(super) struct Stretches<N> {
 const SWEEPS: usize = 12;
 
 impl<N: Number> Stretches<N> {
-    /// The stretches of a deformation: rotations after Jacobi turn Green's strain into its axes, and what a strain is
-    /// follows from the displacement along its axis, so that neither a small one nor a small stretch loses digits.
+    /// The stretches of a deformation: Jacobi rotations diagonalise Green's strain, and each strain follows from the
+    /// displacement along its axis, so that neither a small one nor a small stretch loses digits.
     #[inline(always)]
     pub(super) fn of(deformation: &Deformation<N>) -> Self {
         let axes = axes_of(deformation.twice_green_strain());
@@ -106,7 +106,7 @@ fn axes_of<N: Number>(tensor: Tensor<N>) -> [[N; 3]; 3] {
     turning.axes
 }
 
-/// A symmetric tensor on its way to a diagonal one.
+/// A symmetric tensor during diagonalisation.
 struct Turning<N> {
     diagonal: [N; 3],
     /// Entries of the axes (0, 1), (0, 2) and (1, 2).

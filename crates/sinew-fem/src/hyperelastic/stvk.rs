@@ -79,7 +79,7 @@ impl HyperelasticLaw for Stvk {
         change
     }
 
-    /// `(g.S g) I + mu (|g|^2 F F' + F g (F g)') + modulus F g (F g)'` with the part of the stress S left out where it is below 0.
+    /// `(g.S g) I + mu (|g|^2 F F' + F g (F g)') + modulus F g (F g)'` without the negative part of the stress S.
     #[inline(always)]
     fn node_block<N: Number>(
         &self,

@@ -20,7 +20,7 @@ use super::volume;
 /// volume after Flory (Transactions of the Faraday Society 57, 1961).
 ///
 /// For skin, breast and other soft tissue whose stress grows exponentially with stretch. Not for small motions alone,
-/// where its part in I2 takes away half of the shear modulus that the other brings, nor where elements may invert:
+/// where its part in I2 takes away half of the shear modulus of the other part, nor where elements may invert:
 /// refused at J <= 0, and where the exponential comes near the end of the numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VerondaWestmann {

@@ -1,4 +1,4 @@
-//! The viscosity of a law: what stiffness damping multiplies.
+//! The viscosity of a law, which the factor of stiffness damping multiplies.
 
 use sinew_sparse::simd::Number;
 

@@ -1,4 +1,4 @@
-//! The energy of volume, `bulk/2 (J - 1)^2`, beside one without change of volume.
+//! The volumetric energy `bulk/2 (J - 1)^2`, added to an isochoric one.
 
 use sinew_sparse::simd::Number;
 

@@ -1,4 +1,4 @@
-//! The energy of what a split touches.
+//! The energy of the tetrahedra that a split touches.
 
 use sinew_core::Energy;
 use sinew_cutting::CuttableBody;

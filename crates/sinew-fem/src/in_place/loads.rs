@@ -11,7 +11,7 @@ use crate::loads::{Spread, share_of_corner};
 use crate::supports::HeldLoad;
 use crate::{LoadKind, Problem};
 
-/// Loads by what they are shared out over, so that their shares at a few nodes can be summed up again.
+/// Loads with the nodes, triangles or tetrahedra they act on, so that their shares at a few nodes can be recomputed.
 #[derive(Debug)]
 pub(super) struct LoadsInPlace {
     /// Triangles of each load, in the order of the problem; `None` for forces, which stay with their nodes.

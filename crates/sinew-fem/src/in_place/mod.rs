@@ -25,8 +25,8 @@ use neighbours::Neighbours;
 use rows::{Gathering, Source};
 use touched::Touched;
 
-/// State for following splits, beside the model: it is built once, with space for a tenth more nodes, and allocates
-/// nothing until that is used up.
+/// State for following splits, stored next to the model: it is built once, with memory for a tenth more nodes, and
+/// allocates nothing until that is used up.
 ///
 /// Nodes and tetrahedra have the same numbers in the body and in the model, so nothing may have been removed.
 #[derive(Debug)]
@@ -54,8 +54,8 @@ pub(crate) struct ModelParts<'a> {
 }
 
 impl InPlace {
-    /// For a problem on a mesh, uncut and as cuts without removals left it, whose tetrahedra have these densities (kg/m^3); `None` where some
-    /// load cannot follow.
+    /// For a problem on a mesh, uncut and as cuts without removals left it, whose tetrahedra have these densities
+    /// (kg/m^3); `None` if some load cannot follow.
     pub(crate) fn new(
         problem: &Problem,
         uncut: &TetMesh,
@@ -81,7 +81,7 @@ impl InPlace {
         mesh.follow_split(&split_of(body), &self.follower);
     }
 
-    /// Finds the nodes that the last stroke of a body touched, which had `nodes_before` nodes before.
+    /// Finds the nodes that the last stroke of a body touched; the body had `nodes_before` nodes before it.
     pub(crate) fn look(&mut self, body: &CuttableBody, nodes_before: usize) {
         self.touched.find(body, body.last_stroke(), nodes_before);
     }

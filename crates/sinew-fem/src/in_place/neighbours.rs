@@ -6,7 +6,7 @@ use sinew_mesh::TetMesh;
 use crate::error::FemError;
 use crate::graph::Graph;
 
-/// Numbers of neighbours of all nodes, held ones included, by which edges are counted.
+/// Numbers of neighbours of all nodes, fixed ones included, by which edges are counted.
 #[derive(Debug)]
 pub(super) struct Neighbours {
     counts: Vec<u32>,

@@ -42,7 +42,7 @@ struct Row {
     order: Vec<u32>,
 }
 
-/// The body that rows are gathered from, as it is after a split.
+/// The body after a split, from which rows are gathered.
 pub(super) struct Source<'a> {
     pub(super) body: &'a CuttableBody,
     pub(super) mesh: &'a TetMesh,
@@ -84,7 +84,7 @@ impl Row {
         &mut self.blocks[place]
     }
 
-    /// Clears what couples components of a cell that are held.
+    /// Clears the coupling of the fixed components of a cell.
     fn clear_held(&mut self, cell: u32, pinned: &[bool]) {
         for (column, block) in self.columns.iter().zip(&mut self.blocks) {
             for (k, entry) in block.iter_mut().enumerate() {
@@ -179,7 +179,7 @@ impl Gathering {
         Ok(())
     }
 
-    /// Takes the blocks of a cell's row that a split leaves as they are.
+    /// Copies the blocks of a cell's row that a split does not change.
     fn keep(&mut self, of: &Source<'_>, cell: u32, touched: &Touched) {
         for (column, block) in of.stiffness.row_blocks(cell as usize) {
             if !touched.is_split(of.cells.nodes[column])
@@ -191,7 +191,7 @@ impl Gathering {
         }
     }
 
-    /// Adds what couples a node to those that were split.
+    /// Adds the coupling of a node to the nodes that were split.
     fn add_split(&mut self, of: &Source<'_>, node: u32, touched: &Touched) -> Result<(), FemError> {
         for tet in of.tets_at(node) {
             let nodes = of.body.tets()[tet as usize];

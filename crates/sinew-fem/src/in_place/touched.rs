@@ -8,7 +8,7 @@ const BESIDE: u8 = 1;
 /// The node was split, or is a copy.
 const SPLIT: u8 = 2;
 
-/// The node, or what it is a copy of, was moved.
+/// The node, or its original, was moved.
 const MOVED: u8 = 4;
 
 /// A tetrahedron at the node has a node that was moved.

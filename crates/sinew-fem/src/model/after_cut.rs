@@ -45,7 +45,7 @@ impl Model {
         self.body.smoothing.is_empty()
     }
 
-    /// True if some component of a node (0-based) is held, or moved from outside.
+    /// True if some component of a node (0-based) is fixed, or moved from outside.
     pub(crate) fn is_supported(&self, node: u32) -> bool {
         self.body.cells.held_nodes.binary_search(&node).is_ok()
     }
@@ -67,11 +67,11 @@ impl Model {
         Ok(regions.map(density).collect())
     }
 
-    /// The state of this model, whose body was cut, from that of the model `before`: copies of nodes take displacement and velocity
-    /// over, and moved nodes the mean at their new place.
+    /// The state of this model, whose body was cut, from that of the model `before`: copies of nodes get displacement
+    /// and velocity of their originals, and moved nodes the mean at their new place.
     ///
-    /// An acceleration at the displacement's time is left out, since forces on both sides of a cut are others. So are forces of
-    /// contact: what touches the body has other nodes to meet.
+    /// Neither a stored acceleration nor contact forces are transferred, since the forces on both sides of a cut and
+    /// the contact nodes have changed.
     ///
     /// # Errors
     /// [`CutStateError`].

@@ -8,11 +8,11 @@ use super::field_error::FieldError;
 use crate::large::{Past, Wanted, fill};
 
 impl Model {
-    /// The power (W) that damping takes, `v'D(u) v` over all nodes, held and moved ones included, with their displacements (m) and velocities (m/s); never
-    /// below 0 but for rounding, and not a number where a law has no meaning.
+    /// The power (W) that damping dissipates, `v'D(u) v` over all nodes, fixed and moved ones included, with their
+    /// displacements (m) and velocities (m/s); never below 0 but for rounding, and NaN outside a law's domain.
     ///
-    /// With w, the way between two instants over its time, and the displacement half way, it is the mean power of what is damped: Green's strain
-    /// changes by `sym(F'dF)` at the middle, exactly.
+    /// With the displacement between two instants over its time as velocity, and the displacement half way, it is the
+    /// mean power of the damped strain: Green's strain changes by `sym(F'dF)` at the middle, exactly.
     ///
     /// # Errors
     /// [`FieldError::Length`] unless both have one entry for each node of the mesh.

@@ -11,9 +11,10 @@ use crate::{stress, tetra};
 pub struct DeformedTet {
     /// The strain, see [`Model::strain`].
     pub strain: [f64; 6],
-    /// The stress (Pa) in the same order, see [`Model::stress`]; `None` where it is made of springs.
+    /// The stress (Pa) in the same order, see [`Model::stress`]; `None` for a network of springs.
     pub stress: Option<[f64; 6]>,
-    /// The angle of its rotation (rad); where it is linear as far as that is small, half of the curl of the displacement.
+    /// The angle of its rotation (rad); for a linear law, half of the curl of the displacement, valid for small
+    /// rotations.
     pub rotation: f64,
     /// True if its law is one of large deformation.
     pub is_hyperelastic: bool,

@@ -1,4 +1,4 @@
-//! Bounds of frequencies and of K by its blocks that hold after any cut.
+//! Bounds of frequencies and of K by its blocks that stay valid after any cut.
 
 use nalgebra::{Matrix3, SMatrix};
 use sinew_core::ElementBounds;
@@ -11,8 +11,8 @@ use crate::tetra;
 const ROUNDING: f64 = 1e-12;
 
 impl Model {
-    /// Bounds by single tetrahedra, which hold after any cut along their faces; `None` where a region is hyperelastic,
-    /// so that its stiffness changes, or averages strain over tetrahedra that a cut separates. Checks each tetrahedron.
+    /// Bounds by single tetrahedra, which stay valid after any cut along their faces. Checks each tetrahedron. `None` if a
+    /// region is hyperelastic, so that its stiffness changes, or averages strain over tetrahedra that a cut separates.
     #[must_use]
     pub fn element_bounds(&self) -> Option<ElementBounds> {
         if self.large.is_some() || !self.body.smoothing.is_empty() {
@@ -47,7 +47,7 @@ impl Model {
     }
 
     /// The largest frequency (1/s) at which a tetrahedron (0-based) with these vertices (m) would swing its own mass, at small strain. Where
-    /// density differs within a region, the least one counts. Infinite where the vertices lie in one plane.
+    /// density differs within a region, the least one counts. Infinite if the vertices lie in one plane.
     #[must_use]
     pub fn tet_frequency(&self, tet: usize, vertices: &[[f64; 3]; 4]) -> f64 {
         let region = self.region_of[tet] as usize;
@@ -87,7 +87,7 @@ impl TetFrequencies {
 type ElementMatrix = SMatrix<f64, 12, 12>;
 
 /// The matrix of a tetrahedron, scaled from both sides by the inverse roots of its blocks: its eigenvalues are those of `blockdiag(K)^-1 K`.
-/// `None` where a block is singular.
+/// `None` if a block is singular.
 fn by_blocks(matrix: &[f64; 144]) -> Option<ElementMatrix> {
     let mut scaled = ElementMatrix::from_row_slice(matrix);
     for vertex in 0..4 {

@@ -18,7 +18,7 @@ use crate::following::FollowingPressure;
 use crate::large::{Precision, SharedForces};
 use crate::motion::{Field, Motions};
 
-/// Marks what is not there.
+/// Marks an absent entry.
 const NONE: u32 = u32::MAX;
 
 impl ElementForces for Model {
@@ -66,14 +66,14 @@ struct Position {
     node: u32,
     /// Its place among the sums of forces.
     sum: u32,
-    /// Components that are held.
+    /// Fixed components.
     pinned: [bool; 3],
 }
 
 /// The sweep over the tetrahedra of hyperelastic regions.
 #[derive(Debug)]
 struct Sweep<T> {
-    /// `None` where there are no such regions.
+    /// `None` without such regions.
     forces: Option<SharedForces<T>>,
     parts: usize,
     positions: Vec<Position>,
@@ -82,7 +82,7 @@ struct Sweep<T> {
     motions: Motions,
     /// Nodes that are moved, with the position of those that are cells.
     moved: Vec<(u32, u32)>,
-    /// Displacement of cells (m) that motions add, by position; empty where they add nothing.
+    /// Displacement of cells (m) that motions add, by position; empty if they add none.
     offsets: Vec<[T; 3]>,
     following: Following,
 }
@@ -93,7 +93,7 @@ struct Following {
     pressures: Arc<[FollowingPressure]>,
     /// Their factors at the time of the sweep.
     factors: Vec<f64>,
-    /// The position of each mesh node; empty where there are no pressures.
+    /// The position of each mesh node; empty without pressures.
     position: Vec<u32>,
     /// Forces (N) by position, beyond those on the surface at rest.
     forces: Shared<[f64; 3]>,

@@ -1,4 +1,4 @@
-//! Energies and loads over all nodes, held and moved ones included.
+//! Energies and loads over all nodes, fixed and moved ones included.
 
 use sinew_core::{Energy, LoadTime, System};
 
@@ -9,7 +9,8 @@ use crate::large::{Past, fill};
 use crate::parts::WholePart;
 
 impl Model {
-    /// The energy (J) of the hyperelastic regions, of stress that relaxes what stays for a long time; not a number where a law has no meaning.
+    /// The energy (J) of the hyperelastic regions, with the long-term part of stress that relaxes; NaN outside a
+    /// law's domain.
     pub(super) fn large_energy(&self, displacement: &[[f64; 3]]) -> f64 {
         self.large.as_ref().map_or(0.0, |large| {
             large.with_scratch(|scratch| {
@@ -23,7 +24,7 @@ impl Model {
     }
 
     /// The elastic energy (J) of the body with this displacement (m) of each node of the mesh, that of elements with
-    /// held or moved nodes included; summed up element by element.
+    /// fixed or moved nodes included; summed up element by element.
     ///
     /// # Errors
     /// [`FieldError::Length`] unless `displacement` has one entry for each node of the mesh.
@@ -39,8 +40,8 @@ impl Model {
         Ok(linear + self.large_energy(displacement))
     }
 
-    /// The kinetic and elastic energy (J) of a motion at a time, as a balance of energy counts them: where parts are moved, those of held and moved nodes
-    /// included. `None` outside a law's domain.
+    /// The kinetic and elastic energy (J) of a motion at a time, as a balance of energy counts them: with moved
+    /// parts, fixed and moved nodes are included. `None` outside a law's domain.
     pub(crate) fn energy_with_supports(
         &self,
         when: LoadTime<'_>,
@@ -61,7 +62,7 @@ impl Model {
     }
 
     /// Writes the forces (N) of loads and gravity at each node of the mesh at a time (s), with these displacements (m) of the nodes
-    /// then, held components included, without those by which prescribed motions act on their neighbours.
+    /// then, fixed components included, without those by which prescribed motions act on their neighbours.
     ///
     /// # Errors
     /// [`FieldError::Length`] unless `displacement` and `out` have one entry for each node of the mesh, and [`FieldError::NoInput`] where a

@@ -64,7 +64,7 @@ impl Model {
         in_place.follow(parts, body)
     }
 
-    /// The energy (J) of what the last stroke touched.
+    /// The energy (J) of the tetrahedra that the last stroke touched.
     pub(crate) fn energy_of_touched(
         &self,
         in_place: &InPlace,

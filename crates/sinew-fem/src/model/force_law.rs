@@ -152,7 +152,7 @@ impl Model {
         }
     }
 
-    /// Adds what pressures that follow the surface do beyond those on the surface at rest.
+    /// Adds the forces of follower pressures beyond those on the surface at rest.
     fn add_following(
         &self,
         when: LoadTime<'_>,
@@ -166,7 +166,8 @@ impl Model {
         }
     }
 
-    /// Displacement of nodes at a time, with moved nodes where they are then; where their inputs are not known, at rest.
+    /// Displacement of nodes at a time, with moved nodes at their places then, or at rest if their inputs are
+    /// unknown.
     pub(super) fn displacement_of<'a>(
         &'a self,
         when: LoadTime<'_>,

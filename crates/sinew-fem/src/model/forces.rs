@@ -9,13 +9,13 @@ pub struct NodalForces {
     /// (degree of freedom, force (N)) of each component that moves and is not zero, each degree of
     /// freedom once, increasing: the `entries` of a [`sinew_core::Load`].
     pub entries: Vec<(u32, f64)>,
-    /// (node (0-based), force (N)) of each node with a force on held components, which acts directly on
+    /// (node (0-based), force (N)) of each node with a force on fixed components, which acts directly on
     /// the supports; each node once, increasing, with zero in the components that move.
     pub dropped: Vec<(u32, [f64; 3])>,
 }
 
 impl Model {
-    /// Turns forces (N) on nodes (0-based) into a load. Forces on one node add up. Held components are
+    /// Turns forces (N) on nodes (0-based) into a load. Forces on one node add up. Fixed components are
     /// dropped, and listed, so that no force moves a support.
     ///
     /// # Errors

@@ -49,7 +49,7 @@ fn roots(mesh: &TetMesh) -> Vec<u32> {
         .collect()
 }
 
-/// A part, where it has a rigid motion.
+/// A part, if it has a rigid motion.
 fn free_part(mesh: &TetMesh, cells: &Cells, nodes: &[u32]) -> Option<FreePart> {
     let place = |node: u32| mesh.points[node as usize];
     let share = 1.0 / nodes.len() as f64;

@@ -62,7 +62,7 @@ pub struct Model {
     body: Arc<Body>,
     /// Mass, damping and loads, and the stiffness of all regions that are not hyperelastic.
     operators: LinearOperators,
-    /// The hyperelastic regions; `None` where the model is linear.
+    /// The hyperelastic regions; `None` if the model is linear.
     large: Option<Arc<LargeDeformation>>,
     region_of: Vec<u32>,
     materials: Vec<Material>,
@@ -79,7 +79,7 @@ pub struct Model {
     contact: Option<Arc<dyn Contact>>,
 }
 
-/// Nodes, increasing, that are frozen, with the displacements (m) at which they are held.
+/// Frozen nodes, increasing, with their constant displacements (m).
 pub(crate) type Frozen<'a> = &'a [(u32, [f64; 3])];
 
 impl Model {
@@ -91,8 +91,9 @@ impl Model {
         Self::build_keeping(mesh, problem, None, || Arc::new(mesh.clone()))
     }
 
-    /// Assembles the problem of a body that was cut. `frozen` nodes, increasing, which the problem holds, are held at these displacements (m). A load that
-    /// falls on supports alone is none of the problem's mistakes then: what else it acted on was taken away or frozen.
+    /// Assembles the problem of a body that was cut. `frozen` nodes, increasing, which the problem fixes, get these
+    /// constant displacements (m). A load on supports alone is no error then: the rest of its nodes were removed or
+    /// frozen.
     pub(crate) fn build_after_cuts(
         mesh: &TetMesh,
         problem: &Problem,
@@ -129,7 +130,7 @@ impl Model {
     /// result is that of [`Model::build`] to the last bit.
     ///
     /// # Errors
-    /// Same as [`Model::build`], and [`Cause::OtherSupports`] where the problem holds or moves other components.
+    /// Same as [`Model::build`], and [`Cause::OtherSupports`] if the problem fixes or moves other components.
     pub fn with_problem(&self, problem: &Problem) -> Result<Self, FemError> {
         check::numbers(problem)?;
         let (mesh, body) = (&self.mesh, Arc::clone(&self.body));
@@ -272,13 +273,13 @@ impl Model {
         &self.body.cells.nodes
     }
 
-    /// The cell of a mesh node (0-based); `None` where the node is held in x, y and z.
+    /// The cell of a mesh node (0-based); `None` if the node is fixed in x, y and z.
     #[must_use]
     pub fn cell_of_node(&self, node: u32) -> Option<u32> {
         self.body.cells.of_node(node)
     }
 
-    /// True for each component that is held although its cell moves, three a cell.
+    /// Flags of components, three a cell: true for fixed components of cells that move.
     #[must_use]
     pub fn pinned(&self) -> &[bool] {
         &self.body.cells.pinned

@@ -9,9 +9,9 @@ use crate::motion::Field;
 use crate::{Course, SupportMotion};
 
 impl Model {
-    /// This model with the pull of its prescribed motions among the loads: for each course `d r(t)` the loads
-    /// `-K_fp d r(t)`, by the place where it is at the instant, and `-D_fp d r'(t)`. Mass damping acts on the velocity of the moved nodes alone, and
-    /// so is part of their reactions only.
+    /// This model with the loads of its prescribed motions: for each course `d r(t)` the loads `-K_fp d r(t)`, by the
+    /// position at the instant, and `-D_fp d r'(t)`. Mass damping acts on the velocity of the moved nodes alone, so
+    /// it is part of their reactions only.
     pub(super) fn in_motion(mut self) -> Result<Self, FemError> {
         if self.motions.is_empty() {
             return Ok(self);
@@ -47,14 +47,14 @@ impl Model {
     }
 
     /// The courses of a component (0, 1, 2 for x, y, z) of a mesh node (0-based) that is moved, or a constant one where
-    /// it was frozen; empty where the component is held at rest or free.
+    /// it was frozen; empty if the component is fixed at rest or free.
     #[must_use]
     pub fn courses(&self, node: u32, axis: usize) -> &[Course] {
         self.motions.courses(node, axis)
     }
 
     /// Writes the displacements (m) of all nodes of the mesh at a time (s), with the displacement `u` (m) of the degrees
-    /// of freedom then: zero where nodes are held, the prescribed motion where they are moved.
+    /// of freedom then: zero at fixed nodes, the prescribed motion at moved ones.
     ///
     /// # Errors
     /// Same as [`Model::to_nodes`], and [`FieldError::NoInput`] where a motion follows an input that the time does not
@@ -192,7 +192,8 @@ impl Model {
         })
     }
 
-    /// Calls `take` with the parts that a field has at nodes of the mesh: the free ones, and then those that are moved.
+    /// Calls `take` with the values of a field at nodes of the mesh: first those of free components, then prescribed
+    /// ones.
     fn each_value(
         &self,
         when: LoadTime<'_>,

@@ -6,7 +6,7 @@ use crate::error::Cause;
 
 impl Model {
     /// Writes a vector over the degrees of freedom, such as a force (N) or the shape of a mode, to all nodes of the
-    /// mesh: three components a node, zero where they are held or moved. Allocates nothing. See
+    /// mesh: three components a node, zero if they are fixed or moved. Allocates nothing. See
     /// [`Model::displacements_at`] for displacements with supports in motion.
     ///
     /// # Errors
@@ -22,7 +22,7 @@ impl Model {
     }
 
     /// Writes values at all nodes of the mesh, three components a node, into a vector over the degrees
-    /// of freedom. Held components are left out; where a node is held in some directions only, their
+    /// of freedom. Fixed components are left out; where a node is fixed in some directions only, their
     /// entries become zero. Allocates nothing.
     ///
     /// # Errors

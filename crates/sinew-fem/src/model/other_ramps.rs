@@ -8,8 +8,8 @@ use super::Model;
 use crate::error::{FemError, Item};
 
 impl Model {
-    /// This model, its matrices shared, with other factors over time for its loads and gravity: what `ramp` gives for each, which stays as it is
-    /// where that is `None`. Prescribed motions stay as they are.
+    /// This model, its matrices shared, with other factors over time for its loads and gravity: the result of `ramp`
+    /// for each; `None` leaves it unchanged. Prescribed motions are unchanged.
     ///
     /// # Errors
     /// [`FemError`] for a ramp with an impossible parameter.

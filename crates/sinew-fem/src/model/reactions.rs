@@ -10,13 +10,13 @@ use crate::large::{Past, Wanted, fill};
 use crate::motion::Field;
 
 impl Model {
-    /// Nodes (0-based) that are held or moved in some direction, increasing.
+    /// Nodes (0-based) that are fixed or moved in some direction, increasing.
     #[must_use]
     pub fn held_nodes(&self) -> &[u32] {
         &self.body.cells.held_nodes
     }
 
-    /// Lumped mass of each node of the mesh (kg), held ones included.
+    /// Lumped mass of each node of the mesh (kg), fixed ones included.
     #[must_use]
     pub fn node_masses(&self) -> &[f64] {
         &self.masses
@@ -26,19 +26,19 @@ impl Model {
     /// (m) and velocity `v` (m/s) at that time (see [`sinew_core::State::velocity_at_t`]); zero in free components. For
     /// a state of a run with stiffness damping see [`Model::reactions_in`].
     ///
-    /// At each held or moved component p it is `M_p (a_p + alpha v_p) + (K u + D v)_p - F_p(t)`: the force
+    /// At each fixed or moved component p it is `M_p (a_p + alpha v_p) + (K u + D v)_p - F_p(t)`: the force
     /// of its prescribed motion, the pull of all other components, less the model's own loads on p, so that all
-    /// reactions together are minus all loads where nothing moves. A change of speed at an instant, as at a row of a table, takes an
-    /// impulse, which is a force over some time only: [`LoadTime::around`] names the time, two steps of a run or the distances to the rows
-    /// before and after, over which `a_p` is then a mean. Loads that were given to the system in other ways are not
-    /// included; add those of [`NodalForces::dropped`](super::NodalForces) by hand.
+    /// reactions together are minus all loads if nothing moves. A change of speed at an instant, as at a row of a
+    /// table, takes an impulse, which is a force over some time only: [`LoadTime::around`] names the time, two steps of a
+    /// run or the distances to the rows before and after, over which `a_p` is then a mean. Loads that were given to the
+    /// system in other ways are not included; add those of [`NodalForces::dropped`](super::NodalForces) to the result.
     ///
-    /// The first call sums up the rows of the held nodes; later ones allocate nothing but a few numbers for each
+    /// The first call sums up the rows of the fixed nodes; later ones allocate nothing but a few numbers for each
     /// prescribed motion beyond the eighth, and with hyperelastic regions one vector over the nodes.
     ///
     /// # Errors
     /// [`FieldError::Length`] unless `u` and `v` have one entry for each degree of freedom and `out` one
-    /// for each node of the mesh, and [`FieldError::NoInput`] where a motion, or a load on held components, follows
+    /// for each node of the mesh, and [`FieldError::NoInput`] where a motion, or a load on fixed components, follows
     /// an input that the time does not bring.
     pub fn reactions<'a>(
         &self,
@@ -52,9 +52,9 @@ impl Model {
         self.reactions_after((when, Past::RELAXED), u, damped, out)
     }
 
-    /// Writes the forces (N) of [`Model::reactions`] in a state, with what its memory holds, and with damping as the method that led to it takes
-    /// velocities ([`State::damping`]): those for which the method's own forces on the degrees of freedom balance with the loads and inertia of
-    /// the whole.
+    /// Writes the forces (N) of [`Model::reactions`] in a state, with its internal variables, and with the damping
+    /// velocities of the method that led to it ([`State::damping`]): they balance the method's own forces on the
+    /// degrees of freedom with all loads and inertia.
     ///
     /// # Errors
     /// Same as [`Model::reactions`].
@@ -94,7 +94,7 @@ impl Model {
     }
 
     /// The force (N) of the supports on the body at all nodes of a part of the mesh together, see [`Model::reactions`].
-    /// Nodes that are neither held nor moved add nothing. Searches the nodes on each call: for every frame, use
+    /// Nodes that are neither fixed nor moved add nothing. Searches the nodes on each call: for every frame, use
     /// [`On::nodes`] once and then [`Model::reaction_of_nodes`].
     ///
     /// # Errors
@@ -142,13 +142,13 @@ impl Model {
     }
 
     /// Writes the force (N) of supports that move in any way. `motion` has the displacement (m), velocity
-    /// (m/s) and acceleration (m/s^2) of all nodes of the mesh, held or not. At each held component p the
+    /// (m/s) and acceleration (m/s^2) of all nodes of the mesh, fixed or not. At each fixed component p the
     /// force is `M_p (a_p + alpha v_p) + K_p u + D_p v - F_p(t)`, alpha M being the mass damping and D all
     /// other damping. Motions that the problem prescribes are those of [`Model::reactions`].
     ///
     /// # Errors
     /// [`FieldError::Length`] unless all have one entry for each node of the mesh, and [`FieldError::NoInput`] where
-    /// a load on held components follows an input that the time does not bring.
+    /// a load on fixed components follows an input that the time does not bring.
     pub fn moving_reactions<'a>(
         &self,
         when: impl Into<LoadTime<'a>>,
@@ -204,8 +204,8 @@ impl Model {
         self.supports.border(self.parts(), self.held_nodes())
     }
 
-    /// M (a + alpha v) + K u + D v (N) at a held node, D being the damping other than alpha M, with the displacement at which it acts; less what
-    /// pressures that follow the surface do beyond those on the surface at rest.
+    /// M (a + alpha v) + K u + D v (N) at a fixed node, D being the damping other than alpha M, with the displacement
+    /// at which it acts; less the forces of follower pressures beyond those on the surface at rest.
     fn row_forces(
         &self,
         at: (LoadTime<'_>, Past<'_>),
@@ -287,7 +287,7 @@ impl Model {
         }
     }
 
-    /// The components that are held; zero in free ones.
+    /// The force in fixed components; zero in free ones.
     pub(super) fn held_part(&self, node: u32, force: [f64; 3]) -> [f64; 3] {
         let cells = &self.body.cells;
         std::array::from_fn(|axis| match cells.free_dof(node, axis) {
@@ -305,15 +305,15 @@ struct Damped<'a> {
 }
 
 impl<'a> Damped<'a> {
-    /// A motion whose velocity holds at the displacement's time.
+    /// A motion with the velocity at the displacement's time.
     fn at(when: LoadTime<'a>, u: &'a [f64], v: &'a [f64]) -> Self {
         let when = centred(when);
         Self { when, u, v }
     }
 }
 
-/// The time with as much of its window on both sides: the velocity of a kink in the midst is the mean of both, and where there is one side only,
-/// as at the start, it is that of the instant.
+/// The time with a window of equal length on both sides: at a kink in its middle the velocity is the mean of both
+/// sides; if there is one side only, as at the start, it is that of the instant.
 fn centred(when: LoadTime<'_>) -> LoadTime<'_> {
     let ((from, to), t) = (when.span(), when.t());
     let half = (t - from).min(to - t);

@@ -5,8 +5,8 @@ use sinew_core::{BlockMatrix, EvaluationError, LoadTime, StaticLoad};
 use super::Model;
 use crate::following::{FollowingPressure, Part};
 
-/// Some loads of a model at their full value, whatever their ramps; pressures follow the surface where they do. Supports are where they
-/// are at t = 0.
+/// Some loads of a model at their full value, whatever their ramps, with follower pressures as such. Supports are at
+/// their places at t = 0.
 #[derive(Clone, Debug)]
 pub struct ModelLoads<'m> {
     model: &'m Model,
@@ -17,7 +17,7 @@ pub struct ModelLoads<'m> {
 
 impl Model {
     /// The loads at these places among those of [`Model::operators`](sinew_core::LinearSystem::operators): in the order of the problem,
-    /// then gravity. Places beyond have none.
+    /// then gravity. Larger indices are ignored.
     #[must_use]
     pub fn full_loads(&self, places: &[usize]) -> ModelLoads<'_> {
         let mut force = vec![0.0; self.operators.dofs()];

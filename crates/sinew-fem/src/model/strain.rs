@@ -116,7 +116,7 @@ impl Model {
     }
 
     /// The springs of a region (0-based place in the problem), one for each edge, calibration included;
-    /// computed on each call. `None` where the region is not a network of springs or does not exist.
+    /// computed on each call. `None` if the region is not a network of springs or does not exist.
     ///
     /// An edge between two regions is in both: the springs of all regions together make K.
     #[must_use]
@@ -170,7 +170,7 @@ impl Model {
         self.body.smoothing.mean_strains(&self.mesh, strain, share)
     }
 
-    /// The strain of a tetrahedron as its stress sees it.
+    /// The averaged strain that determines a tetrahedron's stress.
     pub(super) fn strain_among(
         &self,
         means: &MeanStrains,

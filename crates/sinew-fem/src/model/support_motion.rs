@@ -17,13 +17,13 @@ pub struct SupportMotion {
 
 impl Model {
     /// The products `K_fp d` and `D_fp d` over the degrees of freedom f that move, for a displacement `d`
-    /// (m) of held components p (of 0-based nodes). With the supports at `r(t) d` the equation of motion
+    /// (m) of fixed components p (of 0-based nodes). With the supports at `r(t) d` the equation of motion
     /// gains the loads `-r(t) K_fp d` and `-r'(t) D_fp d`, which a problem's prescribed motions have already.
     /// Displacements of one node add up.
     ///
     /// # Errors
     /// [`SupportMotionError`] for a node that does not exist, and for a component of `d` that is not
-    /// finite, or not zero where the node is not held.
+    /// finite, or not zero in a free component.
     pub fn support_motion(
         &self,
         d: &[(u32, [f64; 3])],

@@ -80,9 +80,9 @@ impl System for Model {
         Some(stiffest.reduce(f64::max)? / softest.reduce(f64::min)?)
     }
 
-    /// The energy of the degrees of freedom, of stress that relaxes what stays for a long time, without the energy that
-    /// supports in motion hold and store; `None` for hyperelastic regions with such supports, where the two cannot be
-    /// distinguished, and outside a law's domain.
+    /// The energy of the degrees of freedom, with the long-term part of stress that relaxes and without the energy of
+    /// supports in motion; `None` for hyperelastic regions with such supports, where the two cannot be distinguished,
+    /// and outside a law's domain.
     fn energy(&self, u: &[f64], v: &[f64]) -> Option<Energy> {
         let linear = self.operators.energy(u, v);
         if self.large.is_none() {

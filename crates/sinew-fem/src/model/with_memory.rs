@@ -7,8 +7,8 @@ use super::deformed::DeformedTet;
 use super::field_error::FieldError;
 use crate::large::Past;
 
-/// A model with the internal variables of a state ([`sinew_core::State::internal`]): its stresses are those in that state. Asked without,
-/// a model with memory tells what it comes to when it is held for a long time.
+/// A model with the internal variables of a state ([`sinew_core::State::internal`]): its stresses are those in that
+/// state. Without them, a model with memory gives long-term stresses.
 #[derive(Clone, Copy, Debug)]
 pub struct WithMemory<'m> {
     model: &'m Model,

@@ -10,7 +10,7 @@ pub(crate) struct Edges {
     pub(crate) tets: Sets,
     /// The two nodes of each, the smaller first.
     pub(crate) nodes: Vec<[u32; 2]>,
-    /// The six edges of each tetrahedron, in the order of [`EDGES`]; empty where no region averages over edges.
+    /// The six edges of each tetrahedron, in the order of [`EDGES`]; empty if no region averages over edges.
     pub(crate) of_tet: Vec<[u32; 6]>,
 }
 

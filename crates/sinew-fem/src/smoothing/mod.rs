@@ -17,7 +17,7 @@ use sinew_mesh::TetMesh;
 use crate::Element;
 use patches::{NO_PATCH, patches};
 
-/// The edges and patches of a body; empty where all regions are made of plain tetrahedra. None crosses a region.
+/// The edges and patches of a body; empty if all regions are made of plain tetrahedra. None crosses a region.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Smoothing {
     pub(crate) edges: Edges,
@@ -56,7 +56,7 @@ impl Smoothing {
         edges.chain(patches)
     }
 
-    /// The patch of a tetrahedron; `None` where its region has none.
+    /// The patch of a tetrahedron; `None` if its region has none.
     pub(crate) fn patch_of(&self, tet: usize) -> Option<usize> {
         let patch = *self.patch_of_tet.get(tet)?;
         (patch != NO_PATCH).then_some(patch as usize)
@@ -71,7 +71,7 @@ impl Smoothing {
         tets.iter().filter(begins).count()
     }
 
-    /// The six edges of a tetrahedron; `None` where its region does not average over them.
+    /// The six edges of a tetrahedron; `None` if its region does not average over them.
     pub(crate) fn edges_of(&self, tet: usize) -> Option<&[u32; 6]> {
         let edges = self.edges.of_tet.get(tet)?;
         (edges[0] != NO_EDGE).then_some(edges)

@@ -15,8 +15,8 @@ pub(super) const NO_PATCH: u32 = u32::MAX;
 /// The patch of each tetrahedron, and the number of patches. They are numbered in the order of their first tetrahedra.
 ///
 /// Patches grow from seeds in the order of the tetrahedra: the next member is the face neighbour that shares most nodes
-/// with the patch, the first of those that share as many. On a grid whose hexahedra were cut into six, these six are
-/// a patch, so that patches repeat as the grid does. What is too small in the end joins the neighbour with most
+/// with the patch, the first one if several do. On a grid whose hexahedra were cut into six, these six are
+/// a patch, so that patches repeat as the grid does. Patches that remain too small join the neighbour with most
 /// shared faces.
 pub(super) fn patches(
     tets: &[[u32; 4]],
@@ -57,7 +57,7 @@ struct Growth<'a> {
 }
 
 impl Growth<'_> {
-    /// Makes a patch of what is left of a hexahedron.
+    /// Makes a patch of the rest of a hexahedron.
     fn take(&mut self, members: impl Iterator<Item = usize>) {
         let patch = self.smallest.len() as u32;
         self.smallest.push(SIX as u32);

@@ -11,7 +11,8 @@ pub(crate) struct MeanStrains {
     patches: Vec<[f64; 6]>,
 }
 
-/// The strain of a tetrahedron as its stress sees it: what it averages over, times shares of the stiffness of its region's law.
+/// The averaged strain that gives a tetrahedron's stress: the strains it averages, times shares of the stiffness of
+/// its region's law.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct SmoothedStrain {
     /// The strain that shear resists, in the order of [`crate::stress`].

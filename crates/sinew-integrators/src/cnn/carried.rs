@@ -7,11 +7,13 @@ use sinew_core::{LinearOperators, LoadTime, Ramp};
 /// Relative residual of forces at which a carried displacement counts as found.
 const FOUND: f64 = 1e-12;
 
-/// The displacements by which supports in motion carry a body without inertia, `K g = -K_p d`: what a stabilising matrix adds to the mass must not brake these.
+/// The displacements by which supports in motion carry a body without inertia, `K g = -K_p d`: the mass that a
+/// stabilising matrix adds must not brake them.
 #[derive(Debug, Default)]
 pub(super) struct Carried {
     courses: Vec<Course>,
-    /// The change (m/s) of the carried velocity in a step, and what inertia and centred damping take of it (N s).
+    /// The change (m/s) of the carried velocity in a step, and the impulse (N s) of inertia and centred damping by
+    /// it.
     pub(super) change: Vec<f64>,
     pub(super) impulse: Vec<f64>,
 }
@@ -59,8 +61,9 @@ impl Carried {
         }
     }
 
-    /// Finds the change of the carried velocity from before the time `t` (s) to after it, in steps of `dt` (s), or in the first step that velocity itself; whether there is any. `centred` is the share that the stabilising matrix holds of
-    /// damping which is not proportional to the mass.
+    /// Finds the change of the carried velocity from before the time `t` (s) to after it, in steps of `dt` (s), or in
+    /// the first step that velocity itself; returns true if there is any. `centred` is the share of the damping not
+    /// proportional to mass that the stabilising matrix contains.
     pub(super) fn look(
         &mut self,
         operators: &LinearOperators,

@@ -1,46 +1,48 @@
-//! Contact in a step whose rigid motions answer as a whole.
+//! Contact in a step, coupled with rigid motions of whole parts.
 
 use sinew_cnn::Deflation;
 use sinew_core::vectors::norm;
 use sinew_core::{AllShown, Contact, Meeting, State};
 
-/// Most improvements of the answer in a step.
+/// Most improvements of the response in a step.
 const MOST_ROUNDS: usize = 40;
 
 /// Residual of the rigid motions' equation, relative to its terms, at which they count as found.
 const FOUND: f64 = 1e-11;
 
-/// The same where it falls no further, as rounding of places lets it.
+/// The same if it falls no further because of rounded positions.
 const ROUNDED: f64 = 1e-7;
 
-/// Change of an answer, as a share of it, by which slopes are found.
+/// Relative change of a response by which slopes are found.
 const NUDGE: f64 = 1e-7;
 
-/// Halvings of an improvement, and steps of the alternating minimisation where none helps.
+/// Halvings of an improvement, and steps of the alternating minimisation if none helps.
 const HALVINGS: usize = 6;
 const PLAIN_STEPS: usize = 3;
 
-/// Share of what is left to which slopes lower it that serve again.
+/// Reduction of the residual below which slopes are reused.
 const MUCH: f64 = 0.25;
 
-/// Share of what is left by which a whole improvement lowers it at least.
+/// Minimum reduction, as a share of the residual, by a whole improvement.
 const LOWERED: f64 = 1e-4;
 
 /// Finds the forces lambda of contact in a step of `P (v+ - v-) = dt F` with the matrix P of a [`Deflation`], `P^-1 = B^-1 + U G^-1 U'`.
 ///
-/// With the rigid motions' answer `c = G^-1 U' lambda` known, contact pushes cells from `v + U c` by their own blocks B alone, as it does in other methods. As
-/// `U' lambda = R'S d`, d being what it changes their velocities by, c is where `f(c) = R'S d(c) - G c` vanishes: a few numbers for each part. f is linear but for contacts that
-/// begin, end, stick or slip, and Newton's method finds c in a few rounds, with slopes by differences (Qi and Sun, Math. Program. 58, 1993). Where none of its steps
-/// helps, `c + f` is followed: an alternating minimisation over cells and rigid motions, which converges where contact is the least of a convex function. So
-/// all laws of contact hold as in one block for each cell.
+/// With the rigid motions' response `c = G^-1 U' lambda` known, contact pushes cells from `v + U c` by their own
+/// blocks B alone, as it does in other methods. As `U' lambda = R'S d`, d being the change of their velocities by it,
+/// c is the root of `f(c) = R'S d(c) - G c`: a few numbers for each part. f is linear but for contacts that begin,
+/// end, stick or slip, and Newton's method finds c in a few rounds, with slopes by differences (Qi and Sun, Math.
+/// Program. 58, 1993). If none of its steps helps, `c + f` is followed: an alternating minimisation over cells and
+/// rigid motions, which converges if contact is the minimum of a convex function. So all laws of contact hold as in
+/// one block for each cell.
 #[derive(Debug, Default)]
 pub(super) struct CoupledContact {
-    /// u and v of contact's cells without the answer, three components each.
+    /// u and v of contact's cells without the response, three components each.
     u: Vec<f64>,
     v: Vec<f64>,
-    /// Rows of contact's cells; none where no rigid motion moves them.
+    /// Rows of contact's cells; none if no rigid motion moves them.
     rows: Vec<Option<Row>>,
-    /// Place of a cell among those of contact, and one more; 0 where it is none of them.
+    /// Index of a cell among those of contact, plus one; 0 for other cells.
     place_of: Vec<u32>,
     /// c, and f there.
     answer: Vec<f64>,
@@ -79,7 +81,7 @@ pub(super) struct Coupled<'a> {
 }
 
 impl CoupledContact {
-    /// Scratch space for contact on a body, beside `motions` rigid motions.
+    /// Scratch space for contact on a body with `motions` rigid motions.
     pub(super) fn new(contact: &dyn Contact, dofs: usize, motions: usize) -> Self {
         let cells = contact.cells();
         let mut place_of = vec![0; dofs / 3];
@@ -104,7 +106,7 @@ impl CoupledContact {
         }
     }
 
-    /// Pushes the cells of a trial state, and what moves with them: changes u and v, and what contact keeps.
+    /// Resolves contact on a trial state, rigid motions included: changes u, v and the contact variables.
     pub(super) fn meet(&mut self, coupled: Coupled<'_>, state: &mut State, pushed: &mut Vec<u32>) {
         self.look(coupled, state);
         self.answer.fill(0.0);
@@ -145,8 +147,8 @@ impl CoupledContact {
         }
     }
 
-    /// Asks contact with an improved answer, from one that leaves something; the size of the terms of f there, or nothing where no share of the improvement helps. Slopes serve again for as long as
-    /// they help much.
+    /// Improves a response that leaves a residual; returns the size of the terms of f there, or `None` if no share of
+    /// the improvement helps. Slopes are reused as long as they reduce the residual enough.
     fn improve(
         &mut self,
         coupled: Coupled<'_>,
@@ -189,7 +191,7 @@ impl CoupledContact {
         }
     }
 
-    /// The slopes - G of f where contact's answer does not change.
+    /// The slopes - G of f with constant contact forces.
     fn find_slopes_without_contact(&mut self, deflation: &Deflation) {
         let count = self.active.len();
         for column in 0..count {
@@ -217,7 +219,7 @@ impl CoupledContact {
         }
     }
 
-    /// Finds the improvement by the slopes; `None` where they are singular.
+    /// Finds the improvement by the slopes; `None` if they are singular.
     fn find_step(&mut self) -> Option<()> {
         let count = self.active.len();
         for (step, at) in self.step.iter_mut().zip(&self.active) {
@@ -228,7 +230,7 @@ impl CoupledContact {
         solve(eliminated, &mut self.step[..count])
     }
 
-    /// Asks contact beyond the answer by a share of the improvement; the size of the terms of f.
+    /// Resolves contact at the response plus a share of the improvement; returns the size of the terms of f.
     fn go(
         &mut self,
         share: f64,
@@ -243,7 +245,7 @@ impl CoupledContact {
         self.ask(coupled, state, pushed)
     }
 
-    /// Lets contact push the cells beside the answer that is asked for, and finds f; the size of its terms.
+    /// Resolves contact of the cells at the given response, and computes f; returns the size of its terms.
     fn ask(&mut self, coupled: Coupled<'_>, state: &mut State, pushed: &mut Vec<u32>) -> f64 {
         let Coupled {
             contact,
@@ -311,7 +313,7 @@ impl CoupledContact {
             });
     }
 
-    /// U c of the answer that is asked for, at one of contact's cells.
+    /// U c of the trial response, at one of contact's cells.
     fn shift(&self, place: usize) -> [f64; 3] {
         let mut shift = [0.0; 3];
         if let Some(row) = &self.rows[place] {
@@ -325,7 +327,7 @@ impl CoupledContact {
         shift
     }
 
-    /// Moves all cells by the answer of the rigid motions, but for those of contact, which have it.
+    /// Moves all cells by the response of the rigid motions, except those of contact, which already have it.
     fn carry(&self, coupled: Coupled<'_>, state: &mut State) {
         let dt = coupled.meeting.dt;
         coupled.deflation.for_each_cell(|cell, first, _, moved| {
@@ -343,7 +345,8 @@ impl CoupledContact {
     }
 }
 
-/// Replaces x by the solution with a matrix, row by row, by Gauss's elimination with pivots in each column; `None` where it is singular.
+/// Replaces x by the solution with a matrix, row by row, by Gauss's elimination with pivots in each column; `None` if
+/// it is singular.
 fn solve(matrix: &mut [f64], x: &mut [f64]) -> Option<()> {
     let n = x.len();
     for k in 0..n {

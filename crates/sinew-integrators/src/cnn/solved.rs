@@ -1,4 +1,4 @@
-//! `cnn-stabilised` where no program expresses how P is solved with.
+//! The steps of `cnn-stabilised` if no program expresses the solution with P.
 
 use sinew_cnn::{CellBlocks, Deflation, Inverse, Stabiliser};
 use sinew_core::vectors::add_scaled;
@@ -15,10 +15,11 @@ use crate::StepByHand;
 /// Residual of the contact iteration above which a remark is made.
 const SETTLED: f64 = 1e-6;
 
-/// The step of [`super::CnnStabilised`] with sums over all cells of a part, beside supports in motion, or with an iteration in the order of the cells.
+/// The step of [`super::CnnStabilised`] with sums over all cells of a part, with supports in motion, or with an
+/// iteration in the order of the cells.
 pub struct SolvedSteps {
     inverse: Inverse,
-    /// Share of the damping that P does not hold.
+    /// Share of the damping that P does not contain.
     lagging: f64,
     sweeps: u64,
     reason: &'static str,
@@ -37,7 +38,7 @@ struct Touched {
     pushed: Vec<u32>,
 }
 
-/// Rigid motions, which answer to contact as a whole.
+/// Rigid motions of parts, coupled with contact.
 struct CoupledParts {
     deflation: Arc<Deflation>,
     contact: CoupledContact,

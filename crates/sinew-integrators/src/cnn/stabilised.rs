@@ -59,7 +59,7 @@ impl CnnStabilised {
         }
     }
 
-    /// The matrix that was added to M for the current system and step; `None` before set-up and where
+    /// The matrix that was added to M for the current system and step; `None` before set-up and if
     /// none was needed.
     #[must_use]
     pub fn stabiliser(&self) -> Option<&Stabiliser> {
@@ -273,7 +273,7 @@ impl Scheme for CnnStabilised {
     }
 }
 
-/// The step as a program; `None` where none expresses how P is solved with.
+/// The step as a program; `None` if none expresses how P is solved with.
 fn program(stabiliser: &Stabiliser, physics: &Physics, dt: f64) -> Option<Program> {
     let (u, v, a) = (Register::U, Register::V, Register::A);
     let mut program = Program::new(VelocityTime::MiddleOfStep);

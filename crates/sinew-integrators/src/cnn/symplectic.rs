@@ -8,7 +8,7 @@ use crate::explicit::{GuardOption, SymplecticEuler};
 use crate::explicit_method::prelude::*;
 
 /// `x += dt (A y - C x + B F(t))`, then `y += dt f(x)` with the new x: symplectic Euler with a clamp
-/// on what moves the displacement.
+/// on the velocity that moves the displacement.
 #[derive(Debug, Default)]
 pub struct CnnSymplectic(pub Saturation);
 

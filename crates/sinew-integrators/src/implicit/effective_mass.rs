@@ -104,7 +104,7 @@ impl<M: OneAcceleration> StepByHand for ImplicitSteps<M> {
     }
 }
 
-/// The way to the acceleration.
+/// Solver for the acceleration.
 enum Solver {
     /// For `M + d D + k K`, whose factor is kept.
     Once(Box<factor::Solver>),

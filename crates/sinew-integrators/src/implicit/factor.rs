@@ -1,5 +1,5 @@
-//! Solvers of combinations of M, D and K: sparse Cholesky factors, and where these are larger than the memory that is left conjugate gradients. The only user of
-//! faer, with its own files beside it.
+//! Solvers of combinations of M, D and K: sparse Cholesky factors, or conjugate gradients if a factor exceeds the
+//! available memory. The only user of faer, with its own files.
 
 mod aggregates;
 mod cell_order;
@@ -44,7 +44,7 @@ impl Factor {
     /// Orders and analyses the pattern of the matrices.
     ///
     /// # Errors
-    /// [`FactorError::Memory`] where the factor takes more than this computer has left, before it is taken.
+    /// [`FactorError::Memory`] if the factor takes more memory than is available, before it is allocated.
     pub fn analyse<'m>(matrices: impl Into<Matrices<'m>>) -> Result<Self, FactorError> {
         let matrices = matrices.into();
         let elimination = cell_order(matrices.shape().0)?;
@@ -73,14 +73,14 @@ impl Factor {
         Ok(bytes(&cell_order(pattern)?, layers))
     }
 
-    /// True if the analysis holds for these matrices.
+    /// True if the analysis is valid for these matrices.
     #[must_use]
     pub fn fits<'m>(&self, matrices: impl Into<Matrices<'m>>) -> bool {
         let (pattern, layers) = matrices.into().shape();
         Arc::ptr_eq(&self.pattern, pattern) && self.layers == layers
     }
 
-    /// Numbers that the factor holds, zeros inside its panels included.
+    /// Number of stored entries of the factor, zeros inside its panels included.
     #[must_use]
     pub fn stored(&self) -> usize {
         self.cholesky.stored()
@@ -101,7 +101,7 @@ impl Factor {
     /// Replaces `right_hand_side` by the solution. Allocates nothing.
     ///
     /// # Panics
-    /// Where it is shorter than the matrix.
+    /// If it is shorter than the matrix.
     pub fn solve(&mut self, right_hand_side: &mut [f64]) {
         self.cholesky.solve(right_hand_side);
     }

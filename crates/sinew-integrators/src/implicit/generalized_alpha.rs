@@ -17,7 +17,7 @@ use crate::{Method, NumericalDissipation, OptionDefault, OptionHelp, OptionKind,
 /// `beta = (1 - a_m + a_f)^2/4`. Order 2, stable at any step on linear systems. Nonlinear laws are applied at both ends, and
 /// a+ is found by Newton's method.
 ///
-/// `rho_inf` is the share that is left of a motion far too fast for the step after one of them:
+/// `rho_inf` is the amplitude, after one step, of a motion far too fast for the step, as a share of that before:
 /// `a_m = (2 rho - 1)/(rho + 1)`, `a_f = rho/(rho + 1)`; 1 keeps it, 0 removes it. `hht = alpha` gives
 /// the method of Hilber, Hughes and Taylor (Earthq. Eng. Struct. Dyn. 5, 1977): `a_m = 0`, `a_f = alpha`.
 #[derive(Clone, Copy, Debug)]

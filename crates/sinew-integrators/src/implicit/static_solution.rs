@@ -33,7 +33,7 @@ pub enum StaticError {
     Unreached {
         /// The share that is carried.
         share: f64,
-        /// The end of the last attempt to go beyond.
+        /// The error of the last attempt to increase the load.
         source: NewtonError,
     },
     /// Neither matrices nor an elastic law.
@@ -53,11 +53,11 @@ pub enum StaticError {
 /// singular matrix whose factor rounding can let pass; its residual is near 1.
 const BALANCED: f64 = 1e-6;
 
-/// Solves `K u = force` (N) for the displacement (m), or `dW/du = force` where the system is an elastic law. Held components
-/// of cells stay zero; supports are where they are at t = 0.
+/// Solves `K u = force` (N) for the displacement (m), or `dW/du = force` if the system is an elastic law. Fixed
+/// components of cells stay zero; supports are at their places at t = 0.
 ///
-/// The load on a nonlinear law grows from nothing in steps that are chosen on the way, each solved by Newton's
-/// method: where several displacements balance the load, the answer is one that a slow load leads to, or jumps to.
+/// The load on a nonlinear law grows from zero in adaptive steps, each solved by Newton's method: if several
+/// displacements balance the load, the answer is one that a slow load leads to, or jumps to.
 ///
 /// # Errors
 /// [`StaticError`] when the tangent is singular or nearly so, the load has the wrong size or is more than the law

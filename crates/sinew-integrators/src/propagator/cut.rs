@@ -37,15 +37,15 @@ pub(super) struct Motion {
 
 /// Polynomials for the three functions of a [`Motion`] by which no mode grows.
 ///
-/// Cut at degree m, the series give a matrix T for E, of norm up to 1 + epsilon: a mode then grows for
-/// ever. Three polynomials mend T. With the kernel of Dirichlet `Q = (1 + 2 sum cos(k theta))/(2m + 1)`,
+/// Cut at degree m, the series give a matrix T for E, of norm up to 1 + epsilon: a mode then grows
+/// without bound. Three polynomials correct T. With the kernel of Dirichlet `Q = (1 + 2 sum cos(k theta))/(2m + 1)`,
 /// `lambda = Lambda (1 - cos(theta))/2`, which is 1 at lambda = 0 and small elsewhere,
 ///
 /// 1. multiples of Q make s, s' and g exact at lambda = 0, where a body moves rigidly;
-/// 2. `(1 - eta) T + eta Q diag(1, s'(0))` takes the place of T. Its norm is at most
+/// 2. `(1 - eta) T + eta Q diag(1, s'(0))` replaces T. Its norm is at most
 ///    `(1 - eta) |T| + eta |Q|`, hence at most 1 once `eta >= (|T| - 1)/(|T| - |Q|)` at every lambda,
 ///    from which eta, the relaxation, is found. It is about epsilon. Near lambda = 0, where Q is 1, slow
-///    modes hardly feel it, and `1 - lambda g` stays 1 there, so that equilibria stay exact.
+///    modes are hardly affected, and `1 - lambda g` stays 1 there, so that equilibria stay exact.
 #[derive(Clone, Debug)]
 pub(super) struct Cut {
     pub(super) s: Vec<f64>,
@@ -243,7 +243,7 @@ mod tests {
         }
     }
 
-    /// The step of one mode by the polynomials as they are used.
+    /// The step of one mode by the polynomials in use.
     fn step(motion: &Motion, cut: &Cut, lambda: f64) -> Matrix {
         let value = |series: &[f64]| evaluate(series, lambda, motion.interval);
         let off = lambda.sqrt() * value(&cut.s);

@@ -11,7 +11,7 @@ use super::resolution::{HIGHEST_DEGREE, ID, Resolution};
 use crate::StepByHand;
 use crate::exponential::Exponential;
 
-/// Columns beyond the Hessenberg matrix that hold e1 and the chain of the phi functions.
+/// Columns beyond the Hessenberg matrix: e1 and the chain of the phi functions.
 const CHAIN: usize = 3;
 /// Number of columns by which the space grows between two error estimates.
 const EVERY: usize = 3;
@@ -30,7 +30,7 @@ const SHORTEST: f64 = 0.5;
 /// tolerance.
 ///
 /// Inner products weigh velocities by M and displacements by omega_max^2 M, so that both count alike.
-/// The energy weighs displacements by K, so that the error may bring energy in. A step that does
+/// The energy weighs displacements by K, so that the error may add energy. A step that does
 /// is shortened: `y + theta (y+ - y)` has no more energy than y for the theta of [`Krylov::part_without_gain`].
 #[derive(Debug)]
 pub struct Krylov {
@@ -181,7 +181,7 @@ impl Krylov {
     }
 
     /// `change += dt^order phi_order(dt L) start`; returns the sweeps it took. For order 1 the change is
-    /// the motion under constant loads, which brings no energy in.
+    /// the motion under constant loads, which adds no energy.
     fn add_phi(
         &mut self,
         operators: &LinearOperators,
@@ -291,10 +291,10 @@ impl Krylov {
         }
     }
 
-    /// The part theta of the change, at most 1, that brings no energy in under constant loads.
+    /// The factor theta of the change, at most 1, under which it adds no energy under constant loads.
     ///
     /// With `P = v'M v/2 + u'K u/2 - F'u` and a change c, `P(y + theta c) - P(y) = theta p + theta^2 q`, where
-    /// `q = dv'M dv/2 + du'K du/2`; exactly moved, `p + q` is what damping takes, at most 0. Where it is above,
+    /// `q = dv'M dv/2 + du'K du/2`; for the exact motion `p + q` is minus the dissipation, at most 0. If it is above,
     /// theta = -p/q. K du follows from the Arnoldi relation, `-M (L c)_v = K du + D dv`, without a sweep.
     fn part_without_gain(
         &mut self,
@@ -364,7 +364,7 @@ impl Krylov {
     }
 
     /// The m-th column of the Hessenberg matrix and the next basis vector by modified Gram-Schmidt;
-    /// returns the entry below the diagonal, 0 where the space is complete.
+    /// returns the entry below the diagonal, 0 if the space is complete.
     fn expand(&mut self, operators: &LinearOperators, m: usize) -> f64 {
         let mass = operators.mass();
         let n = mass.len();

@@ -45,7 +45,7 @@ pub struct Propagator {
     made: Option<Made>,
 }
 
-/// Series with what they were made for.
+/// Series with the system and step they were made for.
 #[derive(Debug)]
 struct Made {
     matrices: Revision,
@@ -65,7 +65,7 @@ pub enum PropagatorKind {
     ///
     /// The tolerance bounds the error of a step under constant loads, relative to the distance from
     /// equilibrium before it, both in the energy norm, in any state: the fact `step_error`. No step
-    /// takes the state farther from equilibrium. A body that is not held keeps its velocity; its distance
+    /// takes the state farther from equilibrium. A body without supports keeps its velocity; its distance
     /// travelled and the effect of loads on it fall short by the fact `relaxation`, which is below the tolerance.
     #[default]
     Chebyshev,
@@ -223,7 +223,7 @@ impl Method for Propagator {
     /// Options for an error of a run. Errors of steps add up; a tenth of the error leaves a margin for that and costs
     /// few degrees. The two-step form's tolerance is one of frequencies: the phase error grows.
     ///
-    /// A fit to the loads estimates the error of a run; half of it leaves a margin for what the estimate leaves out.
+    /// A fit to the loads estimates the error of a run; half of it leaves a margin for effects outside the estimate.
     fn options_for_error(error: f64) -> Vec<Options> {
         let fitted = (0.5 * error > LEAST_ESTIMATE)
             .then(|| of_fit("load").with_number(TOLERANCE, 0.5 * error));

@@ -14,13 +14,13 @@ pub(super) const LOOSE: f64 = 1e-2;
 pub(super) struct Resolution {
     /// Bound of the error of a step, as the kind measures it.
     pub(super) tolerance: f64,
-    /// Degree, where it is given.
+    /// Degree, if given.
     pub(super) degree: Option<usize>,
 }
 
 impl Resolution {
     /// The degree to take: the given one, or the smallest whose error meets the tolerance. `left_out`
-    /// holds an estimate of the error for each degree, from which the search begins.
+    /// has an estimate of the error for each degree, from which the search begins.
     pub(super) fn degree_for(
         self,
         left_out: &[f64],

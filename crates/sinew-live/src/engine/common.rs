@@ -1,4 +1,4 @@
-//! Cells that two bodies of a scene, cut in different ways, have in common.
+//! Common cells of two bodies of a scene with different cuts.
 
 use std::sync::Arc;
 
@@ -17,7 +17,7 @@ pub(super) struct Common {
 /// A cell of each body.
 struct Pair {
     cells: [u32; 2],
-    /// The way (m) at rest from the second to the first: nodes beside a cut are moved onto it.
+    /// The vector (m) at rest from the second to the first: nodes near a cut are moved onto it.
     apart: [f64; 3],
 }
 
@@ -48,8 +48,8 @@ impl Common {
         Arc::ptr_eq(a, &own.mesh) && Arc::ptr_eq(b, &other.mesh)
     }
 
-    /// The largest component of a displacement (m) of the first body, and the largest distance (m) along an axis between places of both; `None` where nothing is
-    /// left that both have.
+    /// The largest component of a displacement (m) of the first body, and the largest distance (m) along an axis
+    /// between places of both; `None` if the bodies have no common cells left.
     pub(super) fn largest(&self, own: impl Fn(usize) -> f64, other: &[f64]) -> Option<[f64; 2]> {
         let mut largest = [0.0_f64; 2];
         for Pair { cells, apart } in &self.pairs {

@@ -36,7 +36,7 @@ impl Course {
         self.corners.back().map_or([0.0; 6], |(_, pose)| *pose)
     }
 
-    /// From `t` (s) on it goes straight to a pose, which it reaches at `arrival`; where it went before is of no interest any more.
+    /// Moves straight to a pose from `t` (s) on, reaching it at `arrival`; this replaces the previous target.
     pub(crate) fn go(&mut self, t: f64, pose: [f64; 6], arrival: f64) {
         let here = self.at(t);
         while self.corners.back().is_some_and(|(time, _)| *time >= t) {
@@ -46,7 +46,7 @@ impl Course {
         self.corners.push_back((arrival, pose));
     }
 
-    /// Forgets what was before `t` (s).
+    /// Drops the path before `t` (s).
     pub(crate) fn forget_before(&mut self, t: f64) {
         while self.corners.get(1).is_some_and(|(time, _)| *time <= t) {
             self.corners.pop_front();

@@ -9,7 +9,8 @@ use sinew_world::Command;
 pub(super) struct Due(VecDeque<(f64, Command)>);
 
 impl Due {
-    /// Adds a command for a time (s) that is not before those of the others. Of the factors of a load for one time the last holds.
+    /// Adds a command for a time (s) not before those of the others. Of several factors of a load at one time the
+    /// last applies.
     pub(super) fn add(&mut self, t: f64, command: Command) {
         if let Command::LoadFactor { load, .. } = &command {
             let mut of_time = self.0.iter_mut().rev().take_while(|(due, _)| *due == t);

@@ -30,8 +30,8 @@ impl Light {
     pub(crate) const GREY: Self = Self::new(Colour::Grey, 0);
 }
 
-/// Energy beyond what was put in, over the most that ever was in the body, that counts as rounding and as the difference between
-/// energies half a step apart.
+/// Energy beyond the supplied energy, over the largest energy so far, that counts as rounding and as the difference
+/// between energies half a step apart.
 const SLACK: f64 = 0.05;
 
 /// Data from which the light for a bounded motion is derived.
@@ -45,7 +45,7 @@ pub(crate) struct Bounds {
     pub(crate) inverted: u32,
     /// True if parts or surfaces of the body overlap.
     pub(crate) overlaps: bool,
-    /// Energy less what was put in (J), not a number where it is not known, and the largest energy or work so far (J).
+    /// Energy less the supplied energy (J), NaN if unknown, and the largest energy or work so far (J).
     pub(crate) balance: f64,
     pub(crate) scale: f64,
 }
@@ -76,10 +76,10 @@ const SPAN: f64 = 0.25;
 /// Share of the largest mean of kinetic energy below which a motion has come to rest.
 const RESTS: f64 = 1e-3;
 
-/// Simulated time (s) after which what swings as widely as before does not settle.
+/// Simulated time (s) after which a motion with constant amplitude counts as not settling.
 const PATIENCE: f64 = 3.0;
 
-/// Watches whether a body comes to rest after the user's last action or the last cut.
+/// Detection of a body's rest after the user's last action or the last cut.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Settling {
     /// Simulated time (s) of the last disturbance: a steered tool, a command or a cut.

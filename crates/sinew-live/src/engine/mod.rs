@@ -51,7 +51,7 @@ const BETWEEN_TELLINGS: Duration = Duration::from_millis(15);
 /// Longer than until any picture is due.
 const FAR: Duration = Duration::from_secs(1);
 
-/// Longest wait where there is nothing to do.
+/// Longest wait without work.
 const IDLE: Duration = Duration::from_millis(100);
 
 /// Wait after the last cut before stable steps are recomputed, which may take longer than a cut.
@@ -60,18 +60,18 @@ const CALM: Duration = Duration::from_millis(500);
 /// Time between two checks of missing journal entries.
 const BETWEEN_ENTRIES: Duration = Duration::from_secs(1);
 
-/// Most cuts that wait for a step, which takes all of them: a blade that keeps moving while time stops asks for as many
-/// as it likes.
+/// Most cuts that wait for a step, which takes all of them: a blade that moves while the simulation is paused would
+/// add cuts without limit.
 const MOST_CUTS: usize = 256;
 
 /// Most panes.
 const MOST_PANES: usize = 2;
 
-/// The sessions, and who drives them.
+/// The sessions and their control.
 pub(crate) struct Engine {
     scene: SceneValues,
     panes: Vec<Pane>,
-    /// The other pane, where one comes.
+    /// Choice of the second pane, if it is opened.
     second: PaneChoice,
     /// Steered path of each tool; `None` as long as it follows its own motion.
     hands: Vec<Option<Course>>,
@@ -104,7 +104,7 @@ pub(crate) struct Engine {
     news: News,
     /// Commands that no step has taken yet.
     under_way: Vec<UnderWay>,
-    /// Files of the logs of the panes, and when they were last brought up to date.
+    /// Files of the logs of the panes, and the time of their last update.
     journals: Vec<Journal>,
     last_entries: Instant,
 }
@@ -198,7 +198,7 @@ impl Engine {
         Ok(engine)
     }
 
-    /// Keeps files up to date with the logs of the panes, beginning with what they belong to.
+    /// Keeps files up to date with the logs of the panes, beginning with their headers.
     pub(crate) fn keep_logs(&mut self, journals: Vec<Journal>) -> Result<(), JournalError> {
         self.journals = journals;
         self.keep_up()
@@ -249,7 +249,7 @@ impl Engine {
         journals.try_for_each(|(journal, pane)| journal.keep_up(pane.log()))
     }
 
-    /// Tells pages where commands are no longer kept in a file, which is tried once more in the end.
+    /// Reports to pages a file that can no longer record commands; it is tried once more at the end.
     fn report_journals(&self, kept: Result<(), JournalError>, shared: &Shared) {
         if let Err(error) = kept {
             let reason = format!("commands are kept in memory alone from now on: {error}");
@@ -299,7 +299,7 @@ impl Engine {
         self.ahead.map_or(self.t(), |span| span.until)
     }
 
-    /// Steps as far as time on the wall asks for, but not for longer than commands may wait.
+    /// Steps up to wall time, but not for longer than commands may wait.
     fn advance(&mut self, shared: &Shared) {
         let begun = Instant::now();
         let may = || begun.elapsed() < LOOK;
@@ -315,7 +315,7 @@ impl Engine {
         }
     }
 
-    /// Steps on through the span that panes are in, or through the next one, as long as it `may`.
+    /// Steps through the current span of the panes, or through the next one, as long as it `may`.
     fn take_tick(&mut self, shared: &Shared, may: impl Fn() -> bool) {
         let next = self.next_span();
         let Span { until, length } = *self.ahead.get_or_insert(next);
@@ -389,7 +389,7 @@ impl Engine {
         Some(soonest.map_or(due, |soonest| due.max(soonest)))
     }
 
-    /// Until when there is nothing newer than what pages can be shown now, so that waiting brings them nothing.
+    /// Time until which the current state is the newest, so that waiting would not improve a picture.
     fn newest_until(&self) -> Instant {
         let left = match self.paused {
             true => FAR,
@@ -444,7 +444,7 @@ impl Engine {
         self.last_picture = Some(Instant::now());
     }
 
-    /// Asks for the stable steps on bodies that became other ones, once nothing cuts any more.
+    /// Requests the stable steps on changed bodies, once nothing cuts any more.
     fn learn_after_cuts(&mut self, shared: &Arc<Shared>, survey: &mut Survey) {
         let is_calm = self.cut_at.is_some_and(|last| last.elapsed() >= CALM);
         let Some(first) = self
@@ -465,7 +465,7 @@ impl Engine {
         self.news.settings = true;
     }
 
-    /// Does what pages ask for, but not for longer than pictures may wait; whether nothing is left.
+    /// Executes the requests of pages, but not for longer than pictures may wait; returns true if none is left.
     fn obey(&mut self, waiting: &mut Waiting, shared: &Shared) -> bool {
         let begun = Instant::now();
         waiting.forget(|client| !shared.clients.is_here(client));
@@ -510,7 +510,7 @@ impl Engine {
         is_done
     }
 
-    /// Tells pages what is new, but not too often.
+    /// Sends changes to pages, but not too often.
     fn tell(&mut self, shared: &Shared) {
         let is_early = |last: Instant| last.elapsed() < BETWEEN_TELLINGS;
         if !self.news.settings || self.news.last_told.is_some_and(is_early) {
@@ -752,7 +752,7 @@ impl Engine {
         outcome
     }
 
-    /// Lets go of all, with panes at the beginning.
+    /// Releases all tools, with panes at the beginning.
     fn begin_anew(&mut self) {
         self.hands.fill(None);
         self.clock = Clock::at(self.panes.first().map_or(0.0, Pane::t));

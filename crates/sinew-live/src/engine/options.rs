@@ -17,7 +17,8 @@ const ABOVE_ZERO: [f64; 2] = [1e-3, 1e2];
 /// Smallest part of 1 that a user is offered.
 const SMALLEST_PART: f64 = 1e-8;
 
-/// The options of an integrator that have a value also where none is given, as they are now. Those of machines change no motion.
+/// The options of an integrator that have a value by default, with their current values. Options of machines change
+/// no motion.
 pub(super) fn facts(id: &str, options: &Options) -> Vec<OptionFacts> {
     let Some(entry) = sinew_integrators::entry(id) else {
         return Vec::new();
@@ -78,7 +79,7 @@ pub(super) fn value_of(
     Ok(value)
 }
 
-/// Options by which a method may meet tools, where it does not meet them by those that it is given: each word of each option.
+/// Alternative options for a method that does not support tools with the given ones: each word of each option.
 pub(super) fn alternatives(entry: &Entry, options: &Options) -> Vec<Options> {
     let known = entry.options.iter();
     let with_words = known.flat_map(|help| match help.kind {

@@ -41,7 +41,8 @@ impl Pace {
         Duration::try_from_secs_f64(t - self.target()).unwrap_or_default()
     }
 
-    /// Takes note of the simulated time (s), and gives up what cannot be caught up. A next step of `tick` (s) is not due before that time has gone by.
+    /// Records the simulated time (s), and drops a delay that cannot be caught up. A next step of `tick` (s) is not
+    /// due before that time has gone by.
     pub(crate) fn note(&mut self, t: f64, tick: f64) {
         if self.target() - t > tick + GIVEN_UP {
             (self.since, self.t) = (Instant::now(), t);

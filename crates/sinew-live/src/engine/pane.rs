@@ -1,4 +1,4 @@
-//! One pane: a session and what is measured of it.
+//! One pane: a session and its measurements.
 
 use std::sync::Arc;
 use std::time::Instant;
@@ -28,7 +28,7 @@ const SLACK: f64 = 1e-6;
 /// The option of an integrator that limits velocities.
 const GUARD: &str = "saturation";
 
-/// A session and what is measured of its motion.
+/// A session and the measurements of its motion.
 pub(crate) struct Pane {
     session: World,
     due: Due,
@@ -89,7 +89,7 @@ struct Energies {
 }
 
 impl Energies {
-    /// Energy less that at the beginning, the work since, and what cuts brought in.
+    /// Energy less that at the beginning, the work since, and the energy added by cuts.
     fn balance(&self) -> f64 {
         self.kinetic + self.elastic - self.first - self.loads - self.tools - self.cuts
     }
@@ -168,7 +168,7 @@ impl Pane {
         (settings.integrator.clone(), settings.options.clone())
     }
 
-    /// Another integrator. The options of the scene hold where it is the scene's own, and so does its limit of velocities.
+    /// Switches to another integrator. The scene's options and limit of velocities apply if it is the scene's own.
     pub(crate) fn use_integrator(&mut self, name: &str) -> Result<(), CommandError> {
         let settings = self.session.scene().settings();
         let own = &settings.options;
@@ -217,12 +217,12 @@ impl Pane {
             .map_err(|error| error.to_string())
     }
 
-    /// Another integrator, with its own options, and another step (s) at once.
+    /// Switches to another integrator, with its own options, and to another step (s) together.
     pub(crate) fn use_method(&mut self, name: &str, dt: f64) -> Result<(), CommandError> {
         self.switch((name.to_owned(), Options::new(), dt))
     }
 
-    /// The largest stable step (s) of an integrator on this body, where it has one.
+    /// The largest stable step (s) of an integrator on this body, if it has one.
     pub(crate) fn stable_step_of(&self, name: &str) -> Result<Option<f64>, LiveError> {
         let integrator = sinew_integrators::build(name, &Options::new())?;
         let found = integrator.stable_step(self.session.body().system());
@@ -278,13 +278,14 @@ impl Pane {
         self.options = options::facts(id, options);
     }
 
-    /// The limit of velocities (m/s), where there is one.
+    /// The limit of velocities (m/s), if any.
     fn limit(&self) -> Option<f64> {
         let guard = self.options.iter().find(|option| option.key == GUARD)?;
         guard.value.filter(|_| guard.word.is_none())
     }
 
-    /// Back to the beginning, with the integrator and the step as they are; with those of the scene where these are refused.
+    /// Resets to the beginning, with the current integrator and step, or with those of the scene if these are
+    /// refused.
     pub(crate) fn reset(&mut self) -> Result<(), CommandError> {
         self.due.clear();
         self.session.command(Command::Reset)?;
@@ -327,7 +328,7 @@ impl Pane {
         self.energies.first = energy.map_or(0.0, Energy::total);
     }
 
-    /// Gives what is kept from step to step the length of the state, which a cut or a reset changes.
+    /// Resizes stored vectors to the length of the state, which a cut or a reset changes.
     fn fit(&mut self) {
         let u = &self.session.state().u;
         if self.before.len() != u.len() {
@@ -349,7 +350,7 @@ impl Pane {
         self.due.cuts()
     }
 
-    /// Gives the session a command whose time has come; whether there was one.
+    /// Gives the session a command that is due; returns true if there was one.
     fn take_due(&mut self) -> Result<bool, CommandError> {
         let t = self.session.t();
         let Some(command) = self.due.next_until(t + SLACK * self.session.dt()) else {
@@ -365,8 +366,8 @@ impl Pane {
         self.stopped.is_some() || t + dt > until + SLACK * dt
     }
 
-    /// Steps up to a simulated time (s), but not beyond, as long as it `may` continue; an error message if a command
-    /// was refused.
+    /// Steps up to a simulated time (s), but not beyond, as long as it `may` continue; returns an error message if a
+    /// command was refused.
     pub(crate) fn follow(
         &mut self,
         until: f64,
@@ -428,7 +429,7 @@ impl Pane {
         Ok(())
     }
 
-    /// Takes note of what tools have received before a step.
+    /// Records the impulses that tools have received before a step.
     fn receive(&mut self) {
         for (tool, received) in self.session.tools().zip(&mut self.received) {
             let report = self.session.tool_report(tool);
@@ -461,7 +462,7 @@ impl Pane {
         self.settling.step(state.t(), dt, kinetic);
     }
 
-    /// The energies, the elastic one half way through the last step, where its velocity belongs.
+    /// Computes the energies; the elastic one half way through the last step, the time of its velocity.
     fn measure(&mut self) {
         if !self.measured.is_due() {
             return;
@@ -485,7 +486,7 @@ impl Pane {
         self.measured.spent_since(begun);
     }
 
-    /// Checks whether its body overlaps itself.
+    /// Checks its body for self-overlap.
     fn look_for_overlap(&mut self) {
         if self.looked.is_due() {
             let begun = Instant::now();
@@ -494,7 +495,7 @@ impl Pane {
         }
     }
 
-    /// Checks whether its body is another one than pages have, which they then have to be shown.
+    /// Checks if its body differs from the one that pages have; a new one then has to be sent.
     pub(crate) fn see_body(&mut self, uncut: &Surface) -> bool {
         let Some(body) = body(&self.session) else {
             return false;
@@ -651,7 +652,7 @@ impl Pane {
         self.session.log()
     }
 
-    /// All commands so far, where it has ended.
+    /// All commands so far, after its end.
     pub(crate) fn into_log(self) -> Log {
         self.session.into_log()
     }
@@ -677,12 +678,12 @@ impl Pane {
         self.session.scene()
     }
 
-    /// Its body as it is.
+    /// Its current body.
     pub(crate) fn body(&self) -> &Arc<SceneBody> {
         self.session.body()
     }
 
-    /// The largest stable step (s) of its integrator on its body as it is, where it has one.
+    /// The largest stable step (s) of its integrator on its current body, if it has one.
     pub(crate) fn stable_step(&self) -> Option<f64> {
         self.session.stable_step()
     }

@@ -81,7 +81,7 @@ impl Shown {
         Arc::ptr_eq(&self.mesh, &body.mesh)
     }
 
-    /// Takes displacements of all nodes and, as often as there is time for it or where they shall be other ones, colours.
+    /// Takes displacements of all nodes and, if there is time for it or if the choice of colours changed, colours.
     pub(super) fn paint(
         &mut self,
         session: &World,

@@ -6,7 +6,7 @@ use sinew_integrators::explicit::Substeps;
 
 use crate::protocol::{Stability, StepFacts};
 
-/// Stability of the steps of an integrator on a scene, as far as it is known; `options` are those that it was built
+/// Stability of the steps of an integrator on a scene, as far as known; `options` are those that it was built
 /// with.
 pub(super) fn facts(
     integrator: &dyn Stepper,

@@ -12,12 +12,12 @@ use super::{options, stability};
 use crate::protocol::{Event, IntegratorFacts, StepFacts};
 use crate::server::Shared;
 
-/// Asks what each integrator can do, on a thread of its own.
+/// Survey of the integrators' capabilities, on a thread of its own.
 #[derive(Debug)]
 pub(crate) struct Survey(JoinHandle<()>);
 
 impl Survey {
-    /// Begins to ask, and tells all pages then.
+    /// Begins the survey, and sends its result to all pages.
     pub(crate) fn start(
         shared: &Arc<Shared>,
         scene: &Arc<Simulation>,
@@ -38,7 +38,7 @@ impl Survey {
     }
 }
 
-/// An integrator that is set up on a scene where it is to be tried, or the reason for which it cannot be.
+/// An integrator, set up on a scene if it is to be tried, or the reason why it cannot be.
 fn set_up(
     entry: &Entry,
     options: &Options,
@@ -54,8 +54,8 @@ fn set_up(
     Ok(integrator)
 }
 
-/// Asks every integrator for its stable step, and whether it refuses the scene. Those that factorise are not set up, unless there are tools,
-/// which they refuse before they factorise.
+/// Finds the stable step of every integrator, or its refusal of the scene. Those that factorise are not set up,
+/// unless there are tools, which they refuse before they factorise.
 fn survey(scene: &Simulation, system: &dyn System) -> Vec<IntegratorFacts> {
     let has_tools = system.needs_contact();
     let entries = sinew_integrators::entries().into_iter();

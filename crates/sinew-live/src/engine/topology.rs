@@ -7,7 +7,7 @@ use super::shown::twin_points;
 use crate::picture::Surface;
 use crate::protocol::{NONE, SurfaceShape, topology};
 
-/// The surfaces of all panes as pages have them. A picture names the epoch of those that it belongs to.
+/// The surfaces of all panes as pages have them. A picture names their epoch.
 #[derive(Debug, Default)]
 pub(super) struct Topology {
     /// Number of changes, the first surfaces among them.
@@ -17,7 +17,8 @@ pub(super) struct Topology {
 }
 
 impl Topology {
-    /// Takes the surfaces of bodies that became other ones, of which this was the surface before all cuts; whether there were any.
+    /// Updates the surfaces of changed bodies; `uncut` is the surface before all cuts. Returns true if there were
+    /// any.
     pub(super) fn follow(&mut self, panes: &mut [Pane], uncut: &Surface) -> bool {
         let mut is_new = false;
         for pane in panes.iter_mut() {

@@ -1,4 +1,4 @@
-//! A run beside the panes by which their errors are known.
+//! A trusted run in parallel with the panes, for their errors.
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
@@ -23,11 +23,11 @@ const SHARE: f64 = 0.9;
 /// Spans by which it may be behind.
 const MOST_BEHIND: usize = 1024;
 
-/// Displacements of a pane that may wait to be compared: those of a body of 20,000 nodes take half a megabyte, a thousand of which would be kept for
-/// a trusted run that is behind.
+/// Most displacements of a pane that wait for comparison: those of a body of 20,000 nodes take half a megabyte, and a
+/// delayed trusted run would keep a thousand of them.
 const MOST_LOOKS: usize = 8;
 
-/// Share of an error that is left after a span: what is shown is the largest of late.
+/// Decay factor of the shown error per span: a recent maximum is shown.
 const FADES: f64 = 0.99;
 
 /// A span that the panes have stepped through.
@@ -78,7 +78,7 @@ impl Drop for Trusted {
 }
 
 impl Trusted {
-    /// Begins where the panes begin; a sentence where that cannot be.
+    /// Begins at the beginning of the panes, or returns a sentence if that is impossible.
     pub(crate) fn begin(scene: &SceneValues, panes: usize, tick: f64) -> Result<Self, String> {
         let words = |error: &dyn std::error::Error| error.to_string();
         let mut pane = Pane::of(scene).map_err(|error| words(&error))?;
@@ -264,7 +264,8 @@ impl Follower {
         Ok(())
     }
 
-    /// The largest distance of a pane from here, at what both bodies have left, over the largest displacement so far; not a number where that is nothing.
+    /// The largest distance of a pane from this run, at cells that both bodies have, over the largest displacement so
+    /// far; NaN if there are none.
     fn error(&mut self, look: &Look) -> f64 {
         let own = self.pane.body().model().body();
         let (Some(own), Some(other)) = (own, look.body.model().body()) else {

@@ -43,7 +43,7 @@ pub(crate) struct Seen<'a> {
     pub(crate) displacement: &'a [[f64; 3]],
     /// The tools.
     pub(crate) tools: Option<&'a Tools>,
-    /// The limit of velocities (m/s), where there is one.
+    /// The limit of velocities (m/s), if any.
     pub(crate) limit: Option<f64>,
 }
 

@@ -44,7 +44,7 @@ impl Surface {
         }
     }
 
-    /// The point of a node of the mesh, where it lies on the surface.
+    /// The point of a node of the mesh, if it lies on the surface.
     pub(crate) fn point_of(&self, node: u32) -> Option<usize> {
         let point = self.point_of.get(node as usize);
         point

@@ -1,4 +1,4 @@
-//! Nodes of a body in another one of the same scene that was cut otherwise.
+//! Corresponding nodes of two bodies of a scene with different cuts.
 
 use sinew_scene::BodyModel;
 

@@ -90,7 +90,7 @@ pub(crate) enum Order {
         /// The field.
         name: Field,
     },
-    /// A trusted run beside, by which the error is known, or none.
+    /// Starts or ends a trusted run, from which the error is known.
     Trusted {
         /// True if there is one.
         on: bool,

@@ -10,7 +10,7 @@ use super::command::Field;
 pub(crate) enum Event {
     /// The scenery; first of all events.
     Scenery(Box<Scenery>),
-    /// The settings as they are now.
+    /// The current settings.
     Settings {
         /// Each pane.
         panes: Vec<PaneFacts>,
@@ -40,7 +40,7 @@ pub(crate) enum Event {
         /// The reason.
         reason: String,
     },
-    /// Tools became other ones.
+    /// The tools changed.
     Tools {
         /// All of them.
         tools: Vec<ToolFacts>,
@@ -105,7 +105,7 @@ pub(crate) struct ToolFacts {
     pub(crate) start: [f64; 6],
 }
 
-/// A part of a tool: its kind, its sizes, where it is in the tool.
+/// A part of a tool: its kind, its sizes, its pose in the tool.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct PartFacts {
     /// "sphere", "capsule", "plane" or "box".
@@ -184,7 +184,7 @@ pub(crate) struct IntegratorFacts {
 pub(crate) struct StepFacts {
     /// Kind of stability.
     pub(crate) stability: Stability,
-    /// The largest stable step (s), where there is one: 0 for none at all.
+    /// The largest stable step (s), if any: 0 for none at all.
     pub(crate) stable_step: Option<f64>,
 }
 
@@ -218,11 +218,11 @@ pub(crate) struct OptionFacts {
     pub(crate) words: Vec<&'static str>,
     /// The numbers that it takes.
     pub(crate) number: Option<NumberFacts>,
-    /// True if it takes a word and a number at once.
+    /// True if it takes a word and a number together.
     pub(crate) has_both: bool,
-    /// The word that holds.
+    /// The current word.
     pub(crate) word: Option<String>,
-    /// The number that holds.
+    /// The current number.
     pub(crate) value: Option<f64>,
 }
 

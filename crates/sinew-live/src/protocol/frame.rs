@@ -42,7 +42,7 @@ pub(crate) struct SurfaceShape<'a> {
 /// Marks a node or a point that another body or surface does not have.
 pub(crate) const NONE: u32 = u32::MAX;
 
-/// The surfaces of all panes, which hold for the pictures of this epoch.
+/// The surfaces of all panes for the pictures of this epoch.
 pub(crate) fn topology(epoch: u32, surfaces: &[SurfaceShape<'_>]) -> Vec<u8> {
     let size = |surface: &SurfaceShape<'_>| {
         rounded_up(16 + 16 * surface.points.len() + 12 * surface.triangles.len())
@@ -126,7 +126,7 @@ pub(crate) struct PaneHead {
     pub(crate) contacts: u32,
     /// Energy less that at the beginning and the work since (J); not a number where the energy is not known.
     pub(crate) balance: f64,
-    /// Nodes and tetrahedra of the body as it is.
+    /// Nodes and tetrahedra of the current body.
     pub(crate) nodes: u32,
     pub(crate) tets: u32,
     /// Totals of all cuts.
@@ -138,7 +138,7 @@ pub(crate) struct PaneHead {
 pub(crate) struct CutHead {
     /// Area (m2) at rest.
     pub(crate) area: f64,
-    /// Energy (J) that cuts brought in; not a number where it is not known.
+    /// Energy (J) added by cuts; NaN if unknown.
     pub(crate) energy: f64,
     /// Work (J) of the blade for new surface.
     pub(crate) blade_work: f64,
@@ -148,7 +148,7 @@ pub(crate) struct CutHead {
     pub(crate) pieces: u32,
     /// Tetrahedra that were taken away.
     pub(crate) removed: u32,
-    /// Times that the body became another one.
+    /// Number of changes of the body.
     pub(crate) changes: u32,
 }
 

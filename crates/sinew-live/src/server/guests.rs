@@ -16,13 +16,14 @@ use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
 use tokio::net::{TcpListener, TcpStream};
 use tokio::time::{Instant, Sleep, sleep_until};
 
-/// Most connections at once: each page needs a few while it loads, and one from then on.
+/// Most simultaneous connections: each page needs a few while it loads, and one from then on.
 const MOST: usize = 64;
 
-/// Time after which a connection ends that is no page's, and took no answer.
+/// Time after which a connection without a page ends if it reads no response.
 const PATIENCE: Duration = Duration::from_secs(10);
 
-/// Most connections at once that have not named the secret of the page's address. One more lets the oldest of them go, so that those who know it are always served.
+/// Most simultaneous connections that have not named the secret of the page's address. One more dismisses the oldest
+/// of them, so that those who know it are always served.
 const MOST_STRANGERS: usize = 16;
 
 /// Time that a connection has to name the secret.
@@ -62,7 +63,7 @@ impl Guests {
         }
     }
 
-    /// Takes a newcomer in, and lets the oldest stranger go where there are too many.
+    /// Admits a new connection, and dismisses the oldest stranger if there are too many.
     fn receive(&mut self, standing: &Standing) {
         self.strangers.retain(Standing::is_stranger);
         if self.strangers.len() >= self.limits.strangers
@@ -97,7 +98,7 @@ impl Listener for Guests {
     }
 }
 
-/// A connection that is counted as long as it lives.
+/// A connection that is counted while it is open.
 #[derive(Debug)]
 struct Seat(Arc<AtomicUsize>);
 
@@ -114,7 +115,7 @@ impl Drop for Seat {
     }
 }
 
-/// The status of a connection: a stranger, one that has named the secret, a page, or one that is to go.
+/// The status of a connection: a stranger, one that has named the secret, a page, or a dismissed one.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Standing(Arc<Inner>);
 
@@ -136,7 +137,7 @@ impl Standing {
         let _ = self.raise(STRANGER, KNOWN);
     }
 
-    /// It is a page, which may be silent as long as it likes.
+    /// Marks the connection as a page, which may be silent without limit.
     pub(crate) fn stay(&self) {
         let _ = self.raise(KNOWN, PAGE);
     }
@@ -147,7 +148,7 @@ impl Standing {
         }
     }
 
-    /// Goes from one rank to another; whether it was there.
+    /// Changes the rank from one to another; returns true if it had the first.
     fn raise(&self, from: u8, to: u8) -> bool {
         let raised = self
             .0
@@ -173,8 +174,8 @@ impl Connected<IncomingStream<'_, Guests>> for Standing {
     }
 }
 
-/// A connection, which fails when it waits for longer than the patience: the patience with strangers counts from the
-/// beginning of the connection, that with others again from each answer that it took a part of.
+/// A connection, which fails when it waits for longer than a limit: that for strangers counts from the
+/// beginning of the connection, that for others from the last response that was partly read.
 #[derive(Debug)]
 pub(crate) struct Guest {
     stream: TcpStream,
@@ -195,7 +196,7 @@ impl Guest {
         }
     }
 
-    /// An error where it has waited too long, or is to go, instead of waiting on.
+    /// Returns an error instead of waiting if it has waited too long or is dismissed.
     fn waits<T>(&mut self, context: &mut Context<'_>) -> Poll<io::Result<T>> {
         self.standing.0.waker.register(context.waker());
         match self.standing.rank() {

@@ -19,10 +19,11 @@ use super::{assets, guard, socket};
 /// Longest message of a page (bytes): commands take some hundred.
 const LONGEST_MESSAGE: usize = 16 * 1024;
 
-/// Most bytes that wait for a page which does not read: a picture of a large body and its topology, and not the answers to pings without an end.
+/// Most bytes that wait for a page which does not read: enough for a picture of a large body and its topology, but a
+/// limit for responses to pings.
 const MOST_UNREAD: usize = 64 << 20;
 
-/// Content security policy: sources that the page may load; nobody may frame it.
+/// Content security policy: sources that the page may load; framing it is forbidden.
 const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; img-src 'self' data:; \
                       base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 

@@ -9,7 +9,7 @@ use crate::protocol::{Event, Scenery, ToolFacts};
 /// Data that connections share with the simulation.
 #[derive(Debug)]
 pub(crate) struct Shared {
-    /// Commands go there.
+    /// The queue of commands.
     pub(crate) inbox: Inbox,
     /// Pictures come from there.
     pub(crate) clients: Clients,
@@ -40,7 +40,7 @@ impl Shared {
         tool < scenery.unwrap_or_else(PoisonError::into_inner).tools.len()
     }
 
-    /// Tells all pages of other tools, and those that come later.
+    /// Sends the new tools to all pages, and to those that come later.
     pub(crate) fn tell_of_tools(&self, tools: Vec<ToolFacts>) {
         let scenery = self.scenery.lock();
         scenery.unwrap_or_else(PoisonError::into_inner).tools = tools.clone();
@@ -53,7 +53,7 @@ impl Shared {
         known.unwrap_or_else(PoisonError::into_inner).clone()
     }
 
-    /// Tells all pages of the integrators, and those that come later.
+    /// Sends the integrators to all pages, and to those that come later.
     pub(crate) fn tell_of_integrators(&self, event: Event) {
         let event = Arc::new(event);
         let known = self.integrators.lock();

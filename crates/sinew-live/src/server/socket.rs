@@ -16,13 +16,13 @@ use crate::clients::MOST_CLIENTS;
 use crate::inbox::{Place, Request};
 use crate::protocol::{Event, Order, Said, is_frame};
 
-/// Time for which a page may read nothing while a message is under way to it.
+/// Time for which a page may read nothing while a message is sent to it.
 const PATIENCE: Duration = Duration::from_secs(10);
 
 /// Longest time until its next draw that a page is believed.
 const LONGEST_FRAME: Duration = Duration::from_millis(250);
 
-/// Talks to a page until it goes, breaks the protocol, or reads nothing while messages pile up.
+/// Serves a page until it leaves, breaks the protocol, or reads nothing while messages accumulate.
 pub(crate) async fn talk(mut stream: WebSocket, shared: Arc<Shared>, standing: Standing) {
     let Some((id, messages)) = shared.clients.enter() else {
         let reason = format!(
@@ -73,7 +73,7 @@ async fn exchange(stream: WebSocket, shared: &Shared, id: u32, mut messages: Rec
     select(speak, listen).await;
 }
 
-/// Takes a message of a page; `false` where it says good-bye.
+/// Handles a message of a page; returns false if it closes the connection.
 fn hear(shared: &Shared, id: u32, message: &Message) -> bool {
     let refuse = |reason: String| shared.clients.tell(id, &Event::Refused { reason });
     match message {

@@ -22,7 +22,7 @@ impl Token {
         Ok(Self(text))
     }
 
-    /// True if a text is this token. The time taken does not depend on where they differ.
+    /// True if a text is this token. The time taken does not depend on the position of a difference.
     pub(crate) fn is(&self, text: &str) -> bool {
         if text.len() != self.0.len() {
             return false;

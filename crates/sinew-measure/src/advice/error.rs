@@ -19,7 +19,7 @@ pub enum AdviceError {
         "the scene moves too fast to be followed: {duration:e} s of it take {needed:.0e} s of CPU time; shorten [run] duration, look for a stiffness or mass in wrong units, or give --pilot-seconds more"
     )]
     TooFast {
-        /// The shortest part that would say something (s).
+        /// The shortest representative part (s).
         duration: f64,
         /// CPU time (s) it takes.
         needed: f64,

@@ -20,7 +20,7 @@ const TRIAL_STEPS: f64 = 4.0;
 /// Instants of the comparison where not even one interval of the scene's can be followed.
 const INSTANTS: usize = 10;
 
-/// Smallest share of an interval that still says something about the scene.
+/// Smallest representative share of an interval.
 const SMALLEST_SHARE: f64 = 1e-3;
 
 /// The part of a scene that is followed, from t = 0 on, and how.
@@ -76,7 +76,7 @@ fn longest_part(whole: Span, seconds: f64, cost: f64) -> Result<Span, AdviceErro
     })
 }
 
-/// Tells what a reference costs from its first steps.
+/// Estimate of a reference's cost from its first steps.
 struct ReferenceCost<'a> {
     simulation: &'a Simulation,
     spectrum: Option<Spectrum>,

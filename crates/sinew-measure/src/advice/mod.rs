@@ -52,7 +52,7 @@ pub enum LeftOut {
     /// It could make no pilot.
     #[error(transparent)]
     Pilot(#[from] PilotError),
-    /// A run beyond what was followed may be unstable.
+    /// A run beyond the measured part may be unstable.
     #[error("its largest stable step is not known, and only a part of the scene was followed")]
     StabilityUnknown,
 }
@@ -83,7 +83,7 @@ impl Serialize for NotMeasured {
     }
 }
 
-/// The answer to a [`Question`], with how it was found.
+/// The answer to a [`Question`], with the facts of the search.
 #[derive(Debug, Serialize)]
 pub struct Advice {
     /// The question.
@@ -95,8 +95,8 @@ pub struct Advice {
     /// True if the stiffness changes with the deformation, so that a step that was stable over that part may be
     /// unstable later.
     pub stiffness_changes: bool,
-    /// Instants (s) after that part at which loads jump or have kinks, increasing; no run saw what
-    /// follows.
+    /// Instants (s) after that part at which loads jump or have kinks, increasing; no run covered
+    /// them.
     pub unseen_changes: Vec<f64>,
     /// Description of the method of the reference and its check.
     pub reference: String,
@@ -108,7 +108,7 @@ pub struct Advice {
     pub written: Result<Pilot, NotMeasured>,
     /// The answer.
     pub answer: Answer,
-    /// Candidates that could not run, or not be trusted beyond what was measured, with the reason.
+    /// Candidates that could not run, or not be trusted beyond the measured part, with the reason.
     pub refused: Vec<(MethodChoice, LeftOut)>,
     /// Runs measured.
     pub pilots: usize,
@@ -121,8 +121,8 @@ pub struct Advice {
 }
 
 /// The runs that answer a question. Total cost is that of set-up and of the whole scene; errors are
-/// those over the whole scene, as they were measured or, where [`Advice::covers_the_scene`] is
-/// false, as they are to be expected ([`Row::expected_error`](crate::Row::expected_error)).
+/// those over the whole scene, as measured or, if [`Advice::covers_the_scene`] is
+/// false, as expected ([`Row::expected_error`](crate::Row::expected_error)).
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub enum Answer {
     /// At least one run keeps to tolerance and budget.
@@ -252,7 +252,7 @@ fn advise_here(simulation: Simulation, question: Question) -> Result<Advice, Adv
     })
 }
 
-/// The answer, and whether the time ran out before it was found. `also` adds runs off the ladder.
+/// The answer, with a flag: true if the time ran out before it was found. `also` adds runs off the ladder.
 fn answer(
     search: &mut Search<CasePilots<'_>>,
     question: Question,
@@ -295,7 +295,7 @@ fn answer(
 }
 
 /// The runs with the smallest error of each integrator within a budget (CPU s per simulated s), the smallest of all first; and
-/// whether the time ran out before they were found.
+/// a flag: true if the time ran out before they were found.
 fn smallest_error(
     search: &mut Search<CasePilots<'_>>,
     budget: f64,
@@ -403,7 +403,7 @@ impl OwnRun {
         parts < 0.5 || (parts - parts.round()).abs() > 1e-9 * parts
     }
 
-    /// CPU time (s) that a pilot of it takes at one sweep a step, and a reference of its own where
+    /// CPU time (s) of a pilot at one sweep a step, and of a reference of its own if
     /// it needs one.
     fn least_cpu_s(&self, case: &Case) -> f64 {
         let steps = case.run(self.dt).steps as f64;
@@ -444,7 +444,7 @@ impl Advice {
         self.measured.duration >= self.whole.duration
     }
 
-    /// The time (s) up to which, from t = 0 on, an advised run is known to keep to the tolerance; none where
+    /// The time (s) up to which, from t = 0 on, an advised run is known to keep to the tolerance; `None` if
     /// nothing is advised.
     #[must_use]
     pub fn met_until(&self) -> Option<f64> {

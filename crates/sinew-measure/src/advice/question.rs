@@ -7,7 +7,7 @@ use crate::cost::Cost;
 /// Time for pilots (CPU s) unless another is given.
 pub const DEFAULT_PILOT_SECONDS: f64 = 10.0;
 
-/// An error that is to be met, and what it may cost; at least one of them is given.
+/// A required error, a budget, or both.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Question {
     /// Largest relative error (fraction); without one, the smallest within the budget is asked for.

@@ -69,7 +69,7 @@ pub enum Caveat {
          is too small; --levels 3"
     )]
     Locking,
-    /// A place is another one on the finer mesh.
+    /// A place differs on the finer mesh.
     #[error(
         "{by}: its place takes {} of the scene's mesh and {} of a refined one: part of the difference; a named group of the mesh \
          does not change",
@@ -153,7 +153,7 @@ const FAR: f64 = 0.3;
 /// Share of the difference between meshes from which on errors in time matter.
 const MATTERS: f64 = 0.3;
 
-/// Caveats that the scene itself tells.
+/// Caveats that follow from the scene.
 pub(super) fn of_scene(simulation: &Simulation, levels: usize) -> Vec<Caveat> {
     let mut caveats = Vec::new();
     if levels == 2 {
@@ -184,7 +184,7 @@ pub(super) fn of_scene(simulation: &Simulation, levels: usize) -> Vec<Caveat> {
     caveats
 }
 
-/// The size of each place that the scene chose by where it lies: an area (m^2), or a volume (m^3).
+/// The size of each part that the scene chose by position: an area (m^2), or a volume (m^3).
 pub(super) fn hits(simulation: &Simulation) -> Vec<(String, f64, bool)> {
     let parts = simulation.model().body();
     let parts = parts.into_iter().flat_map(|body| &body.selected);
@@ -221,7 +221,7 @@ pub(super) fn of_places(levels: &[Vec<(String, f64, bool)>]) -> Vec<Caveat> {
     caveat.collect()
 }
 
-/// Caveats that the estimates themselves tell.
+/// Caveats that follow from the estimates.
 pub(super) fn of_estimates(quantities: &[Quantity]) -> Vec<Caveat> {
     let mut caveats: Vec<Caveat> = Vec::new();
     for quantity in quantities {

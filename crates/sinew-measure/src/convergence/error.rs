@@ -43,7 +43,7 @@ pub enum ConvergeError {
         /// The step (s).
         dt: f64,
     },
-    /// The run with half the step is the same, so that the two tell nothing of errors in time.
+    /// The run with half the step is the same, so that the two give no error in time.
     #[error(
         "on mesh {level} the run in steps of {dt:e} s and that in half of them are the same to the last bit, so that they tell nothing of the error in time; \
          take another dt, in seconds, or another method"

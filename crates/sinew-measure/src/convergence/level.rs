@@ -25,7 +25,8 @@ pub struct Level {
     pub tets: usize,
     /// Free degrees of freedom.
     pub dofs: usize,
-    /// Step (s) of the scene's method: the scene's, or where that is not stable on a refined mesh, a whole fraction of it.
+    /// Step (s) of the scene's method: the scene's, or a whole fraction of it if that is not stable on a refined
+    /// mesh.
     pub dt: f64,
     /// Steps taken.
     pub steps: usize,
@@ -54,7 +55,7 @@ pub(super) struct Solved {
 pub(super) struct Halving {
     /// Error of the longer steps over the difference.
     pub(super) error: f64,
-    /// Error of what is compared between meshes over the difference.
+    /// Error of the solution that is compared between meshes, over the difference.
     pub(super) left: f64,
 }
 

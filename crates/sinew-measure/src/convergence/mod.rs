@@ -1,7 +1,7 @@
-//! The error in space of a scene, estimated by the same scene on refined meshes, beside its error in time.
+//! The spatial error of a scene, estimated by the same scene on refined meshes, and its error in time.
 //!
 //! On each mesh the motion is solved twice: by the scene's method in its step, and with no or little error in time (the
-//! reference, or half the step where that costs too much). The second solutions differ between meshes by errors in space
+//! reference, or half the step if that costs too much). The second solutions differ between meshes by errors in space
 //! alone, which [`richardson`] continues; each differs from the first on its mesh by the error in time.
 
 mod caveats;
@@ -30,13 +30,13 @@ use sinew_scene::Simulation;
 use level::Solved;
 use observed::{Observed, Places};
 
-/// Fewest and most meshes: the scene's, and those that are refined from it.
+/// Fewest and most meshes: the scene's, and its refinements.
 pub const LEVELS: std::ops::RangeInclusive<usize> = 2..=4;
 
 /// A scene on its mesh and on refined ones.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Convergence {
-    /// The meshes, the scene's first, and what the runs on them took.
+    /// The meshes, the scene's first, and the cost of the runs on them.
     pub levels: Vec<Level>,
     /// Method by which errors in time were found.
     pub time_check: TimeCheck,
@@ -147,7 +147,7 @@ fn distance(a: &[f64], b: &[f64]) -> f64 {
     norm(&difference)
 }
 
-/// A difference over a size; 0 where nothing differs.
+/// A difference over a size; 0 if nothing differs.
 fn share(difference: f64, size: f64) -> f64 {
     match difference == 0.0 {
         true => 0.0,

@@ -19,7 +19,7 @@ pub(super) struct Observed {
     energy: Vec<f64>,
 }
 
-/// The values of a quantity within what was observed.
+/// The values of a quantity among the observed ones.
 pub(super) type Of = Box<dyn Fn(&Observed) -> &[f64]>;
 
 /// The places that are observed on every mesh.
@@ -36,7 +36,7 @@ pub(super) struct Places {
 struct ProbePlace {
     name: String,
     at: At,
-    /// Its distance (m) from the body, where it lies outside.
+    /// Its distance (m) from the body, if it lies outside.
     outside: Option<f64>,
 }
 
@@ -122,7 +122,7 @@ impl Places {
     }
 }
 
-/// The point that the scene asks for, where it asks for one.
+/// The point that the scene asks for, if any.
 fn asked(written: &ProbePoint, name: &str) -> Option<[f64; 3]> {
     match written.at {
         ProbeAt::Point(point) if written.name == name => Some(point),

@@ -102,7 +102,7 @@ pub fn predict(simulation: &Simulation, levels: usize) -> Result<Prediction, Con
             .collect();
     let own = sizes[0];
     let built = blocks.unwrap_or(own.blocks());
-    // Held nodes are in no matrix.
+    // Fixed nodes are in no matrix.
     let share_of = |count: usize, own: usize, of: usize| {
         (count as f64 * own as f64 / of.max(1) as f64).round() as usize
     };

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 /// `2 a` on meshes that are refined everywhere alike (Szabo and Babuska, Finite Element Analysis, 1991, chapter 10).
 const SMOOTH: f64 = 2.0;
 
-/// The order below which differences tell nothing: their sum would diverge.
+/// The order below which differences give no estimate: their sum would diverge.
 const LEAST: f64 = 0.25;
 
 /// Differences (fraction) up to which solutions are the same: their own errors may be as large.
@@ -19,18 +19,18 @@ const SAME: f64 = 1e-6;
 pub struct Estimate {
     /// The differences between neighbouring meshes, the scene's first, over the size of the quantity (fraction).
     pub differences: Vec<f64>,
-    /// The order of the last two differences; none for two meshes, and where no difference is above 1e-6.
+    /// The order of the last two differences; `None` for two meshes, or if no difference is above 1e-6.
     pub observed_order: Option<f64>,
     /// The order that the errors are taken from: the observed one, at most that of smooth solutions, or else that.
     pub order: f64,
-    /// The error on the scene's mesh (fraction); none where differences do not fall.
+    /// The error on the scene's mesh (fraction); `None` if differences do not fall.
     pub error: Option<f64>,
-    /// The error on the finest mesh (fraction); none where differences do not fall.
+    /// The error on the finest mesh (fraction); `None` if differences do not fall.
     pub error_of_finest: Option<f64>,
 }
 
 /// Continues the differences between neighbouring meshes (fractions, coarse ones first) as a geometric series: with order `p` each
-/// is `2^-p` of the one before, so that of a last difference `d` the finest mesh lacks `d / (2^p - 1)`
+/// is `2^-p` of the one before, so that with a last difference `d` the error of the finest mesh is `d / (2^p - 1)`
 /// (Richardson, Phil. Trans. R. Soc. A 210, 1911; Roache, J. Fluids Eng. 116, 1994). An observed order above that of smooth
 /// solutions is a coincidence and not believed (Oberkampf and Roy, Verification and Validation in Scientific Computing, 2010,
 /// section 8.6).

@@ -42,7 +42,7 @@ impl Sizes {
         }
     }
 
-    /// Blocks of the matrix with no node held: one for each node and two for each edge.
+    /// Blocks of the matrix without supports: one for each node and two for each edge.
     pub(super) fn blocks(self) -> usize {
         self.nodes + 2 * self.edges
     }

@@ -14,7 +14,7 @@ pub(super) fn parts(dt: f64, stable_step: Option<f64>) -> usize {
     }
 }
 
-/// The largest stable step (s) of the scene's integrator, where it has one and knows it.
+/// The largest stable step (s) of the scene's integrator, if it has one and knows it.
 pub(super) fn stable_step(simulation: &Simulation) -> Option<f64> {
     match simulation.stable_step() {
         Ok(StableStep::UpTo(limit)) => Some(limit),

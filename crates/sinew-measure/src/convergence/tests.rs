@@ -31,8 +31,8 @@ const DENSITY: f64 = 1000.0;
 const TRACTION: f64 = 10.0;
 const RISE: f64 = 0.1;
 
-/// The displacement (m) of the column's top by d'Alembert's solution: waves of the load that come back from the held end, turned
-/// round, after each way there and back.
+/// The displacement (m) of the column's top by d'Alembert's solution: waves of the load that come back from the fixed
+/// end, turned round, after each way there and back.
 fn top_of_column(t: f64) -> f64 {
     let modulus = 3000.0 * 0.7 / (1.3 * 0.4);
     let speed = (modulus / DENSITY).sqrt();

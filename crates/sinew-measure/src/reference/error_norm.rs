@@ -50,7 +50,7 @@ struct Squares {
 const TINY: f64 = 1e-140;
 /// Numbers above this have squares whose sum may overflow.
 const HUGE: f64 = 1e140;
-/// Power of two that brings either into the middle.
+/// Power of two that scales either to the middle of the range.
 const SCALE: f64 = f64::from_bits((1023 + 500) << 52);
 
 impl Squares {
@@ -65,7 +65,7 @@ impl Squares {
         }
     }
 
-    /// The square root of the sum; NaN where a number was.
+    /// The square root of the sum; NaN if a number was.
     fn norm(self) -> f64 {
         let tiny = self.tiny.sqrt() / SCALE;
         let huge = self.huge.sqrt() * SCALE;

@@ -97,9 +97,9 @@ impl<'a> Expansion<'a> {
         self.longest_step
     }
 
-    /// Takes a step from `state`, whose velocity must hold at its time, towards the last of `times` (s),
-    /// increasing and all later; the number of them that it has reached. `look` sees the motion at these,
-    /// where its second argument is true, and at instants between.
+    /// Takes a step from `state`, whose velocity must be at the displacement's time, towards the last of `times` (s),
+    /// increasing and all later; returns the number of them that it has reached. `look` receives the motion at these,
+    /// with its second argument true, and at instants between.
     pub(crate) fn step(
         &mut self,
         state: &mut State,

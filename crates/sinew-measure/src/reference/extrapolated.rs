@@ -76,9 +76,10 @@ impl Falling {
         ]
     }
 
-    /// Under stiffness damping explicit steps would have to be as short as the square of their stable length: the mean acceleration
-    /// method, and generalised-alpha as the check. Their errors are alike in steps of the same length, and less of what both lack would be seen in
-    /// their difference than there is: so those of the check are twice as long.
+    /// Methods for stiffness damping, under which explicit steps would have to be as short as the square of their
+    /// stable length: the average acceleration method, and generalised-alpha as the check. Their errors are alike in
+    /// steps of the same length, so that their difference would hide a common part: the check's steps are twice as
+    /// long.
     #[cfg(feature = "implicit")]
     fn implicit(interval: f64) -> [Self; 2] {
         let falling = |integrator: Box<dyn Integrator>, first: f64| Self {
@@ -101,8 +102,8 @@ impl Falling {
 /// Halvings after which most solutions hardly change.
 const USUAL_HALVINGS: i32 = 3;
 
-/// CPU time (s) per simulated second that [`by_extrapolation`] takes with the usual number of halvings, as some first steps tell; infinite where
-/// these fail.
+/// CPU time (s) per simulated second of [`by_extrapolation`] with the usual number of halvings, estimated from some
+/// first steps; infinite if these fail.
 pub(crate) fn cost_of_extrapolation(system: &dyn System, start: &State, interval: f64) -> f64 {
     let pair = Falling::pair(system, critical_step(system), interval);
     let cost = |mut method: Falling| {
@@ -138,7 +139,7 @@ struct Converged<'a> {
 /// as well. Bodies with stiffness damping are followed by implicit methods, those that tools touch by the two methods of order 1.
 ///
 /// # Errors
-/// [`ReferenceError`] where neither converges, or the two solutions differ by more than 1 %.
+/// [`ReferenceError`] if neither converges, or the two solutions differ by more than 1 %.
 pub(super) fn by_extrapolation<'a>(
     system: &dyn System,
     start: &'a State,
@@ -206,9 +207,9 @@ fn converge<'a>(
         .ok_or(ReferenceError::NotConverged { method })
 }
 
-/// The motion in a whole number of equal steps between each two instants, halved a given number of times; `None` where
-/// it cannot be followed. Each halving has exactly twice as many steps everywhere, without which Richardson's rule
-/// would take away another error than there is.
+/// The motion in a whole number of equal steps between each two instants, halved a given number of times; `None` if
+/// it cannot be computed. Each halving has exactly twice as many steps everywhere, without which Richardson's rule
+/// would remove a wrong error.
 fn follow<'a>(
     method: &mut Falling,
     system: &dyn System,
@@ -245,7 +246,7 @@ fn follow<'a>(
     Some(sight)
 }
 
-/// Richardson's rule for values in steps and in half steps: `share` of what these differ by is added.
+/// Richardson's rule for values in steps and in half steps: `share` of their difference is added.
 fn extrapolate(coarse: &[Vec<f64>], fine: &[Vec<f64>], share: f64) -> Vec<Vec<f64>> {
     let pairs = coarse.iter().zip(fine);
     pairs
@@ -288,7 +289,7 @@ mod tests {
         times.iter().map(|t| vec![exact.at(*t).0]).collect()
     }
 
-    /// The rule asks nothing of a system but its forces, so that a linear one shows what it is worth.
+    /// The rule needs only the forces of a system, so that a linear one shows its accuracy.
     #[test]
     fn it_is_the_closed_form_of_a_loaded_oscillator() {
         let (model, start, exact) = oscillator();

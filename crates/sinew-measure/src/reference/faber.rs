@@ -21,8 +21,8 @@ pub(super) struct Ellipse {
 }
 
 impl Ellipse {
-    /// The ellipse of least capacity round `-damping..0` by `-omega..omega` (1/s), where no motion grows
-    /// and none is faster.
+    /// The ellipse of least capacity around `-damping..0` by `-omega..omega` (1/s), the box of roots of motions
+    /// that neither grow nor are faster.
     pub(super) fn round(omega: f64, damping: f64) -> Self {
         let half = damping / 2.0;
         // Of all axes a, b with (half/a)^2 + (omega/b)^2 = 1, those of the least a + b.
@@ -36,7 +36,7 @@ impl Ellipse {
         }
     }
 
-    /// Coefficients of the Faber series of `exp(t z)` (t in s), as many as matter. On operators whose
+    /// Coefficients of the Faber series of `exp(t z)` (t in s), up to negligible ones. On operators whose
     /// numerical range lies within the ellipse each term is at most twice its coefficient (Beckermann,
     /// Comptes Rendus Mathematique 340, 2005).
     pub(super) fn exponential(&self, t: f64) -> Vec<f64> {

@@ -13,7 +13,7 @@ use super::{Expansion, Taylor};
 /// Largest error of a reference that is still called one.
 const ALLOWED: f64 = 1e-6;
 
-/// Steps of the check against those of the solution.
+/// Ratio of the check's number of steps to that of the solution.
 const CHECK: f64 = 1.5;
 
 /// Length of a Taylor series's steps.
@@ -21,13 +21,13 @@ const CHECK: f64 = 1.5;
 pub(crate) enum Pace {
     /// Short enough to see the peaks of the fastest motion.
     Short,
-    /// Four times as long, where short ones cost too much. At |lambda| h = 2 the last term of the series
+    /// Four times as long, if short ones cost too much. At |lambda| h = 2 the last term of the series
     /// is below 2^24/24! = 3e-17, still under rounding; sizes of the fastest motion are less exact.
     Long,
 }
 
 impl Pace {
-    /// Steps against those of [`Taylor`]: above 1 they are shorter.
+    /// Number of steps relative to [`Taylor`]'s own: above 1 they are shorter.
     pub(crate) fn refinement(self) -> f64 {
         match self {
             Self::Short => 1.0,

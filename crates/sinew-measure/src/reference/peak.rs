@@ -2,7 +2,7 @@
 
 use sinew_core::State;
 
-/// The largest |component| of the motion between two states, or `largest_so_far` where that is
+/// The largest |component| of the motion between two states, or `largest_so_far` if that is
 /// larger: of the cubic through displacement and velocity at both ends (Hermite). It is finite for
 /// finite states of any size.
 pub(super) fn peak_between(before: &State, after: &State, largest_so_far: f64) -> f64 {

@@ -44,7 +44,7 @@ impl<'a> SpotChecks<'a> {
         }
     }
 
-    /// Sees a step from one state to another, and solves it again where its turn has come: the first, then
+    /// Takes a step from one state to another, and solves it again if it is due: the first, then
     /// a fifth of the time.
     pub(super) fn see(&mut self, before: &State, after: &State) {
         self.displacement.note_size(&after.u);

@@ -7,7 +7,7 @@ use sinew_core::{Clock, LinearOperators, State};
 
 use super::fastest_turn;
 
-/// Largest |lambda| h, lambda being the fastest root of the motion. The series would hold beyond a
+/// Largest |lambda| h, lambda being the fastest root of the motion. The series would be accurate beyond a
 /// few; shorter steps show the peaks of the motion between them.
 const REACH: f64 = 0.5;
 
@@ -100,7 +100,7 @@ impl<'a> Taylor<'a> {
         self.longest_step
     }
 
-    /// Moves `state`, whose velocity must hold at its time, to time `t` (s). `each_step` sees the
+    /// Moves `state`, whose velocity must be at the displacement's time, to time `t` (s). `each_step` receives the
     /// displacement after every internal step.
     pub fn advance(&mut self, state: &mut State, t: f64, mut each_step: impl FnMut(&State)) {
         while state.t() < t {

@@ -5,14 +5,15 @@ use sinew_core::{State, System};
 
 use super::peak::peak_between;
 
-/// A reference solution at some instants, with what the verdicts need of the whole run.
+/// A reference solution at some instants, with the data of the whole run that verdicts need.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Track {
     /// Instants (s).
     pub times: Vec<f64>,
     /// Displacement (m) at each instant.
     pub displacements: Vec<Vec<f64>>,
-    /// The impulses (N s) until each instant of the things that touch the body, x, y, z of each; empty where nothing does.
+    /// The impulses (N s) until each instant of the things that touch the body, x, y, z of each; empty if nothing
+    /// does.
     pub impulses: Vec<Vec<f64>>,
     /// Largest |component| (m) over the run.
     pub max_u: f64,
@@ -86,7 +87,7 @@ pub enum ReferenceError {
 /// Smallest error of a run over the reference's own: even a tenth of it is then ten times larger.
 pub(crate) const TOLD_APART: f64 = 100.0;
 
-/// A motion as it is seen in passing.
+/// Running observations of a motion.
 #[derive(Clone)]
 pub(super) struct Sight<'a> {
     times: &'a [f64],
@@ -126,7 +127,7 @@ impl<'a> Sight<'a> {
         self.displacements.push(state.u.clone());
     }
 
-    /// Keeps the displacement and, where something touches the body, the impulses until the next of the instants.
+    /// Stores the displacement and, with contact, the impulses until the next of the instants.
     pub(super) fn keep_of(&mut self, system: &dyn System, state: &State) {
         self.keep(state);
         if let Some(contact) = system.contact() {

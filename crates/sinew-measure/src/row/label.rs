@@ -35,7 +35,7 @@ fn option(label: OptionLabel, key: &str, value: &Value) -> String {
     }
 }
 
-/// The values of these keys of a table; none where it is no table or lacks the first key.
+/// The values of these keys of a table; none if it is no table or lacks the first key.
 fn phrase(keys: &[&str], value: &Value) -> Option<String> {
     let table = value.as_object()?;
     table.get(*keys.first()?)?;

@@ -6,17 +6,17 @@ use sinew_scene::Simulation;
 
 use crate::method_choice::{MethodChoice, MethodError};
 
-/// A method with what its search needs to know of it.
+/// A method with the properties that its search needs.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Candidate {
     /// The method.
     pub method: MethodChoice,
-    /// The largest step (s) at which it is stable; infinite where it always is or cannot say, 0
-    /// where it never is.
+    /// The largest step (s) at which it is stable; infinite if it always is or cannot say, 0
+    /// if it never is.
     pub stable_step: f64,
-    /// True if the method can tell that step.
+    /// True if the method can compute that step.
     pub stable_step_is_known: bool,
-    /// The highest order it declares; none where it is exact at any step.
+    /// The highest order it declares; none if it is exact at any step.
     pub order: Option<u8>,
     /// True if its set-up factorises a matrix, which on a large mesh costs more than many runs.
     pub factorises: bool,
@@ -26,7 +26,7 @@ impl Candidate {
     /// A method on a scene.
     ///
     /// # Errors
-    /// [`MethodError`] when its options do not fit or the system lacks what it needs.
+    /// [`MethodError`] when its options do not fit or the system lacks a needed property.
     pub fn of(simulation: &Simulation, method: MethodChoice) -> Result<Self, MethodError> {
         let integrator = method.build()?;
         let stable_step = integrator.stable_step(simulation.system())?;

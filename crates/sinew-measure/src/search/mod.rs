@@ -1,8 +1,8 @@
 //! The cheapest runs for an error, found without measuring every method at every step.
 //!
 //! Each candidate is followed from its longest stable step to shorter ones, by the order it
-//! declares and the errors measured on the way, for as long as it can still become cheaper than
-//! the best run so far; the one that promises most goes first. Steps divide the time between two
+//! declares and the errors measured so far, for as long as it can still become cheaper than
+//! the best run so far; the most promising one goes first. Steps divide the time between two
 //! instants of the comparison, so that all errors are taken at the same instants; those of methods
 //! that need loads to change between steps meet these changes too, anywhere in the scene.
 
@@ -35,7 +35,7 @@ const MOST_PILOTS: usize = 16;
 /// Most runs that are made again for one goal.
 const MOST_AGAIN: usize = 4;
 
-/// A search over candidates; what it has measured for one goal serves the next.
+/// A search over candidates; measurements for one goal are reused for the next.
 #[derive(Debug)]
 pub struct Search<P> {
     pilots: P,
@@ -149,8 +149,8 @@ impl<P: Pilots> Search<P> {
         })
     }
 
-    /// Makes the cheapest runs for a goal again in single precision, where that may serve: kernels then take half
-    /// the memory, and errors are measured as ever.
+    /// Repeats the cheapest runs for a goal in single precision, if its rounding error may be accepted: kernels then
+    /// take half the memory, and errors are measured as usual.
     pub fn try_single_precision(&mut self, goal: Goal) {
         // Errors of rounding add to the method's own.
         if goal.error < 2.0 * LEAST_F32_ROUNDING {
@@ -220,8 +220,8 @@ impl<P: Pilots> Search<P> {
         self.trails.iter().flat_map(Trail::runs).chain(&self.others)
     }
 
-    /// The cheapest run for a goal, set-up included; of several whose times do not tell them
-    /// apart, the one with the smallest error.
+    /// The cheapest run for a goal, set-up included; of several with indistinguishable times,
+    /// the one with the smallest error.
     #[must_use]
     pub fn cheapest(&self, goal: Goal) -> Option<&Pilot> {
         let within = (1.0 + NOISE) * self.lowest_cost(goal, |_| true);
@@ -297,7 +297,7 @@ impl<P: Pilots> Search<P> {
         trail.candidate.factorises && trail.runs().next().is_none() && self.runs().any(costly)
     }
 
-    /// Measures a candidate in `parts` parts of the interval; false where no time is left for it.
+    /// Measures a candidate in `parts` parts of the interval; false if no time is left for it.
     fn follow(&mut self, index: usize, parts: u32) -> bool {
         let trail = &mut self.trails[index];
         let price = trail.price(parts, self.span.duration, self.pilots.least_step_cpu_s());
@@ -315,7 +315,7 @@ impl<P: Pilots> Search<P> {
     }
 }
 
-/// A method in single precision; `None` where no machine runs it, or where its options say what does.
+/// A method in single precision; `None` if no machine runs it, or if its options name one.
 fn in_single_precision(method: &MethodChoice) -> Option<MethodChoice> {
     let entry = sinew_integrators::entry(&method.integrator)?;
     let chosen = ["precision", "machine"];

@@ -167,7 +167,7 @@ fn needed_of_loads(method: &MethodChoice) -> Result<LoadOverStep, OptionError> {
     Ok(method.build()?.properties().changing_loads.needed())
 }
 
-/// Refuses steps of `dt` (s) over which the loads of a scene are not what a method needs.
+/// Refuses steps of `dt` (s) over which the loads of a scene do not meet a method's needs.
 fn check_loads(simulation: &Simulation, needed: LoadOverStep, dt: f64) -> Result<(), UnfitLoads> {
     let end = Run::covering(simulation.settings().duration, dt).steps as f64 * dt;
     let broken = |ramp: &Ramp| needed.first_broken(ramp, 0.0, dt, end);

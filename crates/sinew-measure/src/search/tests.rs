@@ -37,7 +37,7 @@ struct Laws {
     laws: BTreeMap<String, Law>,
     /// Parts of a kink: steps that do not divide it are refused.
     kink: Option<f64>,
-    /// Number of parts of an interval that the loads ask for, where they ask for any.
+    /// Number of parts of an interval that the loads require, if any.
     for_loads: Option<Result<u32, UnfitLoads>>,
     guarded: Vec<&'static str>,
     left: RefCell<f64>,

@@ -1,4 +1,4 @@
-//! One candidate on its way to shorter steps.
+//! The runs of one candidate, from long steps to shorter ones.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -31,7 +31,7 @@ pub(super) struct Aim {
 
 impl Aim {
     /// Total cost (s) of a method in `parts` that ran in `at` parts, its cost a step unchanged; none
-    /// where it cannot win.
+    /// if it cannot win.
     fn promise(&self, row: &Row, at: u32, parts: f64) -> Option<f64> {
         let cost = row.cpu_s_per_s * parts / f64::from(at);
         let total = row.setup_cpu_s + cost * self.duration;
@@ -138,7 +138,7 @@ impl Trail {
         new.then_some(parts)
     }
 
-    /// The step to try next; none where the candidate has done what it can for this aim.
+    /// The step to try next; none if the candidate has done what it can for this aim.
     pub(super) fn next(&self, aim: &Aim) -> Option<Next> {
         let met = |(_, pilot): &(&u32, &Pilot)| {
             let error = pilot.row.sound_error_over_scene();
@@ -188,7 +188,7 @@ impl Trail {
         Some(Next { parts, promise })
     }
 
-    /// The step by which the error should be met, going no further at once than can be foreseen.
+    /// The step that should meet the error, limited to a change that can be extrapolated.
     fn shorter(&self, (at, row): (u32, &Row), aim: &Aim) -> Option<Next> {
         let Some(error) = row.sound_error_over_scene() else {
             let parts = at.checked_mul(2)?;
@@ -220,7 +220,7 @@ impl Trail {
 }
 
 /// The step between a run that falls short and one that is accurate enough, where the errors of
-/// both put the goal; none where there is nothing to gain.
+/// both put the goal; none if there is nothing to gain.
 fn between(short: (u32, &Row), enough: (u32, &Row), aim: &Aim) -> Option<Next> {
     let (low, high) = (short.0, enough.0);
     let least = low + 1;

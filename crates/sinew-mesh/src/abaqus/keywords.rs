@@ -141,7 +141,7 @@ const BY_RULES: [&str; 9] = [
 ];
 
 impl Model {
-    /// The part that nodes, elements and sets go to; `None` for the assembly itself.
+    /// The part that receives nodes, elements and sets; `None` for the assembly itself.
     fn part(&mut self, place: Place) -> Option<&mut Part> {
         match place {
             Place::Outside => Some(&mut self.outside),

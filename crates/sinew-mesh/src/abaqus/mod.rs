@@ -1,7 +1,7 @@
 //! Input of Abaqus, `.inp`: the mesh of one part, with its sets and surfaces as groups.
 //!
-//! Lines are read first (`lines`), then keywords (`keywords`) into a part that holds the file's labels (`part`); then labels
-//! become indices, and sets groups (`assemble`, `sets`).
+//! Lines are read first (`lines`), then keywords (`keywords`) into a part with the file's labels (`part`); then
+//! labels become indices, and sets groups (`assemble`, `sets`).
 //!
 //! | case | what the reader does |
 //! |---|---|
@@ -45,8 +45,8 @@ use crate::reading::remarks::Remarks;
 ///
 /// # Errors
 ///
-/// If the bytes are no such file, are inconsistent, or describe more than the mesh of one part; the error names the place and what
-/// was expected there.
+/// If the bytes are no such file, are inconsistent, or describe more than the mesh of one part; the error names the
+/// place and the expected content.
 ///
 /// ```
 /// let file = "*NODE

@@ -1,4 +1,4 @@
-//! A part as the file holds it: nodes, elements, sets and surfaces under their labels and names.
+//! A part as in the file: nodes, elements, sets and surfaces under their labels and names.
 
 use crate::cell_type::CellType;
 

@@ -11,7 +11,7 @@ use crate::reading::fault::Fault;
 use crate::reading::remarks::Remarks;
 use crate::reading::tag_index::TagIndex;
 
-/// Groups as they are made of sets.
+/// Groups under construction from sets.
 pub(super) struct Groups<'a> {
     node_index: &'a TagIndex,
     element_index: &'a TagIndex,
@@ -360,7 +360,7 @@ impl<'r> Resolver<'r> {
         }
     }
 
-    /// Adds members, and those of the sets that they name.
+    /// Adds members, and the members of sets that are named.
     fn add<I: Iterator<Item = u64>>(
         &mut self,
         members: &[Member],

@@ -8,7 +8,7 @@ use crate::physical_tags::PhysicalTags;
 use crate::tet_shape::{TetShape, tet_corners};
 
 impl Mesh {
-    /// Turns inverted tetrahedra (4 and 10 nodes) the right way round: exchanges two corners, the nodes on the edges between
+    /// Orients inverted tetrahedra (4 and 10 nodes) positively: exchanges two corners, the nodes on the edges between
     /// corners accordingly, and the values at all of them. Returns the number of turned tetrahedra.
     pub fn orient(&mut self) -> usize {
         let mut turned = 0;

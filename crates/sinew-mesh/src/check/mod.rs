@@ -1,4 +1,4 @@
-//! Checks whether a mesh is fit for simulation: its cells, nodes and groups.
+//! Checks of a mesh's fitness for simulation: its cells, nodes and groups.
 
 mod fixes;
 
@@ -141,7 +141,7 @@ pub struct SharedFace {
 pub struct MeshCheck {
     /// Number of tetrahedra of any order. All shapes are measured on the corners.
     pub tets: usize,
-    /// Tetrahedra numbered the wrong way round. [`Mesh::orient`] turns them.
+    /// Tetrahedra of negative orientation. [`Mesh::orient`] turns them.
     pub inverted: Finding,
     /// Tetrahedra without volume.
     pub flat: Finding,
@@ -227,7 +227,7 @@ impl MeshCheck {
         self.problems().is_empty()
     }
 
-    /// Description of the tetrahedra that are numbered the wrong way round, if there are any.
+    /// Description of the tetrahedra of negative orientation, if any.
     fn winding(&self) -> Option<String> {
         const FIX: &str = "`sinew mesh check --fix orient` turns them";
         match (self.inverted.total, self.tets) {
@@ -292,7 +292,7 @@ impl MeshCheck {
 }
 
 impl fmt::Display for MeshCheck {
-    /// One line for each fact; those that need attention start with `!`.
+    /// One line for each fact; lines that need attention start with `!`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(
             f,
@@ -339,7 +339,7 @@ impl fmt::Display for MeshCheck {
     }
 }
 
-/// Every cell of the blocks for which `matters` holds.
+/// Every cell of the blocks for which `matters` is true.
 fn cells_of<'m>(
     mesh: &'m Mesh,
     matters: impl Fn(&CellBlock) -> bool + 'm,

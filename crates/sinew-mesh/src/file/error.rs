@@ -27,7 +27,7 @@ pub enum MeshFileError {
         /// The kind of thing that it is.
         what: &'static str,
     },
-    /// The file holds something else than a mesh of tetrahedra.
+    /// The file contains something other than a mesh of tetrahedra.
     #[error("{}: is {kind}; expected a mesh of tetrahedra, such as .msh, .vtu, .vtk, .mesh or .inp", path.display())]
     NotAMesh {
         /// The file.
@@ -46,7 +46,7 @@ pub enum MeshFileError {
 }
 
 impl MeshFileError {
-    /// Advice on what to do, if there is any: the way from a file of another kind or format to one that is read.
+    /// Advice, if any: the conversion of a file of another kind or format to one that is read.
     #[must_use]
     pub fn advice(&self) -> Option<String> {
         match self {

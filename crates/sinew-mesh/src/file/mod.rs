@@ -27,7 +27,7 @@ use crate::vtu::read_vtu;
 ///
 /// # Errors
 ///
-/// If the bytes are no such file, or are inconsistent; the error names the place and what was expected there.
+/// If the bytes are no such file, or are inconsistent; the error names the place and the expected content.
 pub fn read_mesh(bytes: &[u8], format: MeshFormat) -> Result<Mesh, MeshError> {
     match format {
         MeshFormat::Msh => read_msh(bytes),
@@ -38,8 +38,8 @@ pub fn read_mesh(bytes: &[u8], format: MeshFormat) -> Result<Mesh, MeshError> {
     }
 }
 
-/// Reads a mesh file of the format that its extension tells (see [`MeshFormat::of_path`]). Files of other names, and what begins with a
-/// section of gmsh, are read as .msh.
+/// Reads a mesh file in the format of its extension (see [`MeshFormat::of_path`]). Files of other names, and content
+/// that begins with a section of gmsh, are read as .msh.
 ///
 /// # Errors
 ///
@@ -50,11 +50,12 @@ pub fn read_mesh_file(path: impl AsRef<Path>) -> Result<Mesh, MeshFileError> {
     read_mesh_of(path, &bytes_of(path)?)
 }
 
-/// Reads the bytes of a mesh file, as [`read_mesh_file`] does, which is not opened: its path tells the format, and is named in messages.
+/// Reads the bytes of a mesh file like [`read_mesh_file`], without opening it: its path determines the format, and is
+/// named in messages.
 ///
 /// # Errors
 ///
-/// As [`read_mesh_file`], but for those of the file system.
+/// Same as [`read_mesh_file`], without errors of the file system.
 pub fn read_mesh_of(path: impl AsRef<Path>, bytes: &[u8]) -> Result<Mesh, MeshFileError> {
     let path = path.as_ref();
     let is_of_gmsh = bytes.trim_ascii_start().starts_with(b"$");

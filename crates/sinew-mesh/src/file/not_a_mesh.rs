@@ -21,7 +21,7 @@ impl NotAMesh {
         told_by_bytes(bytes).or_else(|| told_by_name(path))
     }
 
-    /// Advice on the way from such a file to a mesh.
+    /// Advice on the conversion of such a file to a mesh.
     pub(super) fn advice(self) -> String {
         match self {
             NotAMesh::Image(_) => format!(

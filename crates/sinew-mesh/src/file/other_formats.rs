@@ -1,10 +1,11 @@
-//! Mesh formats of other programs, identified by the extension of a file's name, and the way from them to .msh.
+//! Mesh formats of other programs, identified by the extension of a file's name, and their conversion to .msh.
 
 use std::path::Path;
 
 use crate::advice::meshio_command;
 
-/// Extensions of formats that can hold tetrahedra, that this crate does not read, and that meshio 5.3.5 reads without other packages.
+/// Extensions of formats for tetrahedra that this crate does not read, and that meshio 5.3.5 reads without other
+/// packages.
 const READ_BY_MESHIO: [&str; 17] = [
     "f3grid", "mdpa", "avs", "xml", "meshb", "bdf", "fem", "nas", "vol", "post", "dato", "su2",
     "dat", "tec", "ele", "node", "ugrid",
@@ -20,7 +21,7 @@ pub fn converted_extensions() -> impl Iterator<Item = &'static str> {
     READ_BY_MESHIO.into_iter().chain(READ_BY_ALL_OF_MESHIO)
 }
 
-/// Advice on how a file of another format becomes a .msh file, if its name tells the format.
+/// Advice on the conversion of a file of another format to .msh, if its name identifies the format.
 pub(super) fn advice(path: &Path) -> Option<String> {
     let extension = path.extension()?.to_str()?.to_ascii_lowercase();
     let package = if READ_BY_MESHIO.contains(&extension.as_str()) {

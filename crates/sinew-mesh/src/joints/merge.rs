@@ -49,7 +49,8 @@ fn sorted(mut edge: [u32; 2]) -> [u32; 2] {
 }
 
 impl Mesh {
-    /// Merges nodes of parts that touch: those of faces which lie on a face of another part, at the place of one of its nodes. Nodes of one part are never merged with each other, so that cuts stay.
+    /// Merges nodes of parts that touch: nodes of faces on a face of another part, at the place of one of its nodes.
+    /// Nodes of one part are never merged with each other, so that cuts stay.
     /// Nodes on edges of cells of second order follow the corners. Values are those of the first node. Returns the number of nodes that were merged into others.
     pub fn merge_nodes(&mut self) -> usize {
         let tets = self.corners_of_tets();

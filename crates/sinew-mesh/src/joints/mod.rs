@@ -27,13 +27,14 @@ use surfaces::{middle, parts};
 pub struct Joints {
     /// Number of parts.
     pub parts: usize,
-    /// Number of parts if those that touch were joined.
+    /// Number of parts if touching parts were joined.
     pub parts_apart: usize,
     /// Faces of a part that lie on one of another node by node, without common nodes; each pair once, by its middle.
     pub touching: Places,
-    /// Faces of a part that lie on one of another in another way, or on a piece of it, by their middles.
+    /// Faces of a part that touch a face of another part without matching it, by their middles.
     pub touching_partly: Places,
-    /// Nodes that [`crate::Mesh::merge_nodes`] would merge into others: those of faces that touch, at the place of a node of another part.
+    /// Number of nodes that [`crate::Mesh::merge_nodes`] would merge into others: nodes of touching faces, at the
+    /// place of a node of another part.
     pub mergeable: usize,
     /// Faces within a part that lie on others which have other corners, by their middles: faces that are split along different diagonals, or have nodes of others inside.
     pub mismatched: Places,
@@ -65,7 +66,8 @@ impl TetMesh {
         (part_of, parts as usize)
     }
 
-    /// Finds where tetrahedra hang together, and where they only seem to: parts that touch without common nodes, hinges, faces that do not match.
+    /// Finds the connections of tetrahedra and defects of them: parts that touch without common nodes, hinges, faces
+    /// that do not match.
     ///
     /// The two faces of a cut, which lie on each other node by node within a part, do not count.
     ///

@@ -144,7 +144,7 @@ pub(super) fn parts(points: &[[f64; 3]], tets: &[[u32; 4]]) -> Sets {
     parts
 }
 
-/// 1 for a tetrahedron the right way round, -1 for one the wrong way round, 0 for a flat one and what is none.
+/// 1 for a tetrahedron of positive orientation, -1 for an inverted one, 0 for a flat one and for invalid nodes.
 fn orientation(points: &[[f64; 3]], tet: &[u32; 4]) -> i8 {
     if !is_sound(tet, points.len()) {
         return 0;

@@ -28,14 +28,14 @@ use crate::reading::fault::{Fault, Lines};
 use crate::reading::number;
 use crate::reading::remarks::Remarks;
 
-/// Name of the data that hold references, which is meshio's.
+/// Name of the data of references, which is meshio's.
 const REFERENCES: &str = "medit:ref";
 
 /// Reads the bytes of a .mesh file of Medit as text.
 ///
 /// # Errors
 ///
-/// If the bytes are no such file, or are inconsistent; the error names the place and what was expected there.
+/// If the bytes are no such file, or are inconsistent; the error names the place and the expected content.
 ///
 /// ```
 /// let file = "MeshVersionFormatted 2 Dimension 3

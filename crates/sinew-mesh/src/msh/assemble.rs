@@ -223,7 +223,8 @@ fn next_index(count: usize, tables: Tables) -> Result<u32, Fault> {
     }
 }
 
-/// The nodes, the file and the names of its sections: turns node tags into indices, or says where one is wrong.
+/// The nodes, the file and the names of its sections: turns node tags into indices, or reports the place of a wrong
+/// one.
 #[derive(Clone, Copy)]
 struct Resolver<'a> {
     index: &'a TagIndex,

@@ -142,7 +142,7 @@ impl RawData {
     }
 }
 
-/// Counts of the rows of a section by what became of them.
+/// Counts of the rows of a section by outcome.
 #[derive(Default)]
 struct RowCount {
     given: Vec<bool>,
@@ -170,7 +170,8 @@ impl RowCount {
         self.unknown += 1;
     }
 
-    /// Leaves out cells of types of which none has a value, such as triangles beside tetrahedra that have; returns how many are left.
+    /// Leaves out cells of types without any value, such as triangles if only tetrahedra have values; returns the
+    /// number of remaining cells.
     fn leave_out_other_types(&mut self, cells: &[CellBlock], elements: &ElementIndex) -> usize {
         let blocks = cells.iter().zip(&elements.starts);
         let ranges: Vec<(CellType, Range<usize>)> = blocks

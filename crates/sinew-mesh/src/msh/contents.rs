@@ -1,4 +1,4 @@
-//! Everything that the sections of a file hold, before tags become indices.
+//! The content of all sections of a file, before tags become indices.
 
 use super::data::RawData;
 use super::elements::ElementSection;

@@ -49,7 +49,7 @@ pub(super) struct BlockPlace {
     rows: RowPlaces,
 }
 
-/// The way in which messages count the elements of a block.
+/// The numbering of a block's elements in messages.
 #[derive(Debug, Clone, Copy)]
 enum BlockNumber {
     /// Version 4: within the block with this number, from 1.
@@ -59,7 +59,7 @@ enum BlockNumber {
 }
 
 impl BlockPlace {
-    /// A fault in one of the block's elements; `cell` counts from 0, `section` holds the elements.
+    /// A fault in one of the block's elements; `cell` counts from 0, `section` is that of the elements.
     pub(super) fn fault(
         &self,
         section: &str,

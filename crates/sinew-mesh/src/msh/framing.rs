@@ -12,7 +12,7 @@ pub(super) fn count_line(cursor: &mut Cursor<'_>, what: &str) -> Result<u64, Fau
     Ok(count)
 }
 
-/// Takes the `$End...` line. `after` names what comes before it.
+/// Reads the `$End...` line. `after` names the content before it.
 ///
 /// Nothing but this line may follow the declared rows: more rows would be lost silently. If the file ends here, it may
 /// have been cut inside the last number, unless a line break closed that number's row.

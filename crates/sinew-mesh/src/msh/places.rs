@@ -15,7 +15,7 @@ struct Run {
     layout: Layout,
 }
 
-/// The way from one row to the next.
+/// The layout of rows.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Layout {
     /// Rows of this many bytes.

@@ -7,7 +7,7 @@ use crate::reading::fault::Fault;
 ///
 /// Several rows on a line and a row over several lines are both fine. But a row that crosses a line break without
 /// beginning and ending with a line took a number from the row after it, or was left one by the row before: it is refused,
-/// because what follows can look valid and mean something else.
+/// because the following rows can look valid and mean something else.
 pub(super) fn read_row<'a>(
     cursor: &mut Cursor<'a>,
     (record, number, total): (&str, u64, u64),

@@ -14,7 +14,7 @@ use crate::reading::cursor::{Cursor, LONGEST, quoted};
 use crate::reading::fault::Fault;
 use crate::reading::remarks::Remarks;
 
-/// The kind of file, as far as its sections have shown it.
+/// The kind of file, as known from the sections read so far.
 #[derive(Clone, Copy)]
 enum Kind {
     Unknown,
@@ -116,7 +116,7 @@ fn is_known(name: &str) -> bool {
     KNOWN.contains(&name)
 }
 
-/// The reason for which a known section is refused, and what is expected in its place.
+/// The reason for which a known section is refused, and the expected section in its place.
 type Reason = (&'static str, &'static str);
 
 const BEFORE_FORMAT: Reason = ("the section comes before $MeshFormat", "$MeshFormat first");
@@ -269,8 +269,8 @@ fn read_elements(
     Ok((section, format!("the declared {total} elements")))
 }
 
-/// Sections that nobody misses. gmsh writes its own schemes of interpolation, by which it draws elements, before every view, and
-/// the parameters of surfaces that it has made of an STL.
+/// Sections without meaning for a mesh. gmsh writes its own schemes of interpolation, by which it draws elements,
+/// before every view, and the parameters of surfaces that it has made of an STL.
 const WITHOUT_MEANING: [&str; 3] = ["Comments", "InterpolationScheme", "Parametrizations"];
 
 fn skip(

@@ -306,7 +306,7 @@ impl Source for Text<'_, '_> {
     }
 }
 
-/// The way a binary file stores numbers.
+/// The number format of a binary file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Binary {
     pub(super) order: ByteOrder,

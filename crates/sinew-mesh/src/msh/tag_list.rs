@@ -8,7 +8,7 @@ pub(super) struct TagList {
     wide: Vec<u64>,
 }
 
-/// The tags of a list, as wide as they are stored.
+/// The tags of a list, by stored width.
 pub(super) enum Tags {
     Narrow(Vec<u32>),
     Wide(Vec<u64>),

@@ -66,7 +66,7 @@ impl<'a> Cursor<'a> {
         self.rest().is_empty()
     }
 
-    /// Moves over blanks and line breaks. Returns whether there was a line break.
+    /// Moves over blanks and line breaks. Returns true if there was a line break.
     #[inline]
     pub(crate) fn skip_blanks(&mut self) -> bool {
         let mut passed_line_break = false;
@@ -83,7 +83,7 @@ impl<'a> Cursor<'a> {
         passed_line_break
     }
 
-    /// Moves over a word that more words follow on the same line; without them it stays where it is.
+    /// Moves over a word if more words follow on the same line; otherwise does not move.
     pub(crate) fn begins_with_word(&mut self, word: &[u8]) -> bool {
         let after = self.rest().strip_prefix(word);
         let Some([next, ..]) = after else {

@@ -2,7 +2,7 @@
 
 use crate::warning::Position;
 
-/// The bytes are not a mesh file of their format that can be read.
+/// Error of bytes that are no readable mesh file of their format.
 ///
 /// The message is `place in the file: section, block, row: what is wrong; expected ...`.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]

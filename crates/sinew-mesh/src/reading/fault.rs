@@ -1,4 +1,4 @@
-//! An error on its way up. Every level that it passes adds its own place to it.
+//! An error that is passed up. Every level adds its own place to it.
 
 use super::error::MeshError;
 use crate::warning::Position;

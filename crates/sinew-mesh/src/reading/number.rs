@@ -62,7 +62,7 @@ fn text_of(token: Token<'_>) -> Option<&str> {
     std::str::from_utf8(without_numpy(token.text)).ok()
 }
 
-/// The text inside `np.NAME(...)`, or the whole text where it is no such call.
+/// The text inside `np.NAME(...)`, or the whole text if it is no such call.
 #[inline]
 fn without_numpy(text: &[u8]) -> &[u8] {
     let inside = || {

@@ -3,7 +3,7 @@
 use super::fault::Lines;
 use crate::warning::{Position, Warning};
 
-/// Greatest number of warnings that are kept. More would help nobody.
+/// Greatest number of warnings that are kept.
 const KEPT: usize = 100;
 
 #[derive(Debug, Default)]

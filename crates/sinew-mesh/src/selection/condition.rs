@@ -48,8 +48,9 @@ pub enum Condition {
     },
     /// One of these nodes, by their tags in the mesh file.
     Tags(Vec<u64>),
-    /// A value of the mesh's data. Nodes are asked for data at nodes first, and belong to tetrahedra with such a value else;
-    /// tetrahedra and triangles of the boundary are asked for data of tetrahedra first, and have such values at all nodes else.
+    /// A value of the mesh's data. Nodes are selected by data at nodes, or else by tetrahedra with such a value;
+    /// tetrahedra and triangles of the boundary are selected by data of tetrahedra, or else if all their nodes have
+    /// such values.
     Data {
         /// Name of the data.
         name: String,
@@ -118,7 +119,7 @@ impl fmt::Display for Condition {
     }
 }
 
-/// The bounds that bound something.
+/// The finite bounds.
 fn bounds(f: &mut fmt::Formatter<'_>, low: [f64; 3], high: [f64; 3]) -> fmt::Result {
     let mut parts = Vec::new();
     for (axis, (low, high)) in ["x", "y", "z"].into_iter().zip(low.into_iter().zip(high)) {

@@ -68,7 +68,7 @@ pub enum SelectionError {
         /// Numbers for each node or tetrahedron.
         components: usize,
     },
-    /// No value of the data is one of those that are asked for.
+    /// No value of the data is one of the requested values.
     #[error("no {holder} is {}; of the values {known}", WithData(name, values))]
     NoValue {
         /// Holder of the values: node or tetrahedron.

@@ -175,7 +175,7 @@ impl Selection {
     }
 }
 
-/// One flag per node: true if a condition holds there.
+/// One flag per node: true if the node meets a condition.
 fn holds_at(
     condition: &Condition,
     mesh: &TetMesh,

@@ -1,4 +1,4 @@
-//! Parts of a mesh chosen by where they lie or by the values of data, for meshes that lack a group.
+//! Parts of a mesh chosen by position or by the values of data, for meshes that lack a group.
 
 mod condition;
 mod data;
@@ -12,10 +12,11 @@ pub use error::SelectionError;
 
 use std::fmt;
 
-/// Conditions on the nodes of a mesh, all of which must hold. A triangle or tetrahedron is selected if all its nodes are. Conditions on
-/// data of tetrahedra are met by tetrahedra themselves, by their triangles of the boundary and by their nodes.
+/// Conditions on the nodes of a mesh, all of which must be met. A triangle or tetrahedron is selected if all its
+/// nodes are. Conditions on data of tetrahedra are met by tetrahedra themselves, by their triangles of the boundary
+/// and by their nodes.
 ///
-/// Bounds are met by what lies on them, up to rounding: they are moved outward by 1e-9 of the longest edge of the mesh's
+/// Bounds include nodes on them, up to rounding: they are moved outward by 1e-9 of the longest edge of the mesh's
 /// bounding box.
 ///
 /// ```
@@ -35,7 +36,7 @@ pub struct Selection {
 }
 
 impl Selection {
-    /// The selection of what meets all conditions; without one, of the whole mesh.
+    /// The selection of all parts that meet all conditions; without conditions, of the whole mesh.
     #[must_use]
     pub fn new(conditions: Vec<Condition>) -> Self {
         Self { conditions }

@@ -9,7 +9,7 @@ use super::{Group, GroupMembers, TetMesh};
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum AddGroupError {
-    /// The name is empty or has a line break, so that no file could hold it.
+    /// The name is empty or has a line break, so that no file can store it.
     #[error("{name:?} is no name for a group; one line of text is needed")]
     BadName {
         /// The name.
@@ -71,7 +71,7 @@ impl TetMesh {
     /// # Errors
     ///
     /// If the name is empty, has a line break or is taken, there are no members, one names a tetrahedron or node that
-    /// does not exist, or a triangle or line names a node twice. The mesh is then as it was.
+    /// does not exist, or a triangle or line names a node twice. The mesh is then unchanged.
     ///
     /// ```
     /// use sinew_mesh::GroupMembers;

@@ -7,7 +7,7 @@ impl TetMesh {
     /// The triangles that bound all tetrahedra, or those of a volume group: the faces of exactly one of them.
     ///
     /// Each is turned so that its normal (counter-clockwise rule) points away from its tetrahedron. The order is that of
-    /// the tetrahedra. The boundary of a group holds its interfaces with the rest of the mesh as well; a group of
+    /// the tetrahedra. The boundary of a group includes its interfaces with the rest of the mesh; a group of
     /// triangles, lines or nodes has none. Tetrahedra that name a node twice have no faces.
     ///
     /// ```

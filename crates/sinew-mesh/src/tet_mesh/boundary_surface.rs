@@ -2,7 +2,7 @@
 
 use super::TetMesh;
 
-/// The boundary of a body, with points of its own: what is drawn and written of it without the nodes inside.
+/// The boundary of a body, with points of its own: for drawing and writing it without inner nodes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BoundarySurface {
     /// Node of the mesh (0-based) of each point, increasing.

@@ -8,7 +8,7 @@ use crate::mesh::{CellData, Mesh};
 
 impl Mesh {
     /// The values of this mesh's cell data in its tetrahedra, without those that are `copies`: pairs (first, copy) of places among all
-    /// tetrahedra. The first gives the value, and a copy where the first has none.
+    /// tetrahedra. The first gives the value, or a copy if the first has none.
     ///
     /// Files of several partitions write a view in parts, which are put together again. Data without a value in any
     /// tetrahedron are left out.
@@ -77,7 +77,7 @@ fn in_tets(
     }
 }
 
-/// Data of tetrahedra as data of blocks of cells, of which the last hold the tetrahedra, in these orders.
+/// Data of tetrahedra as data of blocks of cells; the last blocks contain the tetrahedra, in these orders.
 pub(super) fn in_blocks(data: &TetData, counts: &[usize], tets: &[Vec<usize>]) -> CellData {
     let lower = counts
         .iter()

@@ -19,7 +19,7 @@ pub struct CutMesh {
     pub tets: Vec<u32>,
 }
 
-/// A node that was moved at rest, with the tissue staying where it is.
+/// A node that was moved at rest through unmoved tissue.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MovedNode {
     /// The node.
@@ -33,7 +33,7 @@ pub struct MovedNode {
 /// A mesh's body as cuts left it, in its own numbers.
 #[derive(Clone, Copy, Debug)]
 pub struct CutBody<'a> {
-    /// Places of the nodes: those of the mesh, then copies.
+    /// Positions of the nodes: those of the mesh, then copies.
     pub points: &'a [[f64; 3]],
     /// The node of the mesh that each node is, or is a copy of.
     pub origins: &'a [u32],
@@ -46,8 +46,8 @@ pub struct CutBody<'a> {
 impl TetMesh {
     /// The mesh of a body that was cut, with the groups and the data of this mesh, of which it was made.
     ///
-    /// Groups of triangles and lines follow the first tetrahedron that has them, groups of nodes have all copies, and what lost its
-    /// tetrahedra is gone. Copies have tags beyond the last one.
+    /// Groups of triangles and lines follow the first tetrahedron that has them, groups of nodes have all copies, and
+    /// members that lost their tetrahedra are removed. Copies have tags beyond the last one.
     ///
     /// # Panics
     ///
@@ -144,8 +144,8 @@ impl CutMesh {
         kept.map(|(node, _)| node).collect()
     }
 
-    /// The nodes that replace these nodes of the uncut mesh, those that are gone left out: each itself, or its first
-    /// copy where it has lost its own tetrahedra.
+    /// The nodes that replace these nodes of the uncut mesh, without removed ones: each itself, or its first copy if
+    /// it has lost its own tetrahedra.
     #[must_use]
     pub fn without_copies(&self, uncut: &TetMesh, nodes: &[u32]) -> Vec<u32> {
         let mut seen = vec![false; uncut.points.len()];

@@ -7,8 +7,8 @@ use super::CutMesh;
 use super::surface::OUTWARD_FACES;
 
 impl CutMesh {
-    /// The faces that cuts made two of: the nodes of one, counter-clockwise as seen from outside the tissue behind it, and those of the other that came from the
-    /// same places, in the same order. Faces of tetrahedra that were taken away are none.
+    /// Pairs of cut faces: the nodes of one, counter-clockwise as seen from outside its tissue, and those of the
+    /// other that came from the same places, in the same order. Faces of removed tetrahedra are left out.
     #[must_use]
     pub fn cut_faces(&self) -> Vec<[[u32; 3]; 2]> {
         let copied = self.is_copied();

@@ -51,7 +51,7 @@ pub enum TetMeshError {
 }
 
 impl TetMeshError {
-    /// Advice on the way to tetrahedra, if there is one; `file` is the mesh file.
+    /// Advice on the conversion to tetrahedra, if any; `file` is the mesh file.
     #[must_use]
     pub fn advice(&self, file: &Path) -> Option<String> {
         use CellType::{Hexahedron, Pyramid, Quad, Wedge};

@@ -12,7 +12,7 @@ pub(crate) struct Owner {
 }
 
 impl Owner {
-    /// The face, counter-clockwise from outside where the tetrahedron is the right way round.
+    /// The face, counter-clockwise from outside if the tetrahedron has positive orientation.
     pub(crate) fn face(self, tets: &[[u32; 4]]) -> [u32; 3] {
         let nodes = tets[self.tet as usize];
         OUTWARD_FACES[usize::from(self.opposite)].map(|corner| nodes[corner])

@@ -34,7 +34,7 @@ pub enum FindGroupError {
 }
 
 impl TetMesh {
-    /// The group with this name. Where none has it, `"liver:2"` is the group of dimension 2 named `"liver"`.
+    /// The group with this name. If none has it, `"liver:2"` is the group of dimension 2 named `"liver"`.
     ///
     /// # Errors
     ///
@@ -64,7 +64,7 @@ impl TetMesh {
             .ok_or_else(|| self.unknown_group(name, Some(dim)))
     }
 
-    /// The group with this name for what only groups of one dimension are good for: among several of the name that of this dimension.
+    /// The group with this name, preferably of this dimension: for uses that need groups of one dimension.
     ///
     /// # Errors
     ///

@@ -1,4 +1,4 @@
-//! Turns a mesh as a file holds it into the mesh that a simulation needs.
+//! Conversion of a mesh as in a file to the mesh of a simulation.
 
 use std::collections::{BTreeMap, HashSet};
 
@@ -20,7 +20,7 @@ impl Mesh {
     /// * Flat and inverted tetrahedra are kept as they are.
     /// * Cell data that some tetrahedron has stay, those of the parts of a partitioned file put together, and data at nodes.
     ///
-    /// [`TetMesh::notes`] tells which of these happened.
+    /// [`TetMesh::notes`] lists the changes made.
     ///
     /// # Errors
     ///

@@ -43,7 +43,7 @@ const EDGES: [(usize, usize); 6] = [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 
 
 /// Points, tetrahedra and groups, every point being a corner of some tetrahedron.
 ///
-/// The fields are public so that a mesh can be built by hand. The methods expect every index to be in range, as
+/// The fields are public so that a program can build a mesh. The methods expect every index to be in range, as
 /// [`Mesh::to_tet_mesh`](crate::Mesh::to_tet_mesh), [`TetMesh::new`] and the
 /// [`structured`](crate::structured) generators guarantee, and panic otherwise. Flat and inverted tetrahedra are
 /// allowed.
@@ -64,7 +64,8 @@ pub struct TetMesh {
     pub data: Vec<TetData>,
     /// Values at the nodes.
     pub node_data: Vec<NodeData>,
-    /// Notes for the user, one sentence each, on what was merged or dropped on the way from the file.
+    /// Notes for the user, one sentence each, on cells and nodes that were merged or dropped in the conversion from
+    /// the file.
     pub notes: Vec<String>,
 }
 
@@ -184,7 +185,8 @@ impl TetMesh {
 
     /// The node nearest to a point, and its distance; of equally near nodes, the lowest.
     ///
-    /// Checks every node. In a mesh without nodes, or for a point that is not finite, the answer is node 0 at infinity.
+    /// Checks every node. In a mesh without nodes, or for a point that is not finite, the result is node 0 at
+    /// infinity.
     #[must_use]
     pub fn nearest_node(&self, point: [f64; 3]) -> (u32, f64) {
         let mut nearest = (0, f64::INFINITY);
@@ -198,9 +200,9 @@ impl TetMesh {
         (nearest.0, nearest.1.sqrt())
     }
 
-    /// The tetrahedron (0-based) that holds a point, and the share of each of its vertices in it (barycentric coordinates);
-    /// where none holds it, the one in whose coordinates it is least outside, with a share below 0. Of several alike, the
-    /// first.
+    /// The tetrahedron (0-based) that contains a point, and the point's barycentric coordinates in it; if none
+    /// contains it, the one in whose coordinates it is least outside, with a coordinate below 0. Of several with
+    /// equal coordinates, the first.
     ///
     /// Checks every tetrahedron. `None` in a mesh without tetrahedra, and for a point that is not finite.
     #[must_use]

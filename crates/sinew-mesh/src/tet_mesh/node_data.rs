@@ -9,7 +9,7 @@ pub struct NodeData {
     pub step: i32,
     /// Values per node.
     pub components: usize,
-    /// `components` values for each node in turn; NaN where the file gives none.
+    /// `components` values for each node in turn; NaN if the file gives none.
     pub values: Vec<f64>,
 }
 
@@ -39,8 +39,8 @@ impl NodeData {
         }
     }
 
-    /// The same with a node in the middle of each edge: the mean of both ends or, where all values are whole numbers and so may be
-    /// labels, what both ends have, and NaN where they differ.
+    /// The same with a node in the middle of each edge: the mean of both ends or, if all values are whole numbers and
+    /// so may be labels, the common value of both ends, and NaN if they differ.
     pub(super) fn refined(&self, edges: &[[u32; 2]]) -> NodeData {
         let may_be_labels = self.values.iter().all(|x| x.is_nan() || x.fract() == 0.0);
         let middle = |a: f64, b: f64| match may_be_labels {

@@ -57,7 +57,7 @@ impl TetMesh {
     ///
     /// Old nodes come first and keep their tags; tetrahedra are renumbered, the eight of tetrahedron `t` being
     /// `8 t..8 t + 8`. The eight have the data of the one, and new nodes the mean of those at the ends of their edge,
-    /// or none where these are different labels. All groups stay: tetrahedra become eight, triangles four, lines two.
+    /// or none if these are different labels. All groups stay: tetrahedra become eight, triangles four, lines two.
     /// Triangles and lines whose edges are none of the tetrahedra stay as they are, which [`TetMesh::notes`] tells.
     /// Curved surfaces stay as flat as they were.
     ///
@@ -115,7 +115,7 @@ impl TetMesh {
         })
     }
 
-    /// The eight tetrahedra of one, oriented as it is.
+    /// The eight tetrahedra of one, with its orientation.
     fn cut(&self, tet: &[u32; 4], midpoints: &Midpoints) -> [[u32; 4]; 8] {
         let (order, is_turned) = self.best_order(tet);
         let corners = order.map(|i| tet[i]);
@@ -215,7 +215,7 @@ impl Midpoints {
     }
 }
 
-/// The members of a refined group, and how many had to stay as they are.
+/// The members of a refined group, and the number of unrefined ones.
 fn refined_members(members: &GroupMembers, midpoints: &Midpoints) -> (GroupMembers, usize) {
     let mut whole = 0;
     let members = match members {

@@ -27,7 +27,7 @@ struct FollowedPart {
 /// Changes that a split made to a body of which no tetrahedron was removed.
 #[derive(Clone, Copy, Debug)]
 pub struct Split<'a> {
-    /// The body as it is.
+    /// The current body.
     pub body: CutBody<'a>,
     /// Nodes that were moved at rest.
     pub moved: &'a [MovedNode],
@@ -150,7 +150,7 @@ impl TetMesh {
         }
     }
 
-    /// The first tetrahedron that has each of some triangles; `None` where one has none.
+    /// The first tetrahedron that has each of some triangles; `None` if one has none.
     #[must_use]
     pub fn first_tets_of(&self, triangles: &[[u32; 3]]) -> Option<Vec<u32>> {
         let owners = Owners::new(self, triangles.iter().map(|part| part_key(part)));

@@ -9,7 +9,7 @@ pub struct TetData {
     pub step: i32,
     /// Values per tetrahedron.
     pub components: usize,
-    /// `components` values for each tetrahedron in turn; NaN where the file gives none.
+    /// `components` values for each tetrahedron in turn; NaN if the file gives none.
     pub values: Vec<f64>,
 }
 

@@ -11,7 +11,7 @@ pub enum WriteVtuError {
     /// The destination refused.
     #[error("the .vtu file cannot be written: {0}")]
     Io(#[from] io::Error),
-    /// VTK has no such cells, or numbers their nodes in a way this crate does not know.
+    /// VTK has no such cells, or an unknown numbering of their nodes.
     #[error("the mesh has {kind} cells, which cannot be written as .vtu")]
     UnsupportedCells {
         /// Their type.

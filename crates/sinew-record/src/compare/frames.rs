@@ -192,7 +192,7 @@ impl Found {
     }
 }
 
-/// The share of cells that are others; `None` where all are the same.
+/// The share of cells that are others; `None` if all are the same.
 fn other_cells(frame: &Mesh, other: &Mesh) -> Option<Difference> {
     let cells = |mesh: &'_ Mesh| {
         let cells = mesh.cells.iter();

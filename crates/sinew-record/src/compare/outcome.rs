@@ -86,7 +86,7 @@ pub(super) fn length(components: impl IntoIterator<Item = f64> + Clone) -> f64 {
     }
 }
 
-/// A difference over the size of what differs.
+/// A difference over the size of the values.
 pub(super) fn relative(difference: f64, size: f64) -> f64 {
     match difference == 0.0 {
         true => 0.0,

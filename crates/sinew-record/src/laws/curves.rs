@@ -12,7 +12,7 @@ use super::measured::Measured;
 /// Measured amounts of a load that are states of its curve; between more of them lines are straight.
 const MOST_AMOUNTS: usize = 5000;
 
-/// Stretches of a curve that nobody asked for.
+/// Range of stretches by default.
 const USUAL: [f64; 2] = [0.7, 2.0];
 
 /// Room round measured points, as a share of their extent.
@@ -21,12 +21,12 @@ const ROOM: f64 = 0.1;
 /// The curves that are asked for.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AskedCurves {
-    /// The number (from 1 on) or the group of the only region that is shown; all where there is none.
+    /// The number (from 1 on) or the group of the only region that is shown; `None` shows all.
     pub region: Option<String>,
-    /// The axis of the pull; where there is none x, or for directions by data of the mesh that between them.
+    /// The axis of the pull; `None` for x, or for the direction between the fibre directions given by data of the mesh.
     pub along: Option<[f64; 3]>,
-    /// The second axis of sheets and shears, as far as it is at right angles to the first; where there is none the second
-    /// of the material's axes by data of the mesh, or the mesh's axis after the one that the first is nearest to.
+    /// The second axis of sheets and shears, made perpendicular to the first; `None` for the second of the material's axes by
+    /// data of the mesh, or else the mesh's axis after the one that the first is nearest to.
     pub across: Option<[f64; 3]>,
     /// The least and the largest stretch; an amount of shear is a stretch less 1. `None`: the range of the measured
     /// points with a margin, or else from .7 to 2.
@@ -46,7 +46,7 @@ pub struct RegionCurves {
     pub lame: (f64, f64),
     /// True if it has fibres, which the constants at rest are without.
     pub has_fibres: bool,
-    /// Sentences about what the curves are of.
+    /// Sentences about the material of the curves.
     pub notes: Vec<String>,
     /// One curve for each load.
     pub curves: Vec<Curve>,
@@ -158,8 +158,8 @@ fn with_room([low, high]: [f64; 2]) -> [f64; 2] {
     [(low - room).max(0.5 * low), high + room]
 }
 
-/// A region with the properties of one place where the mesh's data give them, and sentences about what its curves are
-/// of. `moduli` are the least and the largest of its tetrahedra (Pa).
+/// A region with the properties of one place if the mesh's data give them, and sentences about the material of its
+/// curves. `moduli` are the least and the largest of its tetrahedra (Pa).
 fn at_a_point(
     (given, stated): (&Region, &Region),
     moduli: Option<[f64; 2]>,

@@ -1,4 +1,4 @@
-//! Measured points beside the curves of laws.
+//! Measured points for comparison with the curves of laws.
 
 use std::fs;
 use std::io;
@@ -41,13 +41,13 @@ pub(crate) struct Misfit {
     pub(crate) largest: f64,
 }
 
-/// A file of measured points that cannot be used: the file, the line, and what is wrong.
+/// A file of measured points that cannot be used: the file, the line, and the fault.
 #[derive(Debug, thiserror::Error)]
 #[error("{}{}: {fault}", path.display(), line.map_or_else(String::new, |line| format!(":{line}")))]
 pub struct MeasuredError {
     /// The file.
     pub path: PathBuf,
-    /// The line, from 1 on; `None` where the fault is that of the whole file.
+    /// The line, from 1 on; `None` if the fault is that of the whole file.
     pub line: Option<usize>,
     /// The fault.
     pub fault: MeasuredFault,
@@ -155,7 +155,7 @@ impl Measured {
         amounts
     }
 
-    /// The misfit of a curve; `None` where nothing was measured under its load.
+    /// The misfit of a curve; `None` if nothing was measured under its load.
     pub(crate) fn misfit(&self, curve: &Curve) -> Option<Misfit> {
         let largest = self.of(curve.load).map(|(_, stress)| stress.abs());
         let largest = largest.fold(0.0, f64::max);

@@ -49,7 +49,7 @@ pub fn write_curves(
     Ok(names)
 }
 
-/// True for a file that holds a table or a picture of laws.
+/// True for a file with a table or a picture of laws.
 #[must_use]
 pub fn is_curves_file(path: &Path) -> bool {
     fs::read_to_string(path).is_ok_and(|text| {

@@ -13,7 +13,7 @@ pub(super) const DESCRIBED: &str = "Curves of a law";
 
 const WIDTHS: [f64; 2] = [600.0, 440.0];
 const HEIGHT: f64 = 400.0;
-/// Stresses that are cut off, over the median of those that are drawn: a law that stiffens as an exponential leaves the
+/// Limit of stresses that are drawn, over their median: a law that stiffens as an exponential leaves the
 /// frame.
 const MOST: f64 = 8.0;
 /// Extent of a sheet's stress over that of the others': pressed along two axes it grows so fast that it would hide

@@ -7,8 +7,8 @@ use super::curves::RegionCurves;
 /// The line of column names.
 pub(super) const HEAD: &str = "region,load,stretch_or_shear_1,nominal_stress_Pa,nominal_stress_across_Pa,cauchy_stress_Pa,volume_ratio_1,stable";
 
-/// The curves as CSV: a comment on each region, then a row for each state. `docs/theory.md` in the repository says what
-/// each column is.
+/// The curves as CSV: a comment on each region, then a row for each state. `docs/theory.md` in the repository
+/// describes the columns.
 #[must_use]
 pub fn table_of_laws(regions: &[RegionCurves]) -> String {
     let mut text = String::new();

@@ -6,8 +6,8 @@ use sinew_fem::homogeneous::{Curve, Load};
 use super::curves::RegionCurves;
 use super::measured::{Measured, Misfit};
 
-/// A region's law in lines: its moduli at rest, what the curves are of, where they are stable, and how far measured
-/// points are from them.
+/// Lines on a region's law: its moduli at rest, the material and the stable range of the curves, and the misfit of
+/// measured points.
 #[must_use]
 pub fn words_of_law(region: &RegionCurves, measured: Option<&Measured>) -> Vec<String> {
     let mut lines = vec![moduli(region)];
@@ -58,7 +58,7 @@ pub(super) fn stability(curve: &Curve) -> String {
     parts.join("; ")
 }
 
-/// A misfit as a share of the largest stress measured; nothing where that is 0.
+/// A misfit as a share of the largest stress measured; `None` if that is 0.
 fn of_largest(misfit: &Misfit) -> String {
     if misfit.largest == 0.0 {
         return String::new();

@@ -42,7 +42,7 @@ const SHIFT: f64 = 1e-5;
 /// Share of it below which an eigenvalue is that of a rigid motion.
 const RIGID: f64 = 1e-10;
 
-/// Part of its length below which what is left of a vector is rounding of those before it.
+/// Share of its length below which the orthogonal part of a vector is rounding.
 const DEPENDENT: f64 = 1e-8;
 
 /// The modes of the smallest eigenvalues (1/s^2) of M^-1 K, with their shapes of modal mass 1, by LOBPCG (Knyazev,
@@ -174,7 +174,7 @@ struct Basis {
 }
 
 impl Basis {
-    /// Adds what a vector has beyond the others.
+    /// Adds the part of a vector orthogonal to the others.
     fn add(&mut self, mut x: Vec<f64>, image: impl Fn(&[f64]) -> Vec<f64>) {
         if self.orthonormalise(&mut x, None) {
             self.images.push(image(&x));
@@ -238,7 +238,7 @@ impl Basis {
         symmetric_eigen(&matrix, size)
     }
 
-    /// The first `size` eigenvectors, and what they take from vectors after the first `size`: the conjugate directions.
+    /// The first `size` eigenvectors, and their parts along vectors after the first `size`: the conjugate directions.
     fn turned(&self, shares: &[f64], size: usize) -> (Self, Self) {
         let rows = self.vectors.len();
         let sums = |of: &[Vec<f64>], from: usize, column: usize| {
@@ -275,7 +275,7 @@ fn finished(x: Vec<f64>, eigenvalue: f64, stiffest: f64, root: &[f64]) -> (f64, 
     (eigenvalue, shape.collect())
 }
 
-/// Roots of the masses, 0 for components that are held although their cell moves, and the largest stiffness over mass.
+/// Roots of the masses, 0 for fixed components of cells that move, and the largest stiffness over mass.
 fn roots(operators: &LinearOperators) -> (Vec<f64>, f64) {
     let stiffness = operators.stiffness();
     let layers = stiffness.layers().count();

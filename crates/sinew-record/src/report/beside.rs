@@ -2,7 +2,7 @@
 
 use sinew_draw::Page;
 
-/// Rules that place figures side by side where there is space, and shrink them where there is little.
+/// Rules that place figures side by side if there is space, and shrink them otherwise.
 pub(super) const STYLE: &str = ".beside { display: flex; flex-wrap: wrap; gap: 1rem; }\n\
      .beside figure { flex: 1 1 24rem; margin: 0; max-width: 40rem; }\n\
      .beside .plot svg { min-width: 0; }\n";

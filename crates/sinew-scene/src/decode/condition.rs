@@ -1,6 +1,6 @@
-//! The other keys with which a key goes.
+//! Conditions of a key on other keys.
 
-/// A condition that must hold where a key is given.
+/// A condition that must be met if a key is given.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Condition {
     /// Requirement for the other keys.
@@ -16,7 +16,7 @@ pub(crate) struct Condition {
 /// Words that are known at run time.
 pub(crate) type AllWords = fn() -> &'static [&'static str];
 
-/// Requirement for the other keys of a table.
+/// Requirement for another key of a table.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Goes {
     /// This key is given.
@@ -89,7 +89,7 @@ impl Condition {
         Self::new(Goes::Never, reason)
     }
 
-    /// Adds a remedy for a condition that does not hold.
+    /// Adds a remedy for a condition that is not met.
     pub(crate) const fn help(self, help: &'static str) -> Self {
         Self {
             help: Some(help),

@@ -13,7 +13,7 @@ pub(crate) struct TableDescription {
     pub(crate) meaning: &'static str,
     /// Its keys, in the order in which messages list them.
     pub(crate) keys: &'static [&'static dyn Described],
-    /// The number of its keys that must be given, beside those that are required.
+    /// The number of its keys that must be given, in addition to the required ones.
     pub(crate) needs: Needs,
     /// Tables as a user writes them, in which every key occurs at least once.
     pub(crate) examples: &'static [&'static str],
@@ -85,7 +85,7 @@ pub(crate) struct KeyDescription {
     pub(crate) name: &'static str,
     /// Its meaning, in sentences.
     pub(crate) meaning: String,
-    /// Its unit; empty where it has none.
+    /// Its unit; empty if it has none.
     pub(crate) unit: &'static str,
     /// Description of the values that fit.
     pub(crate) expected: String,
@@ -93,7 +93,7 @@ pub(crate) struct KeyDescription {
     pub(crate) shape: Shape,
     /// Behaviour if it is not given.
     pub(crate) otherwise: Stated,
-    /// The conditions under which it may be given, and must where it is required.
+    /// The conditions under which it may be given, and must if it is required.
     pub(crate) conditions: &'static [Condition],
 }
 
@@ -110,7 +110,7 @@ pub(crate) enum Stated {
     Default(String),
 }
 
-/// The values that a key takes, as far as one value tells.
+/// The values that a key takes, each checked without other keys.
 #[derive(Debug, Clone)]
 pub(crate) enum Shape {
     /// A finite number between two bounds.

@@ -5,10 +5,10 @@ use super::description::{Described, KeyDescription, Stated};
 use super::presence::{Optional, Or, Required, Usual};
 use super::values::{Kind, Written};
 
-/// A key: its name, its meaning, the values `V` that fit, and what holds where it is not given, `P`.
+/// A key: its name, its meaning, the values `V` that fit, and the rule `P` for its absence.
 ///
 /// Tables are read by these constants, and the reference and the schema of scenes are written from them, so that neither
-/// can say anything else than what is read.
+/// can differ from the reader.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Key<V, P = Required> {
     pub(crate) name: &'static str,
@@ -39,7 +39,7 @@ impl<V: Copy> Key<V, Optional> {
 }
 
 impl<V: Copy> Key<V, Optional> {
-    /// The key where something else holds without it.
+    /// The key with a description of its absence.
     pub(crate) const fn otherwise(self, otherwise: &'static str) -> Self {
         let presence = Optional(otherwise);
         Self { presence, ..self }
@@ -118,7 +118,7 @@ fn narrowed(otherwise: Stated, condition: &Condition) -> Stated {
     }
 }
 
-/// Describes a key whose value is a `V`, by what holds where it is not given.
+/// Describes a key whose value is a `V`, by the rule for its absence.
 macro_rules! described {
     ([$($generics:tt)*] $presence:ty, $key:ident => $stated:expr) => {
         impl<$($generics)*> Described for Key<V, $presence> {

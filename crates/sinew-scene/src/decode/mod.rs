@@ -1,4 +1,4 @@
-//! Values from TOML: the description of each table and key, and what reads them by it.
+//! Values from TOML: the description of each table and key, and the reader based on it.
 
 mod condition;
 mod description;

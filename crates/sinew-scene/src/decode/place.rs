@@ -7,7 +7,7 @@ use std::sync::Arc;
 use crate::error::{Fault, SceneError};
 use crate::source::SceneSource;
 
-/// The name of a table of a scene, and the bytes of the text that hold it and its keys.
+/// The name of a table of a scene, and the byte range of the table and its keys in the text.
 #[derive(Debug, Clone)]
 pub(crate) struct Place {
     scene: Arc<SceneSource>,

@@ -2,7 +2,7 @@
 
 use crate::error::SceneError;
 
-/// A key that must be given, as far as its conditions let it.
+/// A key that must be given, if its conditions allow it.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Required;
 
@@ -14,7 +14,7 @@ pub(crate) struct Optional(pub(crate) &'static str);
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Or<T>(pub(crate) T);
 
-/// A table that may be left out; what its reader takes then, in TOML.
+/// A table that may be left out, with the TOML that its reader takes then.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Usual(pub(crate) &'static str);
 
@@ -23,7 +23,7 @@ pub(crate) trait Presence<T> {
     /// The value, or perhaps none.
     type Read;
 
-    /// The value given, or what holds in its place.
+    /// The value given, or the one for its absence.
     fn settle(
         &self,
         given: Option<T>,

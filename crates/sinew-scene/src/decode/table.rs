@@ -1,4 +1,4 @@
-//! One table of a scene and the values its keys hold.
+//! One table of a scene and the values of its keys.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -111,7 +111,7 @@ impl<'a> Table<'a> {
         self.entries.contains_key(key)
     }
 
-    /// The value of a key, or what holds where it is not given.
+    /// The value of a key, or the one for its absence.
     pub(crate) fn read<V: Values, P: Presence<V::Read>>(
         &self,
         key: &Key<V, P>,
@@ -128,7 +128,7 @@ impl<'a> Table<'a> {
             .settle(given, || self.missing(key.name, expected()))
     }
 
-    /// The table that a key holds, or what holds where it is not given.
+    /// The table of a key, or the one for its absence.
     pub(crate) fn table<P: Presence<Table<'a>>>(
         &self,
         key: &Key<Inner, P>,
@@ -139,7 +139,7 @@ impl<'a> Table<'a> {
             .settle(table, || self.missing(key.name, key.values.expected()))
     }
 
-    /// The table that a key holds, which may have keys that are not described.
+    /// The table of a key, which may have keys that are not described.
     pub(crate) fn open_table<P: Presence<Table<'a>>>(
         &self,
         key: &Key<Inner, P>,
@@ -149,7 +149,7 @@ impl<'a> Table<'a> {
             .settle(table, || self.missing(key.name, key.values.expected()))
     }
 
-    /// The table that a key of any kind holds, if it holds one.
+    /// The table of a key of any kind, if its value is one.
     pub(crate) fn table_of(
         &self,
         key: &'static str,
@@ -174,7 +174,7 @@ impl<'a> Table<'a> {
         Ok(tables)
     }
 
-    /// The tables of the list that a key of any kind holds.
+    /// The tables of the list that is the value of a key of any kind.
     pub(crate) fn tables_of(
         &self,
         key: &'static str,
@@ -186,7 +186,7 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// The table that a key holds, or the tables of its list; none where it is left out.
+    /// The table of a key, or the tables of its list; none if it is left out.
     pub(crate) fn table_or_list<P>(
         &self,
         key: &Key<Inner, P>,
@@ -278,7 +278,7 @@ impl<'a> Table<'a> {
         self.entries.get(key)
     }
 
-    /// The only key that is given of those of which the table has one; none or several are an error.
+    /// The only given key of those of which exactly one is needed; none or several are an error.
     pub(crate) fn exactly_one(&self) -> Result<&'static str, SceneError> {
         let of = match self.description.needs {
             Needs::OneOf(keys) => keys,
@@ -342,18 +342,18 @@ impl<'a> Table<'a> {
         Some(self.misfit(other, value, described.expected, misfit))
     }
 
-    /// The text that a key holds; `None` if it holds none.
+    /// The text of a key; `None` if its value is no text.
     fn word(&self, key: &str) -> Option<&str> {
         self.entries.get(key)?.get_ref().as_str()
     }
 
-    /// False for a key that does not go with a word that another key holds, or that goes with a key of which this is
+    /// False for a key that does not go with the word of another key, or that goes with a key for which this is
     /// false.
     fn may_be_given(&self, key: &dyn Described) -> bool {
         self.may_be_given_after(key, &mut Vec::new())
     }
 
-    /// The same, for keys that go with each other: of `seen` nothing more is asked.
+    /// The same, for keys that depend on each other: those in `seen` are not checked again.
     fn may_be_given_after(&self, key: &dyn Described, seen: &mut Vec<&'static str>) -> bool {
         seen.push(key.name());
         let mut is_possible = |other: &str| {

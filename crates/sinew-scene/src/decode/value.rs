@@ -4,7 +4,7 @@ use std::ops::RangeInclusive;
 
 use toml::de::{DeArray, DeValue};
 
-/// The way in which a value does not fit.
+/// The reason why a value does not fit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Misfit {
     /// The type is wrong.

@@ -32,7 +32,7 @@ pub(crate) trait Values: Kind {
 
 /// A kind of values that may be defaults.
 pub(crate) trait Written: Values {
-    /// A value as it is written in TOML.
+    /// The TOML text of a value.
     fn written(&self, value: &Self::Read) -> String;
 }
 

@@ -77,7 +77,7 @@ pub enum Fault {
         key: String,
         /// The text.
         text: String,
-        /// The place in it, and what was expected there.
+        /// The position in it, and the expected text.
         error: FormulaError,
     },
     /// None or several of a set of keys of which exactly one must be given.
@@ -99,7 +99,7 @@ pub enum Fault {
     /// A name that is in use.
     #[error("{key} = \"{name}\" is taken by {by}")]
     Taken {
-        /// The key that holds the name.
+        /// The key of the name.
         key: &'static str,
         /// The name.
         name: String,
@@ -161,10 +161,10 @@ pub enum Fault {
     /// A group of `[[initial]]` that the mesh does not have.
     #[error(transparent)]
     Group(#[from] sinew_mesh::FindGroupError),
-    /// A part chosen by where it lies that has no members.
+    /// A part chosen by position that has no members.
     #[error(transparent)]
     Selection(#[from] sinew_mesh::SelectionError),
-    /// A part chosen by where it lies whose name a group of the mesh file has.
+    /// A part chosen by position whose name is that of a group of the mesh file.
     #[error(transparent)]
     SelectedGroup(#[from] sinew_mesh::AddGroupError),
     /// A region for the rest of the body where the others leave nothing.

@@ -1,4 +1,4 @@
-//! Hints at what to do about a fault.
+//! Hints for the correction of a fault.
 
 use std::path::Path;
 

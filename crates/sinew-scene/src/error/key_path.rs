@@ -4,8 +4,8 @@ use std::ops::Range;
 
 use toml::de::{DeTable, DeValue};
 
-/// The keys to the smallest key or value of a TOML text that holds a byte, such as `region[1].density`; tables of a list are
-/// counted from 1. `None` for a byte that belongs to none, and a text that is not TOML.
+/// The keys to the smallest key or value of a TOML text that contains a byte, such as `region[1].density`; tables of
+/// a list are counted from 1. `None` for a byte that belongs to none, and a text that is not TOML.
 pub(super) fn key_path(text: &str, byte: usize) -> Option<String> {
     let document = DeTable::parse(text).ok()?;
     let mut smallest = None;
@@ -39,7 +39,7 @@ fn find_in_table(table: &DeTable<'_>, byte: usize, before: &str, smallest: &mut 
     }
 }
 
-/// Keeps the path if its span holds the byte and is not longer than the one found before.
+/// Keeps the path if its span contains the byte and is not longer than the one found before.
 fn consider(span: &Range<usize>, byte: usize, path: &str, smallest: &mut Found) {
     let shorter = |(_, length): &(String, usize)| span.len() <= *length;
     if span.contains(&byte) && smallest.as_ref().is_none_or(shorter) {

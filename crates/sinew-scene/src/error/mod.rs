@@ -1,4 +1,4 @@
-//! Errors of scenes: what is wrong, and where.
+//! Errors of scenes, with their place in the text.
 
 mod fault;
 mod hint;
@@ -92,13 +92,13 @@ impl SceneError {
         self.0.scene.text()
     }
 
-    /// The bytes of the text at fault; `None` where the fault is that of the whole document.
+    /// The bytes of the text at fault; `None` if the fault is that of the whole document.
     #[must_use]
     pub fn span(&self) -> Option<Range<usize>> {
         self.0.span.clone()
     }
 
-    /// True if the scene was made of values of a program: the message names a key, and nobody has seen its lines.
+    /// True if the scene was made of values of a program: the message names a key, since the user has no lines.
     #[must_use]
     pub fn is_of_values(&self) -> bool {
         self.0.scene.is_of_values()
@@ -121,7 +121,7 @@ impl SceneError {
         Some(self.0.scene.position(span.start))
     }
 
-    /// A hint at what to do, if there is one.
+    /// A remedy, if one is known.
     #[must_use]
     pub fn help(&self) -> Option<&str> {
         self.0.help.as_deref()

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-/// A table over time that cannot be used: its file, its line, and what is wrong.
+/// A table over time that cannot be used: its file, its line, and the fault.
 #[derive(Debug, thiserror::Error)]
 #[error("{}{}: {fault}", path.display(), line.map_or_else(String::new, |line| format!(":{line}")))]
 pub struct MotionTableError {
@@ -18,7 +18,7 @@ impl MotionTableError {
         &self.path
     }
 
-    /// The line, counted from 1; `None` where the fault is that of the whole file.
+    /// The line, counted from 1; `None` if the fault is that of the whole file.
     #[must_use]
     pub fn line(&self) -> Option<usize> {
         self.line
@@ -38,7 +38,7 @@ pub enum MotionTableFault {
     /// A file that cannot be read.
     #[error("cannot be read: {0}")]
     Unreadable(#[from] std::io::Error),
-    /// Other columns than those of such a table.
+    /// A header with other columns than those of such a table.
     #[error("the first line is {found:?}: expected the names of the columns, {expected}")]
     Header {
         /// The line, shortened.

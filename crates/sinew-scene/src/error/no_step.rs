@@ -8,7 +8,7 @@ pub enum StableStepError {
     /// An option that the integrator refuses.
     #[error(transparent)]
     Option(#[from] OptionError),
-    /// A system that lacks what the answer needs.
+    /// A system without a needed property.
     #[error(transparent)]
     Setup(#[from] SetupError),
 }

@@ -22,10 +22,10 @@ pub enum ToolFault {
         "the tool begins inside the body, in tetrahedron {tet}, and holds no node that it could push out"
     )]
     Within {
-        /// Tag of the tetrahedron that holds the middle of the tool.
+        /// Tag of the tetrahedron that contains the middle of the tool.
         tet: u64,
     },
-    /// A tool for which all nodes are held or moved.
+    /// A tool for which all nodes are fixed or moved.
     #[error("the tool can touch no node: all {nodes} are held or moved")]
     NothingToTouch {
         /// Number of the nodes.

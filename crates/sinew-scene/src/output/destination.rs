@@ -63,7 +63,7 @@ impl Destination {
         })
     }
 
-    /// The path as it was given.
+    /// The path as given.
     #[must_use]
     pub fn path(&self) -> &Path {
         &self.path
@@ -122,7 +122,7 @@ impl Destination {
         }
     }
 
-    /// Writes the whole output at once.
+    /// Writes the whole output.
     ///
     /// # Errors
     /// [`OutputError`]; a file that was there is then as it was.
@@ -156,7 +156,7 @@ impl Sink {
 }
 
 impl Output {
-    /// True if the reader of a pipe closed it, so that nobody reads further output.
+    /// True if the reader of a pipe closed it, so that further output is not read.
     #[must_use]
     pub fn reader_left(&self) -> bool {
         match &self.sink {

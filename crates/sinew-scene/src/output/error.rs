@@ -41,7 +41,7 @@ pub enum OutputError {
         /// The path.
         path: PathBuf,
     },
-    /// A folder that holds other things than an earlier result of the same kind.
+    /// A folder with other content than an earlier result of the same kind.
     #[error("cannot write into {}: it holds {}; name a new folder", path.display(), others(names))]
     Foreign {
         /// The path.
@@ -49,7 +49,7 @@ pub enum OutputError {
         /// Names of the others in it.
         names: Vec<String>,
     },
-    /// A folder that holds a file which this run reads.
+    /// A folder with a file that this run reads.
     #[error("cannot write into {}: this run reads {} in it; name a new folder", path.display(), input.display())]
     InputWithin {
         /// The path.
@@ -62,7 +62,7 @@ pub enum OutputError {
     Busy {
         /// The path.
         path: PathBuf,
-        /// The process, where the system tells it.
+        /// The process, if the system reports it.
         by: Option<u32>,
     },
     /// A folder within that of another result.
@@ -73,7 +73,7 @@ pub enum OutputError {
         /// The folder of the other result.
         holder: PathBuf,
     },
-    /// A complete result that cannot be kept beside its folder: something else has that name.
+    /// A complete result that cannot be kept next to its folder: something else has that name.
     #[error("cannot write into {}: its results would be kept as {} until new ones are complete, and that is there already; rename it, or name a new folder", path.display(), kept.display())]
     NoRoomAside {
         /// The path.
@@ -97,7 +97,7 @@ pub enum OutputError {
         /// The path.
         path: PathBuf,
     },
-    /// A folder that is another one than when the run began.
+    /// A folder that was replaced during the run.
     #[error("writing into {} failed: the folder was removed or replaced by others while the run went on; run again", path.display())]
     Gone {
         /// The path.
@@ -119,7 +119,7 @@ pub enum OutputError {
         /// The input that is the same file.
         input: PathBuf,
     },
-    /// A file that another output of the same run goes to.
+    /// A file that is also the destination of another output of the run.
     #[error("cannot write {}: it leads to the same file as {}, which this run writes too; remove the link", path.display(), other.display())]
     Shared {
         /// The path.
@@ -141,7 +141,7 @@ pub enum OutputError {
         /// Description of its kind.
         kind: &'static str,
     },
-    /// A path that now names something other than when the run began.
+    /// A path whose target was replaced during the run.
     #[error("cannot write {}: it was changed by others while the run went on; name another file and run again", path.display())]
     Changed {
         /// The path.

@@ -27,7 +27,7 @@ impl OutputFolder {
         }
     }
 
-    /// Its path as it was given.
+    /// Its path as given.
     #[must_use]
     pub fn path(&self) -> &Path {
         &self.path
@@ -103,7 +103,7 @@ impl OutputFolder {
 }
 
 /// A folder's path without folders that would be created only to be left again: `new/..` is the
-/// folder that holds `new`.
+/// folder that contains `new`.
 fn once_made(path: &Path) -> PathBuf {
     let mut folder = PathBuf::new();
     for component in path.components() {

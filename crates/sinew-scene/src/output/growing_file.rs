@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 use super::error::OutputError;
 
-/// A file that grows line by line. What was written is there after a kill, as far as it was flushed.
+/// A file that grows line by line. Flushed content survives a kill of the process.
 #[derive(Debug)]
 pub struct GrowingFile {
     path: PathBuf,

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Identity(u64, u64);
 
-/// The resolved path of a file, where there are no inodes to compare.
+/// The resolved path of a file, on systems without inodes to compare.
 #[cfg(not(unix))]
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Identity(PathBuf);
@@ -36,7 +36,7 @@ impl Identity {
         fs::canonicalize(path).ok().map(Self)
     }
 
-    /// Identity of standard output, where it is a file or a pipe. Of a device nothing is said: an input
+    /// Identity of standard output, if it is a file or a pipe; `None` for a device, since an input
     /// may use the same one.
     #[cfg(unix)]
     pub(super) fn of_standard_output() -> Option<Self> {
@@ -61,7 +61,7 @@ fn standard_output() -> Option<File> {
     descriptor.ok().map(File::from)
 }
 
-/// True if standard output goes to a file, as far as the system tells.
+/// True if the system reports that standard output goes to a file.
 #[cfg(unix)]
 pub(super) fn standard_output_is_file() -> bool {
     let metadata = standard_output().and_then(|file| file.metadata().ok());

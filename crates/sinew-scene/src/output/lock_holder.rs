@@ -2,7 +2,7 @@
 
 use std::fs::File;
 
-/// The process that holds a lock on a file, where the system lists locks.
+/// The process that holds a lock on a file, if the system lists locks.
 #[cfg(target_os = "linux")]
 pub(super) fn lock_holder(file: &File) -> Option<u32> {
     use std::os::unix::fs::MetadataExt;

@@ -1,4 +1,4 @@
-//! The file that says whose a folder is and what was written into it.
+//! The manifest of a folder: its owner and the files that were written into it.
 
 use std::collections::HashSet;
 use std::fs;
@@ -24,7 +24,7 @@ pub(super) struct Manifest {
 /// The state of a result.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum State {
-    /// It is being written, or whoever wrote it was killed.
+    /// It is being written, or its writer was killed.
     Unfinished,
     /// It is complete.
     Finished,

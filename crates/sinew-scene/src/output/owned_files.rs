@@ -42,7 +42,7 @@ impl OwnedFolder {
     /// Writes a file as a whole and makes sure that the disk has it.
     ///
     /// # Errors
-    /// [`OutputError`]; a file that was there is then as it was.
+    /// [`OutputError`]; an existing file is then unchanged.
     pub fn write(&self, name: &str, content: &[u8]) -> Result<(), OutputError> {
         let path = self.target(name)?;
         let write = |path: &Path| {
@@ -61,11 +61,11 @@ impl OwnedFolder {
         }
     }
 
-    /// Writes a file as a whole, whose name the disk surely has after [`OwnedFolder::secure`]: for many files that a checkpoint covers. The disk has its content before
-    /// that; whoever writes beside a run does not keep it waiting.
+    /// Writes a file as a whole, with a durable name after [`OwnedFolder::secure`] and durable content before: for
+    /// many files that a checkpoint covers. A thread that writes next to a run does not delay it.
     ///
     /// # Errors
-    /// [`OutputError`]; a file that was there is then as it was.
+    /// [`OutputError`]; an existing file is then unchanged.
     pub fn write_lightly(
         &self,
         name: &str,

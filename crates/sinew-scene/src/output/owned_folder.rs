@@ -17,10 +17,11 @@ use super::manifest::{MANIFEST, Manifest, State};
 use super::target::folder_of;
 use super::whole_file::{is_left_behind, is_temporary, sync_folder};
 
-/// A folder that holds one result and nothing else, so that a later result of the same kind may replace it without
-/// taking anything that is not its own. A manifest in it says what kind of result it is, whether it is complete and which files belong to it.
+/// A folder with one result and nothing else, so that a later result of the same kind may replace it without touching
+/// foreign files. A manifest in it states the kind of result, its completeness and its files.
 ///
-/// A complete result is not lost to one that begins: it is kept beside the folder, under the folder's name with `.old`, until [`OwnedFolder::finish`].
+/// A complete result is kept while a new one is written: next to the folder, under the folder's name with `.old`,
+/// until [`OwnedFolder::finish`].
 ///
 /// While it is open no other process opens it.
 #[derive(Debug)]
@@ -58,10 +59,11 @@ pub enum Replaced {
 
 impl OwnedFolder {
     /// Checks, before long work, that a result of this kind may be written at `path`, by a run that reads `inputs`: the
-    /// folder is new or empty, or holds an earlier result of the same kind and nothing else. Changes nothing.
+    /// folder is new or empty, or contains only an earlier result of the same kind. Changes nothing.
     ///
     /// # Errors
-    /// [`OutputError`] for a folder that holds other things, into which another process writes, or that cannot be written.
+    /// [`OutputError`] for a folder with other content, one into which another process writes, or one that cannot be
+    /// written.
     pub fn check(
         path: &Path,
         kind: &'static str,
@@ -147,8 +149,8 @@ impl OwnedFolder {
         }
     }
 
-    /// Makes the folder if need be and writes down that files of these names (with `/` between folders) will belong to the new result. A complete result of
-    /// the same kind is set aside until [`OwnedFolder::finish`], what is left of an incomplete one is removed.
+    /// Creates the folder if necessary and records the names of the new result's files (with `/` between folders). A
+    /// complete result of the same kind is set aside until [`OwnedFolder::finish`]; an incomplete one is removed.
     ///
     /// # Errors
     /// As [`OwnedFolder::check`], and [`OutputError::Busy`] while another process writes into it.
@@ -208,7 +210,8 @@ impl OwnedFolder {
         Ok(folder)
     }
 
-    /// Completes the result, of which the disk then has all, and removes the one that was kept beside it; one that is no success leaves that where it is.
+    /// Completes the result, which is then durable, and removes the one that was kept next to it; a failed one leaves
+    /// that in place.
     ///
     /// # Errors
     /// [`OutputError`].
@@ -226,7 +229,7 @@ impl OwnedFolder {
         }
     }
 
-    /// True if the folder is not known to hold a complete result.
+    /// True if the folder is not known to contain a complete result.
     ///
     /// # Errors
     /// [`OutputError`].
@@ -235,7 +238,7 @@ impl OwnedFolder {
         Ok(manifest.is_none_or(|manifest| manifest.state == State::Unfinished))
     }
 
-    /// Removes what is still kept of the result that this one, which is complete, took the place of.
+    /// Removes the rest of the result that this complete one replaced.
     ///
     /// # Errors
     /// [`OutputError`].
@@ -247,7 +250,7 @@ impl OwnedFolder {
         Ok(())
     }
 
-    /// Moves the folder, which holds a complete result, to where such are kept.
+    /// Moves the folder, which contains a complete result, aside.
     fn set_aside(&self) -> Result<PathBuf, OutputError> {
         let kept = kept_beside(&self.path, self.kind)?;
         if kept.exists() {
@@ -322,7 +325,7 @@ impl OwnedFolder {
         })
     }
 
-    /// Its path as it was given.
+    /// Its path as given.
     #[must_use]
     pub fn path(&self) -> &Path {
         &self.path
@@ -374,7 +377,7 @@ fn kept_beside(path: &Path, kind: &str) -> Result<PathBuf, OutputError> {
     Ok(kept)
 }
 
-/// True if a folder holds a result that was set aside.
+/// True if a folder contains a result that was set aside.
 fn is_set_aside(folder: &Path, kind: &str) -> Result<bool, OutputError> {
     let is_folder = folder.symlink_metadata().is_ok_and(|found| found.is_dir());
     if !is_folder {
@@ -410,7 +413,7 @@ fn remove_set_aside(kept: &Path, kind: &'static str) -> Result<Replaced, OutputE
     })
 }
 
-/// The nearest folder above a path that holds a result.
+/// The nearest folder above a path that contains a result.
 fn holder_of(path: &Path) -> Result<Option<PathBuf>, OutputError> {
     let absolute = std::path::absolute(path);
     let absolute = absolute.map_err(|source| OutputError::not_opened(path, source))?;

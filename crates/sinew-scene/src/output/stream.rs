@@ -1,11 +1,11 @@
-//! Outputs that are written to as they are.
+//! Outputs that are written to directly.
 
 use std::fs::File;
 use std::io::{self, ErrorKind, Stdout, Write};
 use std::path::Path;
 
 /// Standard output, a device, a pipe or an open file. A reader that closes its pipe is no failure: the
-/// rest, which nobody reads, is dropped.
+/// rest is dropped.
 #[derive(Debug)]
 pub(super) struct Stream {
     sink: Sink,
@@ -23,7 +23,7 @@ impl Stream {
         Self::on(Sink::StandardOutput(io::stdout()))
     }
 
-    /// Opens what the path names; a pipe waits for its reader.
+    /// Opens the file, device or pipe of the path; a pipe waits for its reader.
     pub(super) fn open(path: &Path) -> io::Result<Self> {
         let file = File::options().append(true).open(path)?;
         Ok(Self::on(Sink::Path(file)))

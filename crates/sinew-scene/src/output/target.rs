@@ -1,4 +1,4 @@
-//! The kind of thing that a path names, and whether it may be written.
+//! The kind of a path's target, and permission to write it.
 
 use std::fs::{self, File, FileType, Metadata};
 use std::io::ErrorKind;
@@ -10,7 +10,7 @@ use super::identity::{Identity, Input};
 /// Names of standard output.
 const STANDARD_OUTPUT: [&str; 4] = ["-", "/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"];
 
-/// Names of this process's open files. The files behind them belong to whoever opened them, and are
+/// Names of this process's open files. The files behind them belong to the process that opened them, and are
 /// written to, never replaced.
 const DESCRIPTORS: [&str; 3] = ["/dev/fd", "/proc/self/fd", "/dev/stderr"];
 
@@ -22,7 +22,7 @@ const MOST_LINKS: usize = 40;
 pub(super) enum Target {
     /// Standard output.
     StandardOutput,
-    /// A device, a pipe or an open file, written to as it is.
+    /// A device, a pipe or an open file, written to directly.
     Stream,
     /// A file that exists or can be created, by the path at the end of all links.
     File(PathBuf),

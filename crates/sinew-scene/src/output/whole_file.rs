@@ -127,7 +127,7 @@ pub(super) fn is_left_behind(name: &str) -> bool {
     })
 }
 
-/// Removes temporary files that processes left in a folder which are gone, as far as that can be known and done.
+/// Removes temporary files of ended processes from a folder, as far as possible.
 pub(super) fn remove_left_behind(folder: &Path) {
     let Ok(entries) = fs::read_dir(folder) else {
         return;
@@ -144,7 +144,7 @@ pub(super) fn remove_left_behind(folder: &Path) {
 }
 
 /// Creates a file in the same folder, so that renaming never copies, under a name that no other writer
-/// uses and that is short however long the final name is.
+/// uses and that is short even if the final name is long.
 fn temporary_in(folder: &Path) -> io::Result<(PathBuf, File)> {
     static COUNT: AtomicU64 = AtomicU64::new(0);
     loop {
@@ -163,7 +163,7 @@ fn temporary_in(folder: &Path) -> io::Result<(PathBuf, File)> {
     }
 }
 
-/// Gives a file the owner and the mode of the file that it will replace, as far as we may.
+/// Gives a file the owner and the mode of the file that it will replace, as far as permitted.
 #[cfg(unix)]
 fn keep_access(old: &Metadata, file: &File) {
     use std::os::unix::fs::{MetadataExt, PermissionsExt, fchown};

@@ -15,10 +15,10 @@ pub(super) const FACES: [[usize; 3]; 4] = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 
 /// Marks the outside.
 const OUTSIDE: u32 = u32::MAX;
 
-/// Tetrahedra and their neighbours, by which the surface is found from within.
+/// Tetrahedra and their neighbours, for distances from the surface inside the body.
 ///
-/// A distance is that along straight ways through tetrahedra that are joined to the current one: so it means the same
-/// where a body has folded into itself, and the point lies on its surface.
+/// A distance is measured along straight lines through tetrahedra that are joined to the current one: so it is
+/// correct even if the body has folded into itself and the point lies on its surface.
 #[derive(Debug)]
 pub(super) struct Depths {
     /// The tetrahedron behind each face.

@@ -2,7 +2,7 @@
 
 use sinew_tools::vector::Vector;
 
-/// Low and high corner (m) of what lies along the axes.
+/// Low and high corner (m) of an axis-aligned box.
 pub(super) type Bounds = [Vector; 2];
 
 /// Entries for each box beyond which cells are made larger: a few long boxes among small ones fill many cells.

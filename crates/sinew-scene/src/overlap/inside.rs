@@ -74,7 +74,7 @@ impl<'a> Placed<'a> {
         }
     }
 
-    /// The points, by their places among those given, that lie in tetrahedra which do not hold them, with these tetrahedra.
+    /// The points, by index, that lie in tetrahedra of which they are no part, with these tetrahedra.
     ///
     /// Points at tetrahedra that are inside out count in other parts only: in their own part, crushing is the cause,
     /// which is reported as such.

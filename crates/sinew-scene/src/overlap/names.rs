@@ -1,4 +1,4 @@
-//! Names of what overlaps, by groups of tetrahedra.
+//! Names of overlapping parts, by groups of tetrahedra.
 
 use sinew_mesh::{GroupMembers, TetMesh};
 

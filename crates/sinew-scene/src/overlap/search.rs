@@ -10,16 +10,18 @@ use super::grid::{Bounds, Grid, bounds, include, longest, meet};
 use super::inside::{Placed, SurfacePoint};
 use super::segment::{are_apart, crossing};
 
-/// Share of a body's size, or of its largest displacement where that is more, up to which surfaces touch: single precision rounds places by less.
+/// Share of a body's size, or of its largest displacement if that is more, up to which surfaces touch: single
+/// precision rounds places by less.
 const TOUCHES: f64 = 1e-6;
 
-/// Comparisons for each edge of the surface after which a state is given up: one in which everything is near everything is no longer a body.
+/// Most comparisons for each edge of the surface; a state that needs more is given up, since its surface is near
+/// itself everywhere.
 const COMPARISONS: usize = 1000;
 
 /// Most tetrahedra that are checked to measure depths, as a multiple of their number, or of 1000.
 const LOOKS: usize = 20;
 
-/// A point of the surface that is in a tetrahedron which does not hold it.
+/// A point of the surface that is inside a tetrahedron of which it is no part.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Inside {
     /// The distance (m) from the surface around the tetrahedron.
@@ -92,7 +94,8 @@ impl OverlapSearch {
         }
     }
 
-    /// The deepest point where nodes are at these places (m); none where no surface is in a part, and of a state that is not finite.
+    /// The deepest point where nodes are at these places (m); none if no surface is in a part, and of a state that is
+    /// not finite.
     pub(super) fn deepest(&mut self, places: &[Vector]) -> Option<Inside> {
         let points = self.mesh.points.iter();
         let moved = points.zip(places).map(|(rest, place)| {
@@ -139,7 +142,7 @@ impl OverlapSearch {
         found.find_map(|(points, found)| self.deepest_of(places, &points, found, touching))
     }
 
-    /// A tetrahedron that holds the node of a point inside, and the one in which it is, each with its part.
+    /// A tetrahedron at the node of a point inside, and the one in which it is, each with its part.
     pub(super) fn tets_of(&self, inside: &Inside) -> [(u32, u32); 2] {
         let tets = &self.mesh.tets;
         let own = (0..)
@@ -221,7 +224,8 @@ impl OverlapSearch {
         is_concerned
     }
 
-    /// Points of triangles and edges that may be inside where no node is: centroids, and the middles of what of an edge is between two triangles that it goes through.
+    /// Points of triangles and edges that may be inside although no node is: centroids, and midpoints of the part of
+    /// an edge between two triangles that it passes through.
     fn between_nodes(
         &self,
         places: &[Vector],
@@ -263,7 +267,7 @@ impl OverlapSearch {
         points
     }
 
-    /// The deepest of some points found in tetrahedra, where it is deeper than touching surfaces are.
+    /// The deepest of some points found in tetrahedra, if it is deeper than touching surfaces are.
     fn deepest_of(
         &mut self,
         places: &[Vector],

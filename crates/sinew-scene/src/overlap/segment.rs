@@ -23,7 +23,7 @@ pub(super) fn are_apart([p, q]: [Vector; 2], triangle: [Vector; 3], distance: f6
         || parts(cross(normal, way))
 }
 
-/// The share of a segment at which it goes through a triangle from one side to the other.
+/// The parameter of a segment at which it crosses a triangle.
 pub(super) fn crossing([p, q]: [Vector; 2], [a, b, c]: [Vector; 3]) -> Option<f64> {
     let normal = cross(sub(b, a), sub(c, a));
     let [from, to] = [p, q].map(|end| dot(sub(end, a), normal));

@@ -26,7 +26,7 @@ pub struct Overlap {
     pub t: f64,
     /// The point (m).
     pub at: [f64; 3],
-    /// The tag of the node at the point, or next to it where no node is inside.
+    /// The tag of the node at the point, or next to it if no node is inside.
     pub node: u64,
     /// The parts, by groups of tetrahedra: that of the node, and that in which it is.
     pub parts: [String; 2],
@@ -90,7 +90,7 @@ impl OverlapWatch {
         self.deepest.as_ref()
     }
 
-    /// The deepest that was seen, by a watch that is no longer needed.
+    /// The deepest overlap so far; consumes the watch.
     #[must_use]
     pub fn into_deepest(self) -> Option<Overlap> {
         self.deepest

@@ -94,7 +94,7 @@ fn source(mesh: &MeshSource, changes: &MeshChanges) -> String {
     }
 }
 
-/// The changes of size and orientation; what linearising did is a note of the mesh.
+/// The changes of size and orientation; those of linearising are a note of the mesh.
 fn changes(changes: &MeshChanges) -> Option<String> {
     let mut parts = Vec::new();
     parts.extend(changes.scale.map(|scale| format!("scaled by {scale}")));
@@ -214,7 +214,7 @@ fn material_axes(region: &Region) -> Vec<String> {
     ]
 }
 
-/// The least and the largest value of what may differ from tetrahedron to tetrahedron.
+/// The least and the largest value of a quantity that may differ between tetrahedra.
 fn span(values: [f64; 2]) -> String {
     between(values.map(|value| value.to_string()))
 }

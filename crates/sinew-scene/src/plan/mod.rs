@@ -20,7 +20,7 @@ use crate::scene::Subject;
 use crate::simulation::{Simulation, Warning};
 use matrices::Matrices;
 
-/// A description of a simulation: what was built, what was left out and why, and warnings. It prints
+/// A description of a simulation: its parts, omissions with their reasons, and warnings. It prints
 /// one paragraph for each section, in lines of at most 100 characters.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Plan {
@@ -32,7 +32,7 @@ pub struct Plan {
     pub warnings: Vec<Warning>,
     /// 2/omega_max (s), the limit of undamped leapfrog.
     pub critical_step: f64,
-    /// The largest stable step of the scene's integrator; unknown where the integrator cannot tell.
+    /// The largest stable step of the scene's integrator; unknown if the integrator cannot compute it.
     pub stable_step: StableStep,
     /// Memory of the matrices (bytes).
     pub matrix_bytes: usize,

@@ -1,4 +1,4 @@
-//! Section about the run: its steps, and whether they are short enough.
+//! Section about the run: its steps and their stability.
 
 use sinew_core::{ElementStiffness, StableStep};
 

@@ -4,7 +4,7 @@ use crate::number::{count, short, vector};
 use crate::scene::{Body, StartsInside, Tool, ToolPart, ToolPath, ToolShape, ToolStart};
 use crate::simulation::BodyModel;
 
-/// A line for each tool: what it is, how it moves and what it touches.
+/// A line for each tool: its kind, its motion and the nodes that it touches.
 pub(super) fn lines(body: &Body, built: &BodyModel) -> Vec<String> {
     let known = built.tools.iter().flat_map(|tools| tools.tools());
     let tools = body.tools.iter().zip(known);

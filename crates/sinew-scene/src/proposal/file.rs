@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::unit::Unit;
 
-/// A mesh file and what a scene says of it.
+/// A mesh file and its keys in a scene.
 pub(super) struct MeshFile<'a> {
     /// Its path as the scene names it.
     pub(super) path: &'a Path,

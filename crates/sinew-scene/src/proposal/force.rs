@@ -15,7 +15,7 @@ pub(super) const YOUNGS_MODULUS: f64 = 10e3;
 pub(super) const POISSONS_RATIO: f64 = 0.4;
 
 /// The displacement of a body at rest under its first load, as a share of the longest edge of its bounding box: well
-/// within what a linear theory describes.
+/// within the range of a linear theory.
 const SHARE: f64 = 0.02;
 
 /// Acceleration of free fall (m/s^2).
@@ -34,7 +34,7 @@ pub(super) fn proposed(mesh: &TetMesh, parts: &Parts, stiffness: Option<&str>) -
     format!("{force:.0e}").parse().unwrap_or(force)
 }
 
-/// The largest component of displacement (m) at rest under a force (N); `None` where it is not found.
+/// The largest component of displacement (m) at rest under a force (N); `None` if it is not found.
 fn displacement(mesh: &TetMesh, parts: &Parts, stiffness: Option<&str>, force: f64) -> Option<f64> {
     let modulus = stiffness.map_or(YOUNGS_MODULUS, |_| 1.0);
     let moduli = FromMesh {

@@ -1,4 +1,4 @@
-//! A first scene for a mesh, to be changed by whoever knows the body.
+//! A first scene for a mesh, as a template for the user.
 
 mod data;
 mod file;
@@ -17,8 +17,8 @@ use parts::Parts;
 use unit::Unit;
 
 /// Writes a commented scene for a mesh that runs as it is: a region for each volume group, a support and a load proposed
-/// by the groups' names or, where none tells, by place, a force that moves the body by some 2 % of its length, and a unit guessed
-/// from the mesh's extent. Data whose name tells so are proposed as Young's modulus.
+/// by the groups' names or else by position, a force that moves the body by some 2 % of its length, and a unit
+/// guessed from the mesh's extent. Data with such a name are proposed as Young's modulus.
 ///
 /// `file` is the path of the mesh as the scene names it. Material and load are placeholders and say so. Cells of higher order
 /// are taken by their corners.

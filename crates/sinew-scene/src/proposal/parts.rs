@@ -1,10 +1,10 @@
-//! The parts of a mesh that a first scene gives a material to, holds and loads.
+//! The parts of a mesh to which a first scene gives a material, supports and loads.
 
 use sinew_mesh::{Condition, Group, GroupMembers, Selection, TetMesh};
 
 use crate::number::short;
 
-/// Words in names of groups that are usually held.
+/// Words in names of groups that are usually fixed.
 const HELD: [&str; 10] = [
     "fix", "clamp", "attach", "support", "held", "base", "bottom", "ground", "end", "root",
 ];
@@ -17,7 +17,7 @@ const LOADED: [&str; 10] = [
 /// Shares of the body's height that a place at its bottom or top takes, tried one after another.
 const SHARES: [f64; 4] = [0.05, 0.1, 0.2, 0.4];
 
-/// The fewest nodes by which a body is held against turning.
+/// The fewest nodes that support a body against rotation.
 const HOLDING: usize = 3;
 
 /// A part of the body as a scene's table names it.
@@ -34,11 +34,11 @@ pub(super) enum Part {
 /// Parts of a body in a first scene.
 #[derive(Debug)]
 pub(super) struct Parts {
-    /// The groups of the regions; `None` where the whole body is one.
+    /// The groups of the regions; `None` if the whole body is one.
     pub(super) regions: Option<Vec<String>>,
     /// True if some tetrahedra are in none of these groups.
     pub(super) rest: bool,
-    /// The part that is held.
+    /// The part with supports.
     pub(super) held: Part,
     /// The part that is loaded.
     pub(super) loaded: Part,
@@ -81,7 +81,8 @@ impl Part {
     }
 }
 
-/// The surface or group of nodes whose name tells, and which has nodes other than `taken` without being all of the body.
+/// The surface or group of nodes with one of these words in its name that has nodes other than `taken` and is not the
+/// whole body.
 fn named(mesh: &TetMesh, words: &[&str], taken: &[u32]) -> Option<String> {
     let tells = |name: &str| {
         let name = name.to_lowercase();
@@ -114,7 +115,7 @@ fn top(mesh: &TetMesh) -> Part {
     })
 }
 
-/// The smallest place at the bottom or top by which a body can be held.
+/// The smallest part at the bottom or top that can support a body.
 fn at_an_end(mesh: &TetMesh, place: impl Fn(f64, f64, f64) -> Part) -> Part {
     let (low, high) = mesh.bounding_box();
     let of_share = |share: f64| match place(low[2], high[2] - low[2], share) {
@@ -128,7 +129,7 @@ fn at_an_end(mesh: &TetMesh, place: impl Fn(f64, f64, f64) -> Part) -> Part {
     places.find(holds).unwrap_or_else(|| of_share(0.5))
 }
 
-/// The groups of tetrahedra that can be regions, and whether they leave some; none where they overlap.
+/// The groups of tetrahedra that can be regions, and whether they leave some; none if they overlap.
 fn regions(mesh: &TetMesh) -> (Option<Vec<String>>, bool) {
     let mut taken = vec![false; mesh.tets.len()];
     let mut names = Vec::new();

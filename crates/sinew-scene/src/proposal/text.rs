@@ -70,7 +70,7 @@ fn heading(mesh: &TetMesh, unit: &str) -> String {
     text
 }
 
-/// The members of a group and what they measure.
+/// The members of a group and their length, area or volume.
 fn size(mesh: &TetMesh, group: &Group) -> String {
     let count = group.members.len();
     match &group.members {

@@ -108,7 +108,7 @@ fn anchor(heading: &str) -> String {
     kept.map(|c| if c == ' ' { '-' } else { c }).collect()
 }
 
-/// Behaviour if a key is not given, and the keys it goes with.
+/// Behaviour if a key is not given, and its conditions on other keys.
 fn otherwise(key: &KeyDescription, table: &TableDescription) -> String {
     let stated = match &key.otherwise {
         Stated::Required => match table.needs {

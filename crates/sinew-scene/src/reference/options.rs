@@ -11,7 +11,7 @@ pub(super) struct SharedOption {
     pub(super) integrators: Vec<&'static str>,
 }
 
-/// All options; those that are the same for several integrators once, and behind the others.
+/// All options; those shared by several integrators once, after the others.
 pub(super) fn shared() -> Vec<SharedOption> {
     let mut shared: Vec<SharedOption> = Vec::new();
     for entry in sinew_integrators::entries() {

@@ -99,7 +99,7 @@ fn table(table: &TableDescription) -> Map<String, Value> {
     schema
 }
 
-/// The schema that a table meets where a condition holds; `None` where it never does.
+/// The schema that a table meets if a condition is met; `None` if it never is.
 fn holds(condition: &Condition) -> Option<Value> {
     match condition.goes {
         Goes::With(other) => Some(json!({ "required": [other] })),

@@ -1,8 +1,8 @@
-//! The tables of a scene, each with the keys that hold it.
+//! The tables of a scene, each with its keys.
 
 use crate::decode::{Described, Goes, Shape, TableDescription};
 
-/// A table and the keys that hold it.
+/// A table and the keys of which it is the value.
 #[derive(Debug, Clone)]
 pub(super) struct Section {
     pub(super) table: &'static TableDescription,
@@ -14,7 +14,7 @@ pub(super) struct Section {
     pub(super) is_of_the_document: bool,
 }
 
-/// All tables below a document's, each once, behind the first table that holds it.
+/// All tables below a document's, each once, after the first table that contains it.
 pub(super) fn below(document: &'static TableDescription) -> Vec<Section> {
     let mut sections: Vec<Section> = Vec::new();
     collect(document, None, &mut sections);
@@ -59,7 +59,7 @@ pub(super) fn is_refused(key: &dyn Described) -> bool {
     conditions.any(|condition| matches!(condition.goes, Goes::Never))
 }
 
-/// The tables that a value may be, and whether there may be several.
+/// The tables that a value may be, each with a flag: true if there may be several.
 pub(super) fn tables_in(shape: &Shape) -> Vec<(&'static TableDescription, bool)> {
     match shape {
         Shape::Table(table) => vec![(table, false)],

@@ -1,4 +1,4 @@
-//! `[cutting]`: what cuts the body.
+//! `[cutting]`: blades and removing tools.
 
 use std::ops::Bound;
 use std::path::PathBuf;
@@ -39,12 +39,12 @@ pub enum Blade {
     Tool(usize),
 }
 
-/// Treatment of disconnected parts that no support holds or moves.
+/// Treatment of unsupported components.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LoosePieces {
     /// They continue to move.
     Fall,
-    /// They rest where they came off, and nothing touches them; another cut may pass through them.
+    /// They rest at the place where they were cut off, without contact; another cut may pass through them.
     Freeze,
     /// They are removed with their mass.
     Remove,
@@ -218,7 +218,7 @@ fn named(
     })
 }
 
-/// Refuses blades of several parts, and what a tool that cuts or removes does not have.
+/// Refuses blades of several parts, and keys that a tool that cuts or removes does not have.
 pub(super) fn check_tools(
     tools: &[Tool],
     cutting: Option<&Cutting>,

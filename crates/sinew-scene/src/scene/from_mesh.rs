@@ -14,7 +14,7 @@ pub(super) enum Given<T> {
 }
 
 impl<T> Given<T> {
-    /// The value, or `otherwise` beside the name of the data.
+    /// The value, or `otherwise` with the name of the data.
     pub(super) fn or(self, otherwise: T) -> (T, Option<String>) {
         match self {
             Self::Everywhere(value) => (value, None),

@@ -95,7 +95,7 @@ pub(super) struct LoadTables {
     pub(super) places: Vec<Place>,
 }
 
-/// Reads all loads of a body; whether some region of it `is_large`, of large deformation.
+/// Reads all loads of a body; `is_large` is true if some region has large deformation.
 pub(super) fn read_all(
     tables: Vec<Table<'_>>,
     is_large: bool,

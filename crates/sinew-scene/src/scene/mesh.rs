@@ -36,7 +36,7 @@ pub enum MeshSource {
     },
 }
 
-/// Changes on the way from the source to the body, made in this order.
+/// Changes between the source and the body, made in this order.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct MeshChanges {
     /// True if cells of second and higher order are reduced to their corners.

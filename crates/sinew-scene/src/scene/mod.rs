@@ -86,7 +86,7 @@ pub enum Subject {
 pub struct Body {
     /// The source of its shape.
     pub mesh: MeshSource,
-    /// Changes of size, orientation and order on the way from the source to the body.
+    /// Changes of size, orientation and order between the source and the body.
     pub mesh_changes: MeshChanges,
     /// Materials, damping, supports and loads. Prescribed motions, which may be in files, are added where the
     /// scene is built: see [`crate::BodyModel::problem`].
@@ -106,7 +106,7 @@ pub struct Body {
     pub initial: Vec<Initial>,
     /// Points whose motion is written down.
     pub probes: Vec<ProbePoint>,
-    /// Parts chosen by where they lie. They become groups of the mesh, by whose names the lists above call them.
+    /// Parts chosen by position. They become groups of the mesh, whose names the lists above use.
     pub selected: Vec<Selected>,
 }
 
@@ -204,7 +204,7 @@ impl Scene {
         Self::read(&Table::document(&source, document.get_ref(), &DOCUMENT)?)
     }
 
-    /// The title; empty where the scene has none.
+    /// The title; empty if the scene has none.
     #[must_use]
     pub fn title(&self) -> &str {
         &self.title

@@ -1,4 +1,4 @@
-//! `model` of `[[region]]`: what a material is, and the keys of laws of large deformation.
+//! `model` of `[[region]]`: the kind of material, and the keys of laws of large deformation.
 
 use std::sync::{Mutex, PoisonError};
 
@@ -101,7 +101,7 @@ fn has(law: &KnownLaw, parameter: &LawParameter) -> bool {
         .any(|own| own.name == parameter.name)
 }
 
-/// The models by what goes with them, and the keys of laws.
+/// The models by the keys that go with them, and the keys of laws.
 #[derive(Debug)]
 struct Models {
     laws: Vec<&'static str>,

@@ -24,7 +24,7 @@ pub struct Motion {
     pub ramp_file: Option<PathBuf>,
 }
 
-/// The way that a part is moved, relative to rest.
+/// The motion of a part, relative to rest.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Way {
     /// A displacement (m) times a ramp.

@@ -1,4 +1,4 @@
-//! `[[probe]]`: what is written down of the motion of points and parts.
+//! `[[probe]]`: recorded quantities of points and parts.
 
 use super::group_name::GroupName;
 use super::region::taken;
@@ -22,7 +22,7 @@ pub struct ProbePoint {
 /// The place of a probe.
 #[derive(Debug, Clone, PartialEq)]
 pub enum ProbeAt {
-    /// The node nearest to a position in the undeformed body (m); for stress the tetrahedron that holds it.
+    /// The node nearest to a position in the undeformed body (m); for stress the tetrahedron that contains it.
     Point([f64; 3]),
     /// The mean over a group: by area over triangles, by volume over tetrahedra, alike over nodes.
     Mean(String),

@@ -52,7 +52,7 @@ const SIN2: &str = "sin2";
 const PULSE: &str = "pulse";
 const TABLE: &str = "table";
 
-/// A key that goes with one kind only.
+/// A condition for a key of these kinds only.
 const fn with(kinds: &'static [&'static str]) -> Condition {
     Condition::where_is(KIND.name, kinds, "does not go with this kind of ramp")
 }

@@ -11,7 +11,7 @@ use crate::decode::{
 };
 use crate::error::SceneError;
 
-/// A part of the body that a scene chooses by where it lies. It becomes a group of the mesh when the scene is built.
+/// A part of the body that a scene chooses by position. It becomes a group of the mesh when the scene is built.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Selected {
     /// The name of the group.
@@ -33,7 +33,7 @@ pub enum Members {
     Tetrahedra,
 }
 
-/// The way a part is chosen.
+/// The choice of a part.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Choice {
     /// Conditions on its nodes.
@@ -171,7 +171,7 @@ impl Selections {
         }
     }
 
-    /// The group that a table selects by where it lies, if it does.
+    /// The group that a table selects by position, if it does.
     pub(super) fn place(
         &mut self,
         table: &Table<'_>,

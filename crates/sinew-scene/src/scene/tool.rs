@@ -23,7 +23,7 @@ pub struct Tool {
     pub name: String,
     /// The shapes that it is made of.
     pub parts: Vec<ToolPart>,
-    /// The way it moves.
+    /// Its motion.
     pub path: ToolPath,
     /// Coefficient of Coulomb's friction.
     pub friction: f64,
@@ -31,18 +31,18 @@ pub struct Tool {
     pub touches: Option<String>,
     /// Treatment of a tool that begins inside the body.
     pub starts_inside: StartsInside,
-    /// The time for which it seizes what it touches.
+    /// The time for which it grasps the tissue it touches.
     pub grasp: Option<Grasp>,
     /// The rigid body that its path draws along; `None` for a tool that is on its path.
     pub body: Option<ToolBody>,
 }
 
-/// The way that a tool moves.
+/// The motion of a tool.
 #[derive(Debug, Clone, PartialEq)]
 pub enum ToolPath {
     /// It stays at a place.
     Hold(ToolStart),
-    /// It goes from a place at this velocity (m/s), without turning.
+    /// It moves from a place at this velocity (m/s), without rotation.
     Velocity(ToolStart, [f64; 3]),
     /// Poses over time in a CSV file: its path as written, relative to the scene's folder.
     Table(PathBuf),
@@ -260,7 +260,7 @@ const TO: Key<Number> = Key::required(
 )
 .unit("s");
 
-/// `true`, as the only way to say what another key would contradict.
+/// The value `true`; without the key another one applies.
 #[derive(Debug, Clone, Copy)]
 struct True;
 
@@ -285,7 +285,7 @@ impl Values for True {
     }
 }
 
-/// The place of a tool's table, and of those that hold the sizes of its parts.
+/// The place of a tool's table, and of those with the sizes of its parts.
 #[derive(Debug, Clone)]
 pub(crate) struct ToolPlace {
     pub(crate) table: Place,

@@ -1,4 +1,4 @@
-//! `shape` of `[[tool]]`: what tools are made of.
+//! `shape` of `[[tool]]`: the parts of tools.
 
 use std::ops::Bound;
 
@@ -100,7 +100,7 @@ const AT: Key<Vector, Or<[f64; 3]>> =
 /// Largest length and coordinate (m): the rounding of larger ones would be as large as tissue.
 pub(crate) const FARTHEST: f64 = 1e6;
 
-/// Places of tools and of what they are made of.
+/// Positions of tools and of their parts.
 pub(super) const PLACES: Vector = Vector {
     expected: "[x, y, z] in m, of at most 1e6",
     of: Number::between(
@@ -124,7 +124,7 @@ const ROTATION: Key<Vector, Or<[f64; 3]>> = Key::or(
 )
 .unit("rad");
 
-/// Rotation vectors of tools and of what they are made of.
+/// Rotation vectors of tools and of their parts.
 pub(super) const ROTATIONS: Vector = Vector {
     expected: "[rx, ry, rz] in rad, an angle of at most 1e6",
     of: Number::finite("[rx, ry, rz] in rad, an angle of at most 1e6"),
@@ -203,7 +203,7 @@ const SIZE: Key<Vector> = Key::required(
 )
 .unit("m");
 
-/// A part, and the place of the table that holds its sizes.
+/// A part, and the place of the table with its sizes.
 pub(super) fn read(table: &Table<'_>) -> Result<(ToolPart, Place), SceneError> {
     let (shape, place) = match table.exactly_one()? {
         key if key == SPHERE.name => {

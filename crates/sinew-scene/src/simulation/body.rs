@@ -97,13 +97,13 @@ fn moving(motion: &Motion, places: &Places, index: usize) -> Result<Moving, Scen
     Ok(Moving::new(On::Group(group.clone()), courses).along(*axes))
 }
 
-/// The key that gives the way of a motion.
+/// The key of a motion's path.
 fn way_key(body: &Body, index: usize) -> &'static str {
     let motion = body.motions.get(index);
     motion.map_or("group", |motion| motion.way.key())
 }
 
-/// The error at the place of what the model was refused for.
+/// The error at the key for which the model was refused.
 fn refused(error: FemError, body: &Body, places: &Places) -> SceneError {
     let whole = &places.document;
     let place = match error.item() {

@@ -11,6 +11,6 @@ pub struct CutFrom {
     pub uncut: Arc<TetMesh>,
     /// The mesh of the remaining body, and the origin of its parts.
     pub cut: CutMesh,
-    /// Indices, among the loads of the scene, of those that still act on something.
+    /// Indices, among the loads of the scene, of those that still act on the body.
     pub(super) loads: Vec<usize>,
 }

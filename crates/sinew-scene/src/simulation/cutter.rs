@@ -262,7 +262,7 @@ impl Cutter {
         self.changed_since(epoch, body, state, inputs)
     }
 
-    /// The state before the last [`Cutter::follow`] or [`Cutter::cut`], where that may have changed it; `None` where it has not.
+    /// The state before the last [`Cutter::follow`] or [`Cutter::cut`], if that may have changed it.
     #[must_use]
     pub fn state_before(&self) -> Option<&State> {
         self.before.is_taken.then_some(&self.before.state)
@@ -311,8 +311,8 @@ impl Cutter {
         }
     }
 
-    /// Continues from what [`Cutter::save`] kept of the same scene, whose uncut body is `uncut`; returns the body to
-    /// continue with, if it was cut.
+    /// Continues from a result of [`Cutter::save`] of the same scene, whose uncut body is `uncut`; returns the body
+    /// to continue with, if it was cut.
     ///
     /// # Errors
     /// [`CuttingError`] for the cuts of another body.
@@ -352,7 +352,7 @@ impl Cutter {
         Ok(())
     }
 
-    /// Begins a cut, and keeps the rest positions of the nodes that they hold, which are
+    /// Begins a cut, and fixes the rest positions of the nodes that tools grasp, which are
     /// not snapped onto the cut; returns the epoch of the body.
     fn begin(&mut self, body: &SceneBody, state: &State) -> u64 {
         let before = &mut self.before;
@@ -396,7 +396,7 @@ impl Cutter {
         Ok(Some(cut))
     }
 
-    /// Nodes of the body that tools have hold of, and their new copies.
+    /// Nodes of the body that tools grasp, and their new copies.
     fn held_with_copies(&self) -> Vec<u32> {
         let held: HashSet<u32> = self.before.held.iter().copied().collect();
         if held.is_empty() {
@@ -407,7 +407,7 @@ impl Cutter {
             .collect()
     }
 
-    /// The node of the body before what is cut at the moment that a node is, or is a copy of.
+    /// The node of the body before the current cut that a node is, or is a copy of.
     fn before_copies(&self, mut node: u32) -> u32 {
         while node as usize >= self.before.nodes {
             node = self.cut.body().copied_from(node);
@@ -423,7 +423,7 @@ impl Cutter {
         touched(after).map(place).collect()
     }
 
-    /// The body as it is after the cuts.
+    /// The body after the cuts.
     fn body_after(&self, before: &SceneBody) -> Result<SceneBody, CuttingError> {
         let (cut, model) = (self.cut.mesh(), self.cut.model());
         let from = CutFrom {
@@ -470,7 +470,7 @@ impl Cutter {
     }
 }
 
-/// The largest turn (rad) of a blade that one sheet follows: its ends go straight.
+/// The largest rotation (rad) of a blade in one sheet: its ends move straight.
 const LARGEST_TURN: f64 = 0.25;
 
 /// The equal parts of a time from one instant to another (s) in which a blade turns by no more than a sheet follows.
@@ -498,11 +498,11 @@ fn edge(tools: &Tools, blade: usize, t: f64, inputs: &Inputs) -> Option<[[f64; 3
 struct Before {
     /// Number of nodes of the body, removed ones included.
     nodes: usize,
-    /// Its state, where that may have been changed.
+    /// Its state, if that may have been changed.
     state: State,
     /// True if it may.
     is_taken: bool,
-    /// Nodes of the body that tools held.
+    /// Nodes of the body that tools grasped.
     held: Vec<u32>,
 }
 
@@ -526,7 +526,7 @@ impl Default for Before {
     }
 }
 
-/// The nodes in the body of the cells that tools hold in a state.
+/// The nodes in the body of the cells that tools grasp in a state.
 fn held_by_tools(body: &SceneBody, state: &State) -> Vec<u32> {
     let tools = body.model().tools().into_iter();
     let held = tools.flat_map(|tools| tools.held(&state.contact));

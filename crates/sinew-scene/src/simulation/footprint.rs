@@ -18,7 +18,7 @@ pub struct Footprint {
     pub blocks: usize,
     /// Memory (bytes) of the matrices.
     pub matrix_bytes: usize,
-    /// Memory (bytes) of mesh, matrices, what a machine keeps of them, and motion; factors apart.
+    /// Memory (bytes) of mesh, matrices, their copies in a machine, and motion, without factors.
     pub bytes: usize,
 }
 
@@ -56,8 +56,8 @@ impl Footprint {
     }
 }
 
-/// For each node, true if it is held or moved in all directions. Groups that the mesh does not have are skipped: they
-/// are reported elsewhere.
+/// For each node, true if it is fixed or moved in all directions. Groups that the mesh does not have are skipped:
+/// they are reported elsewhere.
 fn held(body: &Body, mesh: &TetMesh) -> Vec<bool> {
     let mut held = vec![[false; 3]; mesh.points.len()];
     let fixed = body.problem.fixed.iter();

@@ -1,25 +1,25 @@
-//! The parts of a body that a scene's supports and motions hold.
+//! The parts of a body that a scene's supports and motions fix or move.
 
 use std::fmt;
 
 use serde::{Deserialize, Serialize};
 use sinew_fem::On;
 
-/// A part of the body that a table of the scene holds or moves.
+/// A part of the body that a table of the scene fixes or moves.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct HeldPlace {
     /// The table.
     pub by: ReactionOf,
     /// The part of the body.
     pub on: On,
-    /// Its nodes (0-based) with the components that it holds or moves and no part before it does, so that the forces of
-    /// all parts add up to that of the whole.
+    /// Its nodes (0-based) with the components that it fixes or moves and no part before it does, so that the forces
+    /// of all parts add up to that of the whole.
     pub nodes: Vec<(u32, [bool; 3])>,
     /// Mean (m) of the places at rest of its nodes before all cuts.
     pub centre: [f64; 3],
 }
 
-/// A table of a scene by which components are held or moved, by its place in the list (0-based).
+/// A table of a scene by which components are fixed or moved, by its place in the list (0-based).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum ReactionOf {
     /// `[[fixed]]`.

@@ -21,11 +21,11 @@ pub struct RefusedLoad {
     pub instant: f64,
     /// The step (s).
     pub dt: f64,
-    /// A way out.
+    /// The remedy.
     pub remedy: LoadRemedy,
 }
 
-/// A way to run a scene whose load was refused.
+/// A remedy for a scene whose load was refused.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum LoadRemedy {
@@ -35,7 +35,7 @@ pub enum LoadRemedy {
     Chebyshev,
     /// The propagator's Chebyshev form with this step (s).
     ChebyshevWithStep(f64),
-    /// An exact integrator that takes loads that jump anywhere, by its id; `None` where this program has
+    /// An exact integrator that takes loads that jump anywhere, by its id; `None` if this program has
     /// none.
     Integrator(Option<&'static str>),
 }
@@ -59,8 +59,8 @@ impl fmt::Display for LoadRemedy {
     }
 }
 
-/// A load that comes and goes within one step, or oscillates within four: its impulse is right, but its course is not
-/// resolved.
+/// A load that begins and ends within one step, or oscillates within four: its impulse is right, but its course is
+/// not resolved.
 #[derive(Debug, Clone, PartialEq)]
 pub struct UnresolvedLoad {
     /// The load in the terms of the scene.

@@ -10,7 +10,7 @@ use crate::keys::GRAVITY;
 use crate::scene::Subject;
 
 impl Simulation {
-    /// The first load of the scene that its integrator will refuse; `None` where it accepts all loads.
+    /// The first load of the scene that its integrator will refuse; `None` if it accepts all loads.
     #[must_use]
     pub fn refused_load(&self) -> Option<RefusedLoad> {
         let integrator = self.integrator().ok()?;
@@ -48,8 +48,8 @@ impl Simulation {
         })
     }
 
-    /// The first load of the scene that comes and goes within one step, or swings within four; `None` where there is
-    /// none, or the integrator is exact.
+    /// The first load of the scene that begins and ends within one step, or oscillates within four; `None` if there
+    /// is none, or the integrator is exact.
     #[must_use]
     pub fn unresolved_load(&self) -> Option<UnresolvedLoad> {
         let integrator = self.integrator().ok()?;

@@ -66,7 +66,7 @@ fn changed(
     Ok((mesh, warnings))
 }
 
-/// Takes cells by their corners if the scene asks for it, and says what that did.
+/// Linearises cells if the scene asks for it, and reports the change.
 fn linearised(mesh: &mut Mesh, changes: &MeshChanges) -> Option<String> {
     if !changes.linear {
         return None;

@@ -126,8 +126,8 @@ impl Simulation {
         Err(self.scene().places().run.value_fault("dt", fault))
     }
 
-    /// Shortens all steps alike so that a whole number of them ends at the duration; the step (s) that it was before,
-    /// where it did not.
+    /// Shortens all steps equally so that a whole number of them ends at the duration; returns the step (s) before,
+    /// if it changed.
     pub fn end_at_duration(&mut self) -> Option<f64> {
         let before = self.dt;
         let (duration, steps) = (self.settings().duration, self.run().steps.max(1) as f64);
@@ -158,7 +158,7 @@ impl Simulation {
         sinew_integrators::build(&self.settings().integrator, &self.options())
     }
 
-    /// The options of the integrator: those of the scene, and the substeps that are added if
+    /// The options of the integrator: those of the scene, with substeps added if
     /// [`Simulation::follows_stiffness`].
     #[must_use]
     pub fn options(&self) -> Options {
@@ -183,7 +183,7 @@ impl Simulation {
     /// value; with dt = "auto" it was computed when the scene was built.
     ///
     /// # Errors
-    /// [`StableStepError`] when the system lacks what the answer needs.
+    /// [`StableStepError`] when the system lacks a needed property.
     pub fn stable_step(&self) -> Result<StableStep, StableStepError> {
         let found = || step::stable(self.settings(), self.system());
         self.stable_step.get_or_init(found).clone()

@@ -25,13 +25,13 @@ pub struct BodyModel {
     pub mesh: Arc<TetMesh>,
     /// Warnings of the reader of the mesh file.
     pub mesh_warnings: Vec<String>,
-    /// Parts chosen by where they lie, in the order of the scene.
+    /// Parts chosen by position, in the order of the scene.
     pub selected: Vec<SelectedPart>,
     /// The problem as a whole, prescribed motions included.
     pub problem: sinew_fem::Problem,
     /// The system to integrate.
     pub model: sinew_fem::Model,
-    /// The tools and the cut faces that touch it, which the model knows too; `None` if there are none.
+    /// The tools and the cut faces in contact with it, which the model shares; `None` if there are none.
     pub tools: Option<Arc<Tools>>,
     /// Origin of its parts, once it was cut.
     pub cut: Option<Arc<CutFrom>>,
@@ -73,7 +73,7 @@ impl SceneModel {
         }
     }
 
-    /// The tools that touch a body, where there are any.
+    /// The tools that touch a body, if any.
     #[must_use]
     pub fn tools(&self) -> Option<&Arc<Tools>> {
         self.body()?.scene_tools()
@@ -87,7 +87,7 @@ impl SceneModel {
 }
 
 impl BodyModel {
-    /// The tools of the scene, where there are any.
+    /// The tools of the scene, if any.
     #[must_use]
     pub fn scene_tools(&self) -> Option<&Arc<Tools>> {
         let tools = self.tools.as_ref();
@@ -113,7 +113,7 @@ impl BodyModel {
         }
     }
 
-    /// Subtracts from the forces (N) of supports on all nodes the forces of tools in held directions in a state: the
+    /// Subtracts from the forces (N) of supports on all nodes the forces of tools in fixed directions in a state: the
     /// supports bear them.
     pub fn subtract_contact(&self, state: &State, reactions: &mut [[f64; 3]]) {
         let Some(tools) = &self.tools else {
@@ -127,8 +127,8 @@ impl BodyModel {
         }
     }
 
-    /// The cells of the nodes of a group, or of the whole body where no group is named, and the number
-    /// of these nodes including held ones.
+    /// The cells of the nodes of a group, or of the whole body if no group is named, and the number
+    /// of these nodes, fixed ones included.
     pub(crate) fn cells_of(
         &self,
         group: Option<&str>,

@@ -1,4 +1,4 @@
-//! Probes: the nodes and the tetrahedra of which something is written down.
+//! Probes: the nodes and the tetrahedra with recorded values.
 
 use std::collections::HashMap;
 
@@ -32,7 +32,7 @@ pub struct Probe {
 /// A node of a probe, or the mass of an oscillator.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ProbeNode {
-    /// Its share of the mean: those of a probe add up to 1.
+    /// Its weight in the mean: the weights of a probe add up to 1.
     pub share: f64,
     /// Index in the mesh, from 0.
     pub index: u32,
@@ -70,7 +70,7 @@ impl ProbeNode {
         }
     }
 
-    /// The displacement (m) that is prescribed in a direction at time `t` (s); 0 where none is.
+    /// The displacement (m) that is prescribed in a direction at time `t` (s); 0 if none is.
     pub(crate) fn prescribed(&self, axis: usize, t: f64) -> f64 {
         let courses = self.courses.get(axis).into_iter().flatten();
         // A scene has no inputs.
@@ -135,7 +135,7 @@ impl Probe {
     }
 
     /// The displacement (m) in each of its directions at time `t` (s), with that of the degrees of freedom then: 0
-    /// where it is held, the prescribed one where it is moved.
+    /// in fixed directions, the prescribed one in moved ones.
     pub fn displacement<'a>(&'a self, t: f64, u: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
         let own = move |dof: usize| u.get(dof).copied().unwrap_or(f64::NAN);
         (0..self.axes()).map(move |axis| {

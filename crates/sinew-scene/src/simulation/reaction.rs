@@ -12,14 +12,14 @@ use super::model::BodyModel;
 use super::scene_body::SceneBody;
 use crate::scene::Subject;
 
-/// The force that holds or moves a part of the body.
+/// The force that fixes or moves a part of the body.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Reaction {
     /// The table of the scene that asks for it.
     pub by: ReactionOf,
     /// The part of the body.
     pub on: On,
-    /// The force (N) on the body at the nodes of the part, of components that no part before it holds or moves.
+    /// The force (N) on the body at the nodes of the part, of components that no part before it fixes or moves.
     pub force: [f64; 3],
     /// The moment (N m) of these forces about the mean of the part's nodes at rest.
     pub moment: [f64; 3],
@@ -35,8 +35,8 @@ pub enum ReactionError {
 }
 
 impl SceneBody {
-    /// The parts of the body that are held or moved, in the order of the scene; none for an oscillator. They are found
-    /// at the first request.
+    /// The parts of the body that are fixed or moved, in the order of the scene; none for an oscillator. They are
+    /// found at the first request.
     ///
     /// # Errors
     /// [`ReactionError::Field`] for a part that the body does not have, which building a scene rules out.
@@ -124,7 +124,7 @@ impl SceneBody {
     }
 }
 
-/// The parts of a body that are held or moved, with the forces on all nodes at one instant. It keeps its buffers.
+/// The parts of a body that are fixed or moved, with the forces on all nodes at one instant. It keeps its buffers.
 #[derive(Debug)]
 pub struct HeldParts {
     body: Arc<BodyModel>,
@@ -136,7 +136,7 @@ pub struct HeldParts {
 }
 
 impl HeldParts {
-    /// The parts of a body that are held or moved; `None` if there are none.
+    /// The parts of a body that are fixed or moved; `None` if there are none.
     ///
     /// # Errors
     /// [`ReactionError`] as [`SceneBody::held_parts`].

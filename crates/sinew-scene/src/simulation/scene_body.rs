@@ -12,13 +12,13 @@ use super::{set_up, step, tool_end};
 use crate::error::SceneError;
 use crate::scene::Scene;
 
-/// The body of a scene as it is now. A cut replaces it, and so do loads that follow inputs; the scene stays.
+/// The current body of a scene. A cut replaces it, and so do loads that follow inputs; the scene does not change.
 #[derive(Clone, Debug)]
 pub struct SceneBody {
     pub(super) scene: Arc<Scene>,
     pub(super) model: SceneModel,
     pub(super) probes: Arc<[Probe]>,
-    /// Its parts that are held or moved, once they were asked for.
+    /// Its parts that are fixed or moved, once they were asked for.
     pub(super) held: OnceLock<Arc<[HeldPlace]>>,
 }
 

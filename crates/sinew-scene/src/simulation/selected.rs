@@ -1,11 +1,11 @@
-//! Parts of the body chosen by where they lie, made groups of its mesh.
+//! Parts of the body chosen by position, made groups of its mesh.
 
 use sinew_mesh::{GroupMembers, TetMesh};
 
 use crate::error::{Fault, SceneError};
 use crate::scene::{Body, Choice, Members, Places, Selected};
 
-/// A part of the body that a scene chose by where it lies.
+/// A part of the body that a scene chose by position.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SelectedPart {
     /// The table of the scene that chose it, e.g. `[[fixed]] 1`.
@@ -16,7 +16,7 @@ pub struct SelectedPart {
     pub nodes: usize,
     /// Area of the body's boundary that it takes (m^2): of the triangles of which all nodes are selected.
     pub area: f64,
-    /// Its tetrahedra and their volume (m^3), where it is a region.
+    /// Number of its tetrahedra and their volume (m^3), if it is a region.
     pub tets: Option<(usize, f64)>,
 }
 
@@ -86,7 +86,7 @@ fn add(mesh: &mut TetMesh, body: &Body, selected: &Selected) -> Result<SelectedP
     })
 }
 
-/// The tetrahedra that no other region has. Groups that the mesh does not have are left to those who need them.
+/// The tetrahedra that no other region has. Missing groups are reported elsewhere.
 fn rest(mesh: &TetMesh, body: &Body) -> Result<Vec<u32>, Fault> {
     let mut taken = vec![false; mesh.tets.len()];
     for region in &body.problem.regions {

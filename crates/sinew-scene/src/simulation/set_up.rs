@@ -1,4 +1,4 @@
-//! Methods that cannot be set up for a scene, told at the keys that are at fault.
+//! Methods that cannot be set up for a scene, reported at the keys at fault.
 
 use sinew_core::{Options, SetupError, System};
 

@@ -106,7 +106,7 @@ fn set(
     Ok(())
 }
 
-/// Places of the named loads among those of the model.
+/// Indices of the named loads among those of the model.
 fn places_of(names: &[String], body: &Body) -> Vec<usize> {
     let gravity = Some(GRAVITY.to_owned());
     // The model's loads are those of the problem, then gravity.

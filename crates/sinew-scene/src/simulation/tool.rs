@@ -162,7 +162,7 @@ pub(super) fn touching_anew(
     touched_by(built, body, tools, &are_fine)
 }
 
-/// Rebuilds the contact of tools that are steered in another way.
+/// Rebuilds the contact of tools after a change of steering.
 pub(super) fn led_anew(
     built: BodyModel,
     body: &Body,
@@ -210,8 +210,8 @@ fn nodes(
     Ok(met)
 }
 
-/// The nodes that a tool of a body meets, and those that it does not: see [`nodes_of`]. A tool that cuts or removes
-/// meets none.
+/// The nodes that a tool of a body may touch, and those that it may not: see [`nodes_of`]. A tool that cuts or
+/// removes touches none.
 pub(super) fn touchable(
     body: &Body,
     index: usize,
@@ -223,7 +223,8 @@ pub(super) fn touchable(
     }
 }
 
-/// The nodes of a tool's surface or group that it meets, and those that it does not, since they are held or moved.
+/// The nodes of a tool's surface or group that it may touch, and those that it may not, since they are fixed or
+/// moved.
 pub(super) fn nodes_of(
     tool: &Tool,
     built: &BodyModel,
@@ -362,7 +363,7 @@ fn check_start(
     }
 }
 
-/// Tag of the tetrahedron that holds one of these points (m), with displacements (m) of all nodes.
+/// Tag of the tetrahedron that contains one of these points (m), with displacements (m) of all nodes.
 fn holds_one(mesh: &TetMesh, u: &[[f64; 3]], points: &[[f64; 3]]) -> Option<u64> {
     let places = mesh.points.iter().zip(u);
     let places: Vec<[f64; 3]> = places

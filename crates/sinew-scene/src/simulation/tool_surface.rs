@@ -8,7 +8,7 @@ use sinew_tools::{Corner, Motion, Tool, TouchedTriangle, swept_box};
 use super::model::BodyModel;
 use crate::number::length;
 
-/// Share of the body's size by which a tool's reach goes beyond its path at rest: tissue moves too.
+/// Share of the body's size added to a tool's reach beyond its path, since tissue moves too.
 const BEYOND: f64 = 0.1;
 
 /// Instants at which a path is checked, besides those of its table.
@@ -45,8 +45,8 @@ fn all_faces(mesh: &TetMesh) -> Vec<[u32; 3]> {
     mesh.tets.iter().flat_map(of_tet).collect()
 }
 
-/// Assigns to small tools the triangles of the surface whose corners they touch (`nodes_of` each) or are held; returns
-/// all triangles that any of them touches, whose corners are indices into `touched`.
+/// Assigns to small tools the triangles of the surface whose corners they touch (`nodes_of` each) or are fixed;
+/// returns all triangles that any of them touches, whose corners are indices into `touched`.
 pub(super) fn under_tips(
     tools: &mut [Tool],
     are_fine: &[bool],
@@ -89,7 +89,7 @@ fn without_moved(built: &BodyModel) -> Vec<[u32; 3]> {
         .collect()
 }
 
-/// The longest edge (m) of the triangles within reach of a tool in a time (s); 0 where there is none.
+/// The longest edge (m) of the triangles within reach of a tool in a time (s); 0 if there is none.
 fn longest_edge(
     tool: &Tool,
     surface: &[[u32; 3]],
@@ -208,7 +208,7 @@ fn instants(tool: &Tool, duration: f64) -> Vec<f64> {
     times
 }
 
-/// The box (m) that a tool passes through in a time (s); `None` where that is not known, or has no bounds.
+/// The box (m) that a tool passes through in a time (s); `None` if that is not known, or has no bounds.
 fn reach(tool: &Tool, duration: f64) -> Option<[[f64; 3]; 2]> {
     if matches!(tool.motion, Motion::Steered(..)) {
         return None;
@@ -229,7 +229,8 @@ fn reach(tool: &Tool, duration: f64) -> Option<[[f64; 3]; 2]> {
     })?
 }
 
-/// The nodes of which some component is moved, increasing: where they are is no matter of the degrees of freedom alone.
+/// The nodes of which some component is moved, increasing: their position does not follow from the degrees of freedom
+/// alone.
 pub(super) fn moved_nodes(built: &BodyModel) -> Vec<u32> {
     let mut moved = Vec::new();
     for motion in &built.problem.moves {

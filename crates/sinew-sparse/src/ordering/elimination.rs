@@ -1,17 +1,17 @@
-//! The elimination tree, and what follows from it.
+//! The elimination tree, and quantities that follow from it.
 
 use super::graph::NONE;
 use crate::Pattern;
 
-/// An order of elimination with the fill that it brings.
+/// An order of elimination with its fill-in.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Elimination {
     /// The cells in the order in which they are eliminated, each subtree of the elimination tree in one piece.
     pub order: Vec<u32>,
     /// Blocks in each column of the factor, the diagonal included, in that order.
     pub column_blocks: Vec<u32>,
-    /// For each column that of its parent in the elimination tree: the row of its first block below the diagonal; none, a number
-    /// beyond all columns, where there is no such block.
+    /// Parent of each column in the elimination tree: the row of its first block below the diagonal; a number beyond
+    /// all columns if there is no such block.
     pub(super) parents: Vec<u32>,
 }
 

@@ -7,7 +7,7 @@ use super::refinement::SEPARATOR;
 use super::separator::separate;
 use crate::Pattern;
 
-/// Cells below which a part is no longer divided.
+/// Number of cells below which a part is not divided.
 const SMALL: usize = 60;
 
 /// The cells of a pattern in an order of elimination: two parts that no pair of neighbours joins, then the cells between

@@ -147,7 +147,7 @@ impl<'a> Pass<'a> {
         Some((vertex, side))
     }
 
-    /// The first entry of a queue that still holds.
+    /// The first entry of a queue that is still valid.
     fn top(&mut self, side: usize) -> Option<(i64, u32)> {
         loop {
             let (gain, Reverse(vertex)) = *self.queues[side].peek()?;

@@ -15,7 +15,7 @@ const SLOW: usize = 90;
 /// Vertices above which two divisions are made: large separators decide most of the fill.
 const LARGE: usize = 500;
 
-/// Divides a graph: the better of two divisions where it is large.
+/// Divides a graph: the better of two divisions if it is large.
 pub(super) fn separate(graph: &Graph, random: &mut Random) -> Division {
     let division = on_levels(graph, random);
     if graph.len() <= LARGE {

@@ -19,7 +19,8 @@ pub struct Aligned<T> {
 }
 
 impl<T: Copy> Aligned<T> {
-    /// `count` copies of this value. As with vectors of the standard library, more than any memory holds is a panic.
+    /// `count` copies of this value. As with vectors of the standard library, an allocation beyond all memory is a
+    /// panic.
     #[must_use]
     pub fn filled(value: T, count: usize) -> Self {
         const { assert!(align_of::<T>() <= 64, "values that fit a line") };

@@ -1,4 +1,4 @@
-//! Addresses that know, in debug builds, what may be used through them.
+//! Addresses that carry, in debug builds, the bounds of the memory that may be used through them.
 
 #![allow(unsafe_code, reason = "the contract stands at `At`")]
 
@@ -10,7 +10,7 @@ use super::real::Real;
 /// written through it is checked against them first.
 ///
 /// # Safety
-/// As for pointers: what a method reads or writes has to lie within the array that the address was made from,
+/// As for pointers: all that a method reads or writes has to lie within the array that the address was made from,
 /// which is still there, and which no other thread writes meanwhile. Vectors need the instruction set of their type.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct At<T> {
@@ -132,7 +132,7 @@ impl<T: Real> At<T> {
         unsafe { V::gather(self.pointer, index.pointer) }
     }
 
-    /// Asks for the 64 bytes at this address, which may lie outside, to be brought near.
+    /// Prefetches the 64 bytes at this address, which may lie outside, into the first cache.
     #[inline(always)]
     pub(crate) unsafe fn prefetch<V: Lanes<T>>(self) {
         // SAFETY: the instruction set is there; no address is wrong.
@@ -141,7 +141,7 @@ impl<T: Real> At<T> {
 }
 
 impl At<u32> {
-    /// Asks for the 64 bytes at this address, which may lie outside, to be brought near.
+    /// Prefetches the 64 bytes at this address, which may lie outside, into the first cache.
     #[inline(always)]
     pub(crate) unsafe fn prefetch_index<T: Real, V: Lanes<T>>(self) {
         // SAFETY: the instruction set is there; no address is wrong.

@@ -27,17 +27,17 @@ pub(crate) trait Lanes<T: Real>: Copy {
     unsafe fn two_to_it(self) -> Self;
     /// [`Real::parts`].
     unsafe fn parts(self) -> [Self; 2];
-    /// Asks for the 64 bytes at an address, which need not be valid, to be brought near.
+    /// Prefetches the 64 bytes at an address, which need not be valid, into the first cache.
     unsafe fn prefetch(from: *const T);
     /// `self factor + other`, rounded once where the instruction set can.
     unsafe fn mul_add(self, factor: Self, other: Self) -> Self;
     /// The number of the same sign whose size is `limit` at most; not a number stays so.
     unsafe fn clamp(self, limit: Self) -> Self;
-    /// 0 where the size is below `tiny`.
+    /// 0 if the size is below `tiny`.
     unsafe fn flush(self, tiny: Self) -> Self;
-    /// One bit for each lane that is at most `other`; none where one of them is not a number.
+    /// One bit for each lane that is at most `other`; none if one of them is not a number.
     unsafe fn at_most(self, other: Self) -> u32;
-    /// `then` where `a` is at most `b`, else `otherwise`, also where one of the two is not a number.
+    /// `then` in lanes where `a` is at most `b`, else `otherwise`, also if one of the two is not a number.
     unsafe fn select_le(a: Self, b: Self, then: Self, otherwise: Self) -> Self;
     /// One bit for each lane whose size is at least `limit`.
     unsafe fn reaches(self, limit: Self) -> u32;

@@ -43,9 +43,10 @@ pub trait Number:
     /// Writes the lanes to the beginning of a slice, which has space for them.
     fn store(self, to: &mut [Self::Real]);
 
-    /// The first three numbers of each of some rows: lane by lane those of which the first is at one of `places` among the numbers of all rows, of which there is
-    /// one for each lane: four times the row, so that no address takes an instruction of its own. That they are within `from` is not checked: with a check before
-    /// each row, compilers keep all places on the stack meanwhile.
+    /// The first three numbers of some rows, one row per lane: each of `places` is the index of a row's first number
+    /// among the numbers of all rows, four times the row, so that no address takes an instruction of its own. That
+    /// they are within `from` is not checked: with a check before each row, compilers keep all places on the stack
+    /// meanwhile.
     ///
     /// # Safety
     /// All places are four times a number below the length of `from`.

@@ -9,7 +9,7 @@ use super::real::Real;
 #[derive(Clone, Copy)]
 pub(crate) struct Array<T, const N: usize>([T; N]);
 
-/// True if the build itself has a fused multiply-add instruction; without one the call would go to a library.
+/// True if the build itself has a fused multiply-add instruction; without one the call would be a library function.
 pub(super) const FUSES: bool = cfg!(any(target_feature = "fma", target_arch = "aarch64"));
 
 macro_rules! array {

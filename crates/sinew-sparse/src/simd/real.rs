@@ -43,7 +43,7 @@ pub(crate) mod bits {
     /// Bits of a mantissa.
     pub(crate) const OF_DOUBLE: u32 = 52;
     pub(crate) const OF_SINGLE: u32 = 23;
-    /// A number whose last bits are those of a whole number that is added to it, biased as an exponent is.
+    /// A number whose last bits become those of a whole number added to it, biased as an exponent is.
     pub(crate) const BIASED_DOUBLE: f64 = 4_503_599_627_371_519.0;
     pub(crate) const BIASED_SINGLE: f32 = 8_388_735.0;
     /// The root of 1/2 with an exponent that is lower by 1024, or by 128.

@@ -8,7 +8,7 @@ use std::ops::Range;
 
 use super::aligned::Aligned;
 
-/// Numbers that threads write in different places at the same time.
+/// Numbers that threads write at the same time, each in places of its own.
 pub struct Shared<T> {
     first: *mut T,
     /// The memory that `first` points to, used only through that pointer.
@@ -107,7 +107,8 @@ impl<'a, T: Copy> SharedSlice<'a, T> {
         unsafe { std::slice::from_raw_parts(self.first.add(range.start), range.len()) }
     }
 
-    /// One of the numbers. Its place is not checked: where most of a loop's work is to fetch numbers, that cost 7 % of its time.
+    /// One of the numbers. Its place is not checked: in a loop that mostly fetches numbers, a check cost 7 % of its
+    /// time.
     ///
     /// # Safety
     /// The place is below [`Self::count`], and nobody writes the number meanwhile.

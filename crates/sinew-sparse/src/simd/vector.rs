@@ -47,7 +47,7 @@ pub trait WithReal<T: Real> {
         self.run::<N>()
     }
 
-    /// [`Self::run_on_avx2`] with those of AVX-512.
+    /// [`Self::run_on_avx2`] with the instructions of AVX-512.
     ///
     /// # Safety
     /// The instructions are available.
@@ -64,7 +64,7 @@ pub trait WithReal<T: Real> {
 
 /// Numbers that there are vectors of.
 pub trait Vectors: Real + Number<Real = Self> {
-    /// Does work with vectors, or with plain numbers where there are only the instructions of the build.
+    /// Does work with vectors, or with plain numbers if only the instructions of the build are available.
     fn with_vectors_or_numbers<W: WithReal<Self>>(set: InstructionSet, work: W) -> W::Output;
 }
 
@@ -97,7 +97,7 @@ vectors!(f64);
 vectors!(f32);
 
 impl InstructionSet {
-    /// Does work with vectors of f64; `None` where this machine lacks the instructions.
+    /// Does work with vectors of f64; `None` if this machine lacks the instructions.
     pub fn with_f64<W: WithNumber>(self, work: W) -> Option<W::Output> {
         self.is_available().then(|| match self {
             Self::Portable => work.run::<Vector<f64, Array<f64, 8>>>(),
@@ -112,7 +112,7 @@ impl InstructionSet {
         })
     }
 
-    /// Does work with vectors of f32; `None` where this machine lacks the instructions.
+    /// Does work with vectors of f32; `None` if this machine lacks the instructions.
     pub fn with_f32<W: WithNumber>(self, work: W) -> Option<W::Output> {
         self.is_available().then(|| match self {
             Self::Portable => work.run::<Vector<f32, Array<f32, 16>>>(),
@@ -146,8 +146,8 @@ unsafe fn on_avx512<N: Number, W: WithNumber>(work: W) -> W::Output {
 
 /// A vector of `T::LANES` numbers.
 ///
-/// The type is private and nothing but the methods of [`InstructionSet`] above names it to others, after they have seen
-/// that the machine has its instructions. So whoever has the type may use it, and that is the proof of all blocks below.
+/// The type is private and only the methods of [`InstructionSet`] above pass it on, after they have checked that the
+/// machine has its instructions. So any code that has the type may use it, which is the proof of all blocks below.
 #[derive(Clone, Copy)]
 struct Vector<T, V>(V, PhantomData<T>);
 

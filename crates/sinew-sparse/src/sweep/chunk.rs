@@ -37,7 +37,8 @@ pub trait Precision: Real {
     #[doc(hidden)]
     unsafe fn run(sweep: &Sweep<'_, Self>, set: InstructionSet, chunks: Range<usize>) -> Outcome;
 
-    /// Does work with vectors of this precision, or with plain numbers where there are only the instructions of the build.
+    /// Does work with vectors of this precision, or with plain numbers if only the instructions of the build are
+    /// available.
     fn with_vectors<W: WithReal<Self>>(set: InstructionSet, work: W) -> W::Output;
 
     /// [`super::multiply_adds`].
@@ -355,7 +356,7 @@ unsafe fn quotient<T: Precision, V: Lanes<T>, const L: usize>(
     }
 }
 
-/// `q += factor mass field`, the mass where there is one.
+/// `q += factor mass field`, with the mass if there is one.
 #[inline(always)]
 unsafe fn add_own<T: Precision, V: Lanes<T>, const L: usize>(
     factor: V,

@@ -4,8 +4,8 @@
 /// was shortened just before.
 pub(super) const ROUNDING: f64 = 1e-9;
 
-/// Shortens a cell's vector, measured from `from` or from 0, to `limit` where it is longer; whether
-/// it was. A vector within the limit keeps its bits.
+/// Shortens a cell's vector, measured from `from` or from 0, to `limit` if it is longer; returns true
+/// if it was. A vector within the limit keeps its bits.
 pub fn clamp_vector(vector: &mut [f64], from: Option<&[f64]>, limit: f64) -> bool {
     clamp_within(vector, from, limit, ROUNDING)
 }

@@ -7,9 +7,9 @@ use std::ops::Range;
 use super::CHUNK;
 use crate::simd::{At, Lanes, Real};
 
-/// Rows of a matrix on the positions of a lattice, each template stored once: what neighbours a row
-/// reads, and by which blocks, is the same for all rows of a template, so that neither blocks nor
-/// columns are read from memory.
+/// Rows of a matrix on the positions of a lattice, each template stored once: the offsets and blocks of
+/// neighbours are the same for all rows of a template, so that neither blocks nor columns are read from
+/// memory.
 #[derive(Clone, Debug)]
 pub struct Lattice<T> {
     pub(super) layers: usize,
@@ -27,13 +27,13 @@ pub struct Lattice<T> {
     pub(super) runs: Vec<Run>,
 }
 
-/// Positions one after the other with the same template.
+/// Consecutive positions with the same template.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Run {
     pub(super) template: u32,
     /// First position.
     pub(super) first: u32,
-    /// Vectors of positions; the last may reach beyond the run, into what a later run computes.
+    /// Vectors of positions; the last may reach beyond the run, into positions of a later run.
     pub(super) vectors: u32,
 }
 

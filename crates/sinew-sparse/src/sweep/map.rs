@@ -12,7 +12,7 @@ pub type Field = u32;
 /// target.
 #[derive(Clone, Debug)]
 pub struct CellMap<T> {
-    /// The forces f, where there are any.
+    /// The forces f, if any.
     pub forces: Option<Field>,
     /// The products that are subtracted.
     pub products: Vec<Product<T>>,
@@ -58,14 +58,14 @@ pub enum Quotient {
     },
     /// `M^-1 rho`.
     Mass {
-        /// The inverse masses, 0 where no cell is.
+        /// The inverse masses, 0 at positions without a cell.
         inverse: Field,
     },
     /// `P^-1 rho`, the rows of the blocks of P^-1 in as many vectors as there are layers.
     Blocks {
         /// The masses.
         mass: Field,
-        /// The first row; 0 where no cell is.
+        /// The first row of each position; 0 at positions without a cell.
         rows: Field,
     },
 }
@@ -85,7 +85,7 @@ pub struct Update<T> {
     pub watched: bool,
 }
 
-/// A bound, counted where it is reached.
+/// A bound; values that reach it are counted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Clamp<T> {
     /// Bounds each component to this size.

@@ -1,7 +1,7 @@
-//! Sweeps in one pass: the products of a few rows and all that a cell does with them, before they leave
+//! Sweeps in one pass: the products of a few rows and all operations of a cell with them, before they leave
 //! the first cache.
 //!
-//! A [`Sweep`] is a [`CellMap`] with its matrices. [`Fields`] hold the vectors of all cells as
+//! A [`Sweep`] is a [`CellMap`] with its matrices. [`Fields`] store the vectors of all cells as
 //! structures of arrays, in the order of a [`Numbering`]. Rows are taken in chunks, each by one
 //! thread and in the same order of operations whatever the number of threads, so that the bits do not
 //! depend on it.

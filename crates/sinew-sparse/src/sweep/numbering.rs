@@ -7,7 +7,7 @@ use crate::Pattern;
 /// Position of a cell that is none.
 const NONE: u32 = u32::MAX;
 
-/// Rows among which those of a length are brought together.
+/// Number of consecutive rows that are sorted by length.
 const SIGMA: usize = 256;
 
 /// A place for each cell: positions, a multiple of some number of lanes, at most one cell at each.
@@ -19,7 +19,7 @@ pub struct Numbering {
 
 impl Numbering {
     /// Cells one after the other by reverse Cuthill-McKee (Liu and Sherman, SIAM J. Numer. Anal. 13, 1976), which keeps
-    /// neighbours near each other; of each 256, those with as many neighbours are stored together.
+    /// neighbours near each other; of each 256, those with the same number of neighbours are stored together.
     #[must_use]
     pub fn near_neighbours(pattern: &Pattern, lanes: usize) -> Self {
         let mut order = reverse_cuthill_mckee(pattern);
@@ -77,7 +77,7 @@ impl Numbering {
         &self.position
     }
 
-    /// The cell at a position, where there is one.
+    /// The cell at a position, if any.
     #[must_use]
     pub fn cell(&self, position: usize) -> Option<u32> {
         let cell = self.cell[position];

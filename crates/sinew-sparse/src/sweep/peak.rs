@@ -5,8 +5,8 @@
 use super::chunk::Precision;
 use crate::simd::{At, InstructionSet, Lanes};
 
-/// Sums that do not wait for each other, in 12 registers whatever their width: as many as hide the time that one
-/// multiply-add takes, and no more than there are registers for.
+/// Number of independent sums, in 12 registers of any width: enough to hide the latency of a multiply-add, and no
+/// more than there are registers for.
 const fn sums(set: InstructionSet) -> usize {
     match set {
         InstructionSet::Portable => PORTABLE,

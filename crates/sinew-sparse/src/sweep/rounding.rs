@@ -6,11 +6,11 @@ use crate::simd::Real;
 /// Entries of a block of three layers.
 const MOST_ENTRIES: usize = 9;
 
-/// Digits (relative) from which each entry is rounded separately: what rounding adds to a sum of them is then far below
-/// any error that is measured.
+/// Precision (relative) from which each entry is rounded separately: the rounding error of a sum of them is then far
+/// below any error that is measured.
 const FINE: f64 = 1e-12;
 
-/// Margin for a diagonal entry that becomes larger than before by what all others of its row lost.
+/// Margin for a diagonal entry, which grows by the rounding errors of all others of its row.
 const ROOM: f64 = 1.0 + 1e-4;
 
 /// The units of the cells of a matrix in few digits: powers of two of which numbers up to the largest entry of a cell's
@@ -28,12 +28,12 @@ impl Units {
         Self(cells.map(|cell| unit::<T>(matrix, cell)).collect())
     }
 
-    /// True if digits are fine, so that entries stay what they are.
+    /// True if the precision is fine, so that entries stay unchanged.
     pub(super) fn are_fine(&self) -> bool {
         self.0.is_empty()
     }
 
-    /// The unit of the block between two cells, the larger of theirs; 0 where there are none.
+    /// The unit of the block between two cells, the larger of theirs; 0 if there are none.
     pub(super) fn between(&self, cell: usize, other: usize) -> f64 {
         let of = |cell: usize| self.0.get(cell).copied().unwrap_or(0.0);
         of(cell).max(of(other))
@@ -44,10 +44,10 @@ impl Units {
 ///
 /// A translation of the whole body strains nothing, since the blocks of a row add up to zero. Entries that are
 /// rounded one by one add up to something else: springs to the ground, whose stiffness is a rounding error of the
-/// diagonal, and thus large beside the stiffness with which a body resists its slow motions. Here the sums are exact, and
-/// the block on the diagonal (`own`) takes what the others lost. The matrix stays symmetric, without which motions would gain
-/// energy: two cells see one unit in the block between them, and of the diagonal block only the symmetric part of what the
-/// others lost is taken. The rest does no work in a translation.
+/// diagonal, and thus large compared to the stiffness with which a body resists its slow motions. Here the sums are
+/// exact, and the block on the diagonal (`own`) takes the rounding errors of the others. The matrix stays symmetric,
+/// without which motions would gain energy: two cells use one unit in the block between them, and the diagonal block
+/// takes only the symmetric part of the rounding errors. The rest does no work in a translation.
 pub(super) fn round_row<'a, T: Real>(
     row: impl Iterator<Item = (&'a [f64], f64)> + Clone,
     own: usize,
@@ -99,7 +99,7 @@ pub(super) fn round_row<'a, T: Real>(
     }
 }
 
-/// The power of two of which the entries of a cell's row are made multiples; 0 where there are no others.
+/// The power of two of which the entries of a cell's row are made multiples; 0 if there are no others.
 fn unit<T: Real>(matrix: &BlockMatrix, cell: usize) -> f64 {
     let entries = matrix.row_blocks(cell).flat_map(|(_, block)| block);
     let largest = entries.fold(0.0, |most: f64, entry| entry.abs().max(most));
@@ -143,7 +143,7 @@ mod tests {
         matrix
     }
 
-    /// The blocks of each row as f32 holds them, by column.
+    /// The blocks of each row rounded to f32, by column.
     fn rounded(matrix: &BlockMatrix) -> Vec<Vec<(usize, Vec<f32>)>> {
         let units = Units::of::<f32>(matrix);
         let layers = matrix.layers();

@@ -47,7 +47,7 @@ pub struct Grid {
 }
 
 impl Grid {
-    /// The lattice of cells at these points, for kernels with `lanes` lanes; `None` where they are on none, or too far
+    /// The lattice of cells at these points, for kernels with `lanes` lanes; `None` if they are on none, or too far
     /// apart.
     #[must_use]
     pub fn find(points: &[[f64; 3]], lanes: usize) -> Option<Self> {
@@ -104,7 +104,7 @@ impl Grid {
         self.extent
     }
 
-    /// Distance between neighbours on the lattice; `None` where they are not next to each other.
+    /// Distance between neighbours on the lattice; `None` if they are not next to each other.
     fn offset(&self, cell: usize, neighbour: usize) -> Option<i32> {
         let (from, to) = (self.place[cell], self.place[neighbour]);
         let step = [0, 1, 2].map(|axis| to[axis] - from[axis]);
@@ -120,7 +120,7 @@ impl Grid {
     }
 }
 
-/// Place of each point along an axis, in equal steps from the first; `None` where they are not.
+/// Place of each point along an axis, in equal steps from the first; `None` if they are not.
 fn places(points: &[[f64; 3]], axis: usize) -> Option<Vec<i32>> {
     let mut sorted: Vec<f64> = points.iter().map(|point| point[axis]).collect();
     sorted.sort_unstable_by(f64::total_cmp);
@@ -322,8 +322,8 @@ fn find(matrix: &BlockMatrix, units: &Units, grid: &Grid) -> Option<(Vec<Templat
     Some((templates, of_cell))
 }
 
-/// Gives a row that lacks neighbours the template of rows that have them, where what it lacks is empty
-/// and adds nothing: rows beside held cells.
+/// Gives a row that lacks neighbours the template of rows that have them, if the missing positions are empty
+/// and add nothing: rows next to fixed cells.
 fn merge(templates: &[Template], grid: &Grid, of_cell: &mut [u32]) {
     let mut frequent: Vec<usize> = (0..templates.len()).collect();
     frequent.sort_by_key(|number| std::cmp::Reverse(templates[*number].rows));
@@ -360,7 +360,7 @@ impl Template {
         places.zip(self.blocks.chunks_exact(len))
     }
 
-    /// The offsets that this has and `small` has not, where all else is the same.
+    /// The offsets that this has and `small` has not; `None` if anything else differs.
     fn more_than(&self, small: &Self) -> Option<Vec<i32>> {
         if self.offsets.len() <= small.offsets.len() {
             return None;

@@ -1,19 +1,25 @@
 //! The step of a tool that is a body of its own.
 //!
-//! With d the offset from the path and w the velocity of the path, the step beside tissue whose velocities are staggered is
+//! With d the offset from the path and w the velocity of the path, the step with tissue whose velocities are
+//! staggered is
 //! `m (v+ - v-) = -dt k (d_before + 2 d + d_after)/4 - dt b ((v+ + v-)/2 - (w+ + w-)/2) + dt f`,
 //! the average acceleration method (Newmark 1959) in the form of central difference, whose matrix is `P = m + dt/2 b + dt^2/4 k`. It is stable at any stiffness
-//! and step, and with the mean offset `D = d + dt/2 (v+ - w+)` the energy `(m v+^2 + k D^2)/2` changes by the work of the path, what the damper takes, and
-//! `dt f (v+ + v-)/2`, exactly: so contact needs of it what it needs of tissue. A body that swings faster than the step tells would turn about in each step for ever: it
-//! gets a damper and a mass more ([`Spring`]), which leaves the balance as it is.
+//! and step, and with the mean offset `D = d + dt/2 (v+ - w+)` the energy `(m v+^2 + k D^2)/2` changes by the work of
+//! the path, the dissipation of the damper, and
+//! `dt f (v+ + v-)/2`, exactly: contact treats it as it treats tissue. A body whose period the step does not resolve
+//! would oscillate from step to step forever: it gets additional damping and mass ([`Spring`]), which keep the
+//! balance.
 //!
-//! Where the step before was of another length, impulses are those of the time between the two velocities, half of either step, as on the tissue, and `d_before` is `d - dt_before (v- - w-)`. The balance
+//! If the step before was of another length, impulses are those of the time between the two velocities, half of
+//! either step, as on the tissue, and `d_before` is `d - dt_before (v- - w-)`. The balance
 //! is then off by `k D (dt - dt_before)(v+ - v-)/4`, of order 2, once.
 //!
-//! Beside tissue whose velocities hold at the ends of steps it is implicit Euler's, `m (v+ - v) = -dt k d_after - dt b (v+ - w+) + dt f`, of which `P = m + dt b + dt^2 k`:
+//! With tissue whose velocities are at the ends of steps it is implicit Euler,
+//! `m (v+ - v) = -dt k d_after - dt b (v+ - w+) + dt f`, of which `P = m + dt b + dt^2 k`:
 //! there contact works at `v+`, and `(m v+^2 + k d_after^2)/2` rises by no more than that and the work of the path.
 //!
-//! Rotation goes likewise in the body's own axes, `J (W+ - W-) + dt W x J W = dt torque` with W the mean of both, or the new one; the gyroscopic term has no power.
+//! Rotation is treated likewise in the body's own axes, `J (W+ - W-) + dt W x J W = dt torque` with W the mean of
+//! both, or the new one; the gyroscopic term has no power.
 
 use super::record::{Body, OF_BODY};
 use super::tool_body::ToolBody;
@@ -154,12 +160,12 @@ impl BodyStep {
         self.before
     }
 
-    /// The pose after the step, as far as contact has pushed it.
+    /// The pose after the step, with the contact displacement so far.
     pub(super) fn after(&self) -> Pose {
         self.at(1.0)
     }
 
-    /// The pose at a share of the step, as far as contact has pushed it.
+    /// The pose at a share of the step, with the contact displacement so far.
     pub(super) fn at(&self, share: f64) -> Pose {
         let moved = self.free.times(share * self.dt).plus(self.pushed);
         self.before.advanced(moved.along, moved.about)
@@ -237,7 +243,7 @@ struct Spring {
 }
 
 impl Spring {
-    /// With damping as a share of what is critical.
+    /// A spring with damping as a share of critical damping.
     fn new(mass: f64, stiffness: f64, damping: f64) -> Self {
         let damper = 2.0 * damping * (stiffness * mass).sqrt();
         Self {
@@ -247,10 +253,11 @@ impl Spring {
         }
     }
 
-    /// One that staggered steps of `dt` (s) bring to rest instead of turning it about for ever.
+    /// A spring that staggered steps of `dt` (s) bring to rest, where they would otherwise oscillate forever.
     ///
-    /// With x the frequency times the step, its damper grows by `dt k x^2/(1 + x^2)`, a share `x^3/2` of what is critical where x is small, so that the method stays of
-    /// order 2. Its mass grows to where the damper just stops it within a step, `P = dt b`: by nothing where x is below 2 and the damper weak.
+    /// With x the frequency times the step, its damping grows by `dt k x^2/(1 + x^2)`, a share `x^3/2` of critical
+    /// damping at small x, so that the method stays of order 2. Its mass grows until the damper just stops it within
+    /// a step, `P = dt b`: not at all for x below 2 and weak damping.
     fn told_by_steps_of(self, dt: f64) -> Self {
         let stiff = dt * dt * self.stiffness;
         let damper = match stiff > 0.0 {

@@ -15,7 +15,8 @@ impl Tools {
     /// cells before the cut, and `contact` is their history. For a touched cell, `of` gives the place among the old
     /// cells of the cell that it is or is a copy of; `None` for a cell that could not be touched.
     ///
-    /// Forces of the last step stay with the first of several copies, and a tool that holds a cell holds all of its copies.
+    /// Forces of the last step stay with the first of several copies, and a tool that grasps a cell grasps all of its
+    /// copies.
     #[must_use]
     pub fn carried(
         &self,

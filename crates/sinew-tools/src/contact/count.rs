@@ -1,4 +1,4 @@
-//! Counts of what tools do to cells.
+//! Counts and sums of contact forces.
 
 use super::links::Links;
 use super::lips::LipLink;
@@ -10,7 +10,7 @@ use super::tool_step::{ToolStep, Way, holder};
 use super::tools::{MOST_TOOLS, Tools};
 use crate::vector::{Vector, add, cross, dot, scaled, sub};
 
-/// Notes what an iteration for the contacts of a tool left.
+/// Records the residual of the iteration for the contacts of a tool.
 pub(super) fn note_residual(numbers: &mut [f64; OF_TOOL], residual: f64) {
     for place in [RESIDUAL, LARGEST_RESIDUAL] {
         numbers[place] = residual.max(numbers[place]);
@@ -26,7 +26,7 @@ pub(super) struct Count<'a> {
 }
 
 impl Count<'_> {
-    /// Counts the forces of contacts that act on each other, with the way (m) of each cell as they moved it, and seizes what tools take hold of.
+    /// Counts the forces of coupled contacts, with the displacement (m) of each cell under them, and grasps cells.
     pub(super) fn of_links(
         &self,
         links: &Links,
@@ -89,7 +89,7 @@ impl Count<'_> {
         }
     }
 
-    /// Lets a tool take hold of a cell at a place (m), if it holds what it pushes and no tool has hold of that.
+    /// Grasps a cell at a place (m) with a tool, if its jaws are closed and no tool grasps the cell already.
     pub(super) fn seize(&self, tool: usize, place: usize, at: Vector, record: &mut Record<'_>) {
         if !self.steps[tool].holds {
             return;
@@ -107,7 +107,7 @@ impl Count<'_> {
         }
     }
 
-    /// Notes which other tools would seize a cell that one of them has hold of, on its way (m).
+    /// Records the other tools that would grasp a cell along its path (m) while one tool grasps it.
     pub(super) fn rivals(&self, holder: usize, place: usize, way: Way, record: &mut Record<'_>) {
         for (other, step) in self.steps.iter().enumerate() {
             let may_meet = other != holder && self.tools.tools_at[place] >> other & 1 == 1;

@@ -1,4 +1,4 @@
-//! Contacts of a step that act on each other: which there are, and what becomes of them.
+//! Coupled contacts of a step: their detection and solution.
 
 use sinew_core::{Meeting, State};
 
@@ -14,7 +14,7 @@ use super::tools::Tools;
 use crate::shape::TriangleTouch;
 use crate::vector::{Vector, add, between, scaled, sub};
 
-/// Most rounds of finding contacts and solving for their forces: what one surface pushes back may meet another there.
+/// Most rounds of finding contacts and solving for their forces: tissue pushed back by one surface may meet another.
 const MOST_ROUNDS: usize = 8;
 
 /// Share of a pass within which a contact has been there at its beginning.
@@ -27,8 +27,8 @@ const MOST_ON_TRIANGLE: usize = 4;
 const ROUNDS_OF_BODIES: usize = 2;
 
 impl Tools {
-    /// Finds the contacts of a step that act on each other, and what they move tissue and tools by; in passes where a fine tip goes far, so that no
-    /// triangle gets round it.
+    /// Finds the coupled contacts of a step, and the displacements of tissue and tools under them; in several passes
+    /// if a tool smaller than the surface triangles moves far, so that no triangle is missed.
     pub(super) fn link(
         &self,
         room: &mut Room,
@@ -99,7 +99,7 @@ impl Tools {
     }
 }
 
-/// The ways of cells in a pass of a step.
+/// The paths of cells in a pass of a step.
 #[derive(Clone, Copy)]
 struct Ways<'a> {
     tools: &'a Tools,
@@ -110,7 +110,7 @@ struct Ways<'a> {
 }
 
 impl Ways<'_> {
-    /// The way (m) of a cell in the step, without contact.
+    /// The path (m) of a cell in the step, without contact.
     fn whole(&self, place: usize) -> Way {
         let touched = &self.tools.cells[place];
         let to = touched.at(&self.state.u);
@@ -128,7 +128,7 @@ impl Ways<'_> {
         }
     }
 
-    /// The way (m) of a cell in the pass, as far as contact has moved it.
+    /// The path (m) of a cell in the pass, with the contact displacement so far.
     fn pass(&self, place: usize, links: &Links) -> Way {
         let [from, to] = self.shares.map(|share| self.stood(place, share));
         (add(from, links.before[place]), add(to, links.moved[place]))
@@ -146,7 +146,7 @@ struct Search<'a> {
     tools: &'a Tools,
     ways: Ways<'a>,
     held: &'a [[f64; OF_HELD]],
-    /// Velocities (m/s) before the step, where they are known.
+    /// Velocities (m/s) before the step, if known.
     velocities: &'a [[f64; OF_VELOCITY]],
     /// History of each pair of cut-face nodes.
     pairs: &'a [[f64; OF_PAIR]],
@@ -160,8 +160,8 @@ impl Search<'_> {
         swing(self.ways.meeting, kept, sub(to, from))
     }
 
-    /// Adds new contacts; returns true if there are any. At first, triangles that touch at the beginning: the others
-    /// may not come to touch at all once these do not give way.
+    /// Adds new contacts; returns true if there are any. At first, only triangles that touch at the beginning: the
+    /// others may not come into contact once these resist.
     fn all(&self, room: &mut Room, is_first: bool) -> bool {
         let count = |links: &Links| links.all.len() + links.lips.len();
         let before = count(&room.links);
@@ -258,7 +258,7 @@ impl Search<'_> {
         }
     }
 
-    /// Adds the contacts of triangles, or those that are there at the beginning; whether it left others.
+    /// Adds the contacts of triangles, or only those at the beginning of the pass; returns true if it skipped others.
     fn of_triangles(&self, room: &mut Room, at_beginning: bool) -> bool {
         let Room { steps, links, .. } = room;
         let thin = |tool: &&Tool| !tool.triangles.is_empty();

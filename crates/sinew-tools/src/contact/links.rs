@@ -36,12 +36,12 @@ pub(super) enum Rule {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Link {
     nodes: [LinkedNode; NODES],
-    /// The share (m) of held corners in the point of contact.
+    /// The share (m) of fixed corners in the point of contact.
     still: Vector,
     pub(super) tool: usize,
     /// The part of the tool.
     pub(super) part: usize,
-    /// The triangle, where it is none of a node alone.
+    /// The triangle; `None` for a contact of a node.
     pub(super) triangle: Option<u32>,
     /// The place (m) of the contact in the tool's frame.
     own: Vector,
@@ -118,7 +118,7 @@ impl Links {
         }
     }
 
-    /// Forgets the contacts of the last pass, but for what they have moved.
+    /// Drops the contacts of the last pass, but keeps the displacements they caused.
     pub(super) fn begin_pass(&mut self) {
         for place in &self.places {
             let place = *place as usize;
@@ -152,7 +152,7 @@ impl Links {
         self.lips.push(link);
     }
 
-    /// Notes that the cell at a place is part of a contact.
+    /// Records that the cell at a place is part of a contact.
     fn link(&mut self, place: u32) {
         if !std::mem::replace(&mut self.is_linked[place as usize], true) {
             self.places.push(place);
@@ -346,7 +346,8 @@ impl Link {
         }
     }
 
-    /// A contact of a triangle with a tool: the same of its first node, with all nodes by their weights, of which it has one, and the share (m) of corners that are held.
+    /// A contact of a triangle with a tool, made from that of its first node: all nodes with their weights, and the
+    /// share (m) of fixed corners.
     pub(super) fn of_triangle(
         self,
         triangle: u32,
@@ -365,7 +366,7 @@ impl Link {
         link
     }
 
-    /// The share (m) of held corners in the point of contact.
+    /// The share (m) of fixed corners in the point of contact.
     pub(super) fn still(&self) -> Vector {
         self.still
     }

@@ -1,6 +1,6 @@
 //! Contact between the faces of cuts, which do not pass each other.
 //!
-//! A cut makes two nodes of one. While their faces still face each other, one may not go beyond the other along the
+//! A cut makes two nodes of one. While their faces still face each other, one may not pass the other along the
 //! mean normal of the faces around them: a unilateral constraint between two nodes, whose response is the sum of
 //! theirs. There is no friction, and both are pushed by opposite forces.
 
@@ -14,7 +14,8 @@ const FACING: f64 = 0.5;
 /// The two faces that a cut made of one, which lie on each other at rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CutFace {
-    /// The corners of each: those of the first counter-clockwise as seen from outside the tissue behind it, those of the second in the same order.
+    /// The corners of each: those of the first face counter-clockwise as seen from outside its tissue, those of the
+    /// second in the same order.
     pub corners: [[Corner; 3]; 2],
 }
 
@@ -23,7 +24,7 @@ pub struct CutFace {
 pub(super) struct Pair {
     /// The one, and the other.
     pub(super) nodes: [Corner; 2],
-    /// The faces around them, by their places, and whether the one belongs to the first face.
+    /// The faces around them, by index, each with a flag: true if the first node belongs to its first face.
     faces: Vec<(u32, bool)>,
     /// Largest offset (m) along the faces at which the two nodes still act on each other: the longest edge of these
     /// faces at rest.
@@ -42,7 +43,7 @@ pub(super) struct Lips {
 pub(super) struct LipLink {
     /// Its place among the pairs.
     pub(super) pair: u32,
-    /// Places of both nodes among the touched cells; `None` where one is held.
+    /// Indices of both nodes among the touched cells; `None` for a fixed one.
     pub(super) nodes: [Option<u32>; 2],
     compliances: [Compliance; 2],
     /// The unit normal, from the one to the other.
@@ -125,7 +126,8 @@ impl Lips {
         }));
     }
 
-    /// A pair that comes together on its way between places (m) of its nodes, in spite of what has moved them, with the way (m) from one to the other as the step before began.
+    /// The contact of a pair that closes along the paths (m) of its nodes in spite of contact displacements so far.
+    /// `earlier` is the vector (m) from one to the other at the beginning of the step before.
     pub(super) fn meet(
         &self,
         pair: u32,

@@ -44,7 +44,7 @@ impl Met {
         (self.count, self.residual) = (0, 0.0);
     }
 
-    /// Finds new contacts of a node on its way (m) to where it is pushed, with the tools whose bits are set in `tools`;
+    /// Finds new contacts of a node along its path (m) to its pushed position, with the tools of the bits in `tools`;
     /// returns true if there are any. The gap is taken at `end`, its contact-free position after the step. `swing` is
     /// the displacement (m) of the node along which friction works, `dt` (s) the length of the step.
     pub(super) fn touches(
@@ -91,7 +91,7 @@ impl Met {
         self.residual = compliance.solve(&self.constraints[..self.count], &mut self.forces);
     }
 
-    /// Leaves the node to a tool that holds it by this force (N).
+    /// Assigns the node to a tool that grasps it with this force (N).
     pub(super) fn hold(&mut self, tool: usize, force: Vector) {
         (self.count, self.parts[0], self.forces[0]) = (1, (tool, 0), force);
     }
@@ -113,7 +113,7 @@ impl Met {
         })
     }
 
-    /// The sum of what follows from each force (N).
+    /// The sum of a function of each force (N).
     pub(super) fn sum(&self, of: impl Fn(Vector) -> Vector) -> Vector {
         let forces = self.pushing();
         forces.fold([0.0; 3], |sum, (_, force)| add(sum, of(force)))

@@ -5,7 +5,8 @@ use crate::vector::{Vector, add, dot, length, scaled, sub};
 /// Most constraints at a node that are solved together; more are left to the next step.
 pub(super) const MOST: usize = 8;
 
-/// Share of a node's largest response below which it counts as held in the direction of a normal: a normal that is all but along a held axis leaves 1e-3 of itself, and would
+/// Share of a node's largest response below which it counts as fixed in the direction of a normal: a normal almost
+/// along a fixed axis leaves 1e-3 of itself, and would need a force a million times as large.
 /// have to be answered with a force a million times as large.
 pub(super) const HELD: f64 = 1e-6;
 
@@ -25,7 +26,7 @@ const MEANT_TO_FIT: f64 = 1e-9;
 /// Nodal compliance: displacement per unit force over one step.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Compliance {
-    /// `dt^2 P^-1` (m/N), zero in the directions in which the node is held.
+    /// `dt^2 P^-1` (m/N), zero in fixed directions of the node.
     block: [Vector; 3],
     free: [bool; 3],
 }
@@ -48,7 +49,7 @@ pub(super) struct Constraint {
 }
 
 impl Constraint {
-    /// The constraint as it is after a displacement (m).
+    /// The constraint after a displacement (m).
     pub(super) fn behind(&self, displacement: Vector) -> Self {
         Self {
             gap: self.gap + dot(self.normal, displacement),
@@ -79,7 +80,7 @@ impl Compliance {
         Self { block, free }
     }
 
-    /// This one and a share of another one, one after the other.
+    /// The sum of this one and a share of another one, as of springs in series.
     pub(super) fn plus(&self, other: &Self, share: f64) -> Self {
         Self {
             block: [0, 1, 2].map(|axis| add(self.block[axis], scaled(other.block[axis], share))),
@@ -122,7 +123,7 @@ impl Compliance {
         self.of_one_by(|displacement| self.force(displacement), constraint)
     }
 
-    /// The same, by what gives [`Compliance::force`].
+    /// The same, with `force` in the place of [`Compliance::force`].
     pub(super) fn of_one_by(
         &self,
         force: impl Fn(Vector) -> Vector,
@@ -216,8 +217,10 @@ impl Compliance {
         }
     }
 
-    /// Finds the forces (N) with friction from those without it, by Gauss and Seidel's iteration: each constraint exactly for the forces of the others. Returns what is left, the change of a
-    /// displacement in the last sweep as a share of the largest by a force. Surfaces that wedge a node have no such forces within bounds: it then gets those without friction.
+    /// Finds the forces (N) with friction from those without it by Gauss-Seidel iteration: each constraint exactly
+    /// for the forces of the others. Returns the residual: the change of a displacement in the last sweep as a share
+    /// of the largest by a force. If surfaces wedge a node, no such bounded forces exist: it then gets those without
+    /// friction.
     fn rub(&self, constraints: &[Constraint], forces: &mut [Vector; MOST]) -> f64 {
         let (mut left, without) = (0.0, *forces);
         let stiffness = self.factor();
@@ -244,8 +247,8 @@ impl Compliance {
     }
 
     /// The linear complementarity problem `0 <= lambda, gap + N C N' lambda >= 0`, of which at most three constraints act in space: sets of one, two
-    /// and three are tried in turn. Where no point satisfies all, as between closing jaws, the one that violates the others least is taken.
-    /// Returns the violation that is left, as a share of that without forces.
+    /// and three are tried in turn. If no point satisfies all, as between closing jaws, the one with the least
+    /// violation is taken. Returns the remaining violation, as a share of that without forces.
     fn of_several(&self, constraints: &[Constraint], forces: &mut [Vector; MOST]) -> f64 {
         let count = constraints.len().min(MOST);
         let violation = |displacement: Vector| {
@@ -317,7 +320,7 @@ fn sum_of(constraints: &[Constraint], active: [usize; 3], lambda: Vector) -> Vec
     sum
 }
 
-/// `A^-1 b` of a symmetric positive definite matrix by its Cholesky factor; `None` where it is singular.
+/// `A^-1 b` of a symmetric positive definite matrix by its Cholesky factor; `None` if it is singular.
 fn solved(a: [Vector; 3], b: Vector) -> Option<Vector> {
     Some(Factor::of(a)?.solve(b))
 }
@@ -325,7 +328,7 @@ fn solved(a: [Vector; 3], b: Vector) -> Option<Vector> {
 /// Forces by displacements: the inverse of a compliance.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Stiffness {
-    /// `None` where it is singular.
+    /// `None` if it is singular.
     factor: Option<Factor>,
     free: [bool; 3],
 }
@@ -353,7 +356,7 @@ enum Factor {
 }
 
 impl Factor {
-    /// `None` where the matrix is singular.
+    /// `None` if the matrix is singular.
     fn of(a: [Vector; 3]) -> Option<Self> {
         let positive = |pivot: f64, of: f64| (pivot > 1e-13 * of).then(|| pivot.sqrt());
         if [a[1][0], a[2][0], a[2][1]] == [0.0; 3] {

@@ -11,10 +11,12 @@ use crate::vector::{Vector, add, scaled};
 /// Numbers of a tool.
 pub(super) const OF_TOOL: usize = 21;
 
-/// Their places: the force (N) and the torque (N m) on it, its work (J) and how deep (m) it had to leave a node in it so far, its contacts, the pieces
-/// in which its way was followed, the impulse (N s) that it has received so far, what the iteration for its contacts left in the last step and at most, how many cells it has
-/// seized so far, the number, from 1 on, of a tool that held a cell which it would have seized, and the most passes that a step would have needed so far, where
-/// that is more than are made, and the angular impulse (N m s) about its own origin that it has received so far.
+/// Their places: the force (N) and the torque (N m) on it, its work (J), the largest depth (m) at which it had to
+/// leave a node so far, its contacts, the pieces of its path in the step, the impulse (N s) that it has received so
+/// far, the residual of the iteration for its contacts in the last step and the largest so far, the cells it has
+/// grasped so far, the number, from 1 on, of a tool that grasped a cell which it would have grasped, the most passes
+/// that a step would have needed so far if that is more than are made, and the angular impulse (N m s) about its own
+/// origin so far.
 pub(super) const FORCE: usize = 0;
 pub(super) const TORQUE: usize = 3;
 pub(super) const WORK: usize = 6;
@@ -38,14 +40,15 @@ pub(super) const OF_CELL: usize = 3;
 /// Numbers of a cell whose velocity is kept.
 pub(super) const OF_VELOCITY: usize = 3;
 
-/// Numbers of a cell that may be held.
+/// Numbers of a cell that may be grasped.
 pub(super) const OF_HELD: usize = 4;
 
 /// Numbers of all cut faces together, and of each pair.
 pub(super) const OF_LIPS: usize = 3;
 pub(super) const OF_PAIR: usize = 3;
 
-/// Their places: the pairs that pushed each other in the last step, and what the iteration left of them then and at most.
+/// Their places: the pairs that pushed each other in the last step, the residual of the iteration then, and the
+/// largest so far.
 pub(super) const LIP_CONTACTS: usize = 0;
 pub(super) const LIP_RESIDUAL: usize = 1;
 pub(super) const LARGEST_LIP_RESIDUAL: usize = 2;
@@ -78,7 +81,8 @@ pub(super) struct Record<'a> {
     /// Velocity (m/s) after the step of each cell that was near a tool, zeros for the others; empty if there is no
     /// friction.
     pub(super) velocities: &'a mut [[f64; OF_VELOCITY]],
-    /// Tool that holds each cell, from 1 on, or 0, and the place (m) in that tool's frame; empty if no tool ever holds.
+    /// Tool that grasps each cell, from 1 on, or 0, and the place (m) in that tool's frame; empty if no tool can
+    /// grasp.
     pub(super) held: &'a mut [[f64; OF_HELD]],
     /// One row for all cut faces together; empty without cut faces.
     pub(super) lips: &'a mut [[f64; OF_LIPS]],
@@ -97,7 +101,7 @@ pub(super) struct Counts {
     pub(super) cells: usize,
     /// True if any tool has friction.
     pub(super) rubs: bool,
-    /// True if any tool ever holds.
+    /// True if any tool can grasp.
     pub(super) holds: bool,
     /// Pairs of nodes at cut faces.
     pub(super) pairs: usize,
@@ -121,7 +125,7 @@ impl Counts {
         first..first + self.pairs * OF_PAIR
     }
 
-    /// Places of the numbers of cells that may be held.
+    /// Places of the numbers of cells that may be grasped.
     pub(super) fn of_held(&self) -> Range<usize> {
         let first = self.of_velocities().end;
         let held = if self.holds { OF_HELD } else { 0 };
@@ -176,7 +180,7 @@ impl<'a> Record<'a> {
         }
     }
 
-    /// Forgets the last step but for what has been since the motion began.
+    /// Clears the values of the last step, but not those since the motion began.
     pub(super) fn forget_last_step(&mut self) {
         for numbers in self.tools.iter_mut() {
             let before = std::mem::replace(numbers, [0.0; OF_TOOL]);

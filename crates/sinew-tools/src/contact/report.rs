@@ -17,10 +17,10 @@ use crate::vector::dot;
 pub struct ToolReport {
     /// The force on it (N), friction included: the mean over the step, or over the last part of one that is cut into parts.
     pub force: [f64; 3],
-    /// The torque on it (N m) about its origin, both as they are at the end of the step, the time of the state. Each of the
-    /// forces that [`ToolReport::force`] adds up acts at the place of its contact then: of a node alone where the force
-    /// leaves it, of contacts that act on each other the touched place of the tool. The moment of the forces on the nodes at
-    /// their places in the state is the opposite, but for the depth that a contact has left.
+    /// The torque on it (N m) about its origin, both at the end of the step, the time of the state. Each of the
+    /// forces that [`ToolReport::force`] adds up acts at the place of its contact then: for a single node the place
+    /// where the force leaves it, for coupled contacts the touched place of the tool. The moment of the forces on the
+    /// nodes at their places in the state is the opposite, apart from the remaining penetration.
     pub torque: [f64; 3],
     /// The impulse (N s) that it has received since the motion began: its growth over any time is the mean force then.
     pub impulse: [f64; 3],
@@ -33,9 +33,10 @@ pub struct ToolReport {
     pub depth: f64,
     /// Contacts in which it pushed: nodes at each of its surfaces, and triangles.
     pub contacts: usize,
-    /// Pieces in which its way was followed: where it turns, and where triangles might get round it.
+    /// Pieces into which its path was divided because it turns, or so that no triangle is missed.
     pub passes: u32,
-    /// The most passes that a step since the motion began would have needed so that no triangle gets round it, where more than are made; 0 elsewhere.
+    /// The most passes that a step since the motion began would have needed so that no triangle is missed, if more
+    /// than are made; else 0.
     pub needed_passes: f64,
     /// Residual of the iteration for contacts that act on each other: the largest change of a displacement in the last
     /// sweep, relative to the largest displacement by a contact.
@@ -44,9 +45,9 @@ pub struct ToolReport {
     pub largest_residual: f64,
     /// Number of cells that it has seized since the motion began.
     pub seized: usize,
-    /// A tool that had hold of a cell which this one would have seized; `None` where there was none.
+    /// A tool that grasped a cell which this one would have grasped; `None` if there was none.
     pub rival: Option<usize>,
-    /// Its own motion where it is a body; `None` before the first step.
+    /// Its own motion if it is a body; `None` before the first step.
     pub body: Option<BodyReport>,
 }
 
@@ -176,7 +177,8 @@ impl Tools {
         numbers.as_chunks::<OF_CELL>().0.iter().copied()
     }
 
-    /// The cell, or triangle, that is nearest to a tool in a pose, or deepest in it, with the displacement `u` (m); `None` where the tool may touch none.
+    /// The cell, or triangle, that is nearest to a tool in a pose, or deepest in it, with the displacement `u` (m);
+    /// `None` if the tool may touch none.
     #[must_use]
     pub fn deepest(&self, u: &[f64], pose: &Pose, tool: usize) -> Option<Depth> {
         let Self { tools, cells, .. } = self;

@@ -11,7 +11,7 @@ use super::tool_step::ToolStep;
 use crate::swept_box::around;
 use crate::vector::Vector;
 
-/// The longest way of a tool that meets triangles in a pass, in its smallest half widths.
+/// The longest path of a tool that meets triangles in a pass, in its smallest half widths.
 const LONGEST_WAY: f64 = 0.5;
 
 /// Most passes of a step.
@@ -21,14 +21,14 @@ const MOST_PASSES: u32 = 100;
 #[derive(Debug)]
 pub(super) struct Room {
     pub(super) steps: Vec<ToolStep>,
-    /// A box (m) outside of which no way meets any tool; `None` where a tool has no bounds.
+    /// A box (m) outside of which no path meets any tool; `None` if a tool has no bounds.
     bounds: Option<[Vector; 2]>,
     /// Places of the cells that may meet a tool in the step.
     pub(super) near: Vec<u32>,
-    /// Places of the cells that are shown, where these are not all.
+    /// Indices of the cells that are shown, if these are not all.
     shown: Vec<u32>,
     are_all_shown: bool,
-    /// True if cells far from all tools count, as tools hold some or let go of them.
+    /// True if cells far from all tools count, since tools grasp or release some.
     holds: bool,
     /// Contacts of a single node.
     pub(super) met: Met,
@@ -62,7 +62,7 @@ impl Room {
         }
     }
 
-    /// Takes a step from a state on, with what bodies and cells keep, without contact.
+    /// Predicts a step from a state without contact, with the variables stored for bodies and cells.
     pub(super) fn take(
         &mut self,
         tools: &[Tool],
@@ -145,7 +145,7 @@ impl Room {
         self.bounds = around(self.steps.iter().flat_map(ToolStep::bounds));
     }
 
-    /// Has the cells shown that may meet a tool in the step or are held, or `all`.
+    /// Requests the cells that may meet a tool in the step or are grasped, or `all`.
     pub(super) fn show(
         &mut self,
         cells: &mut dyn ShowCells,
@@ -158,8 +158,8 @@ impl Room {
         self.are_all_shown = cells.show(within, meeting, state, &mut self.shown) == Shown::All;
     }
 
-    /// Lists the cells that may meet a tool, all where that is not known of a tool or tools hold some: this is done for
-    /// each cell that is shown in each step, and little else is.
+    /// Lists the cells that may meet a tool; all of them if a tool is unbounded or grasps some. This runs for every
+    /// cell that is shown in every step, so it does little.
     pub(super) fn look(&mut self, cells: &[TouchedCell], state: &State, meeting: &Meeting<'_>) {
         self.near.clear();
         if self.steps.is_empty() {

@@ -22,9 +22,10 @@ pub struct Tool {
     pub friction: f64,
     /// The cells that it may touch, by their places among the touched cells of [`crate::Tools`], increasing.
     pub cells: Vec<u32>,
-    /// The triangles that it may touch besides, by their places among those of [`crate::Tools`]: for a tip that would pass between nodes.
+    /// Indices, among those of [`crate::Tools`], of the triangles that it may touch in addition to nodes: for a tool
+    /// smaller than the triangles.
     pub triangles: Vec<u32>,
-    /// Time during which it holds what it touches; `None` if it never does.
+    /// Time during which it grasps the tissue it touches; `None` if it never does.
     pub grasp: Option<Grasp>,
 }
 
@@ -92,7 +93,7 @@ pub struct TouchedTriangle {
 pub enum Corner {
     /// A touched cell, by its place among them.
     Cell(u32),
-    /// A place (m) that is held.
+    /// A fixed place (m).
     Held([f64; 3]),
 }
 
@@ -105,7 +106,7 @@ impl Corner {
         }
     }
 
-    /// The place of a cell among the touched ones; `None` where the corner is held.
+    /// The index of a cell among the touched ones; `None` if the corner is fixed.
     pub(super) fn place(self) -> Option<u32> {
         match self {
             Self::Cell(place) => Some(place),
@@ -115,7 +116,7 @@ impl Corner {
 }
 
 impl ToolsError {
-    /// The name of the tool at fault; `None` where it is none alone.
+    /// The name of the tool at fault; `None` if it is none alone.
     #[must_use]
     pub fn tool(&self) -> Option<&str> {
         match self {
@@ -156,7 +157,7 @@ pub enum ToolsError {
         /// The coefficient.
         friction: f64,
     },
-    /// A time of grasp that does not go forward.
+    /// A grasp whose end is not after its beginning.
     #[error("\"{name}\": grasp from {from} s to {to} s: expected an end after the beginning")]
     Grasp {
         /// The tool.

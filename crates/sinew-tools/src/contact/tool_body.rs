@@ -1,6 +1,7 @@
 //! Tools that are bodies of their own.
 
-/// A tool as a rigid body of six degrees of freedom, which a spring and a damper draw to its path: a virtual coupling. No gravity pulls on it.
+/// A tool as a rigid body of six degrees of freedom, coupled to its path by a spring and a damper: a virtual
+/// coupling. It is without gravity.
 ///
 /// Its own origin is its centre of mass, and its own axes are those of its inertia. It begins on its path, with the velocity of the path.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -9,11 +10,11 @@ pub struct ToolBody {
     pub mass: f64,
     /// Its moments of inertia (kg m^2) about its own axes.
     pub inertia: [f64; 3],
-    /// Stiffness (N/m) of the spring between its origin and the path; 0 lets it go.
+    /// Stiffness (N/m) of the spring between its origin and the path; 0 leaves it free.
     pub coupling: f64,
     /// Stiffness (N m/rad) of the spring between its rotation and that of the path, which knows angles below pi alone; 0 lets it turn.
     pub rotational_coupling: f64,
-    /// Damping of the coupling as a share of what is critical for the body alone.
+    /// Damping of the coupling as a share of critical damping of the body alone.
     pub damping: f64,
 }
 

@@ -1,4 +1,4 @@
-//! The step of a tool: where it is, and what it meets.
+//! The step of a tool: its poses, and its contacts.
 
 use super::body_step::BodyStep;
 use super::record::{OF_BODY, OF_HELD};
@@ -8,7 +8,7 @@ use crate::shape::{Touch, Triangle, TriangleTouch};
 use crate::stroke::Stroke;
 use crate::vector::{Vector, add, between, dot, length, scaled, sub};
 
-/// The way (m) of a cell in a step, straight from one place to another.
+/// The path (m) of a cell in a step, straight from one place to another.
 pub(super) type Way = (Vector, Vector);
 
 /// Largest depth of a node in a part, at the beginning of a step, from which it is pushed out, as a share of the part's
@@ -41,7 +41,7 @@ pub(super) struct ToolStep {
     /// The step of a tool that is a body of its own.
     pub(super) body: Option<BodyStep>,
     pub(super) friction: f64,
-    /// True if the tool holds what it touches.
+    /// True if the tool grasps the tissue it touches.
     pub(super) holds: bool,
     /// True if the motion begins with this step.
     is_first: bool,
@@ -52,7 +52,7 @@ pub(super) struct ToolStep {
     strokes: Vec<(Stroke, Near)>,
 }
 
-/// The tool that keeps hold in a step of a cell of which this says who had it before.
+/// The tool that continues to grasp a cell in a step; `held` names the one that grasped it before.
 pub(super) fn holder(steps: &[ToolStep], held: Option<&[f64; OF_HELD]>) -> Option<usize> {
     let tool = (held?[0] as usize).checked_sub(1)?;
     steps.get(tool)?.holds.then_some(tool)
@@ -106,7 +106,7 @@ pub(super) fn is_near(steps: &[ToolStep], tools: u64, way: Way) -> bool {
 }
 
 impl ToolStep {
-    /// A step that is still to begin, beside tissue of a size (m).
+    /// A step that is not begun yet, for tissue of a size (m).
     pub(super) fn of(tool: &Tool, tissue: f64) -> Self {
         Self {
             before: Pose::identity(),
@@ -125,8 +125,9 @@ impl ToolStep {
         }
     }
 
-    /// Begins a step with the poses of the path before and after it, the pose before the last one with its length (s), and with what a body keeps, the length (s) of the step, and whether
-    /// velocities are staggered; the motion may begin with it.
+    /// Begins a step with the poses of the path before and after it, the pose before the last step with its length
+    /// (s), the stored variables of a body, the length (s) of the step, a flag for staggered velocities, and one for
+    /// the first step.
     pub(super) fn begin(
         &mut self,
         tool: &Tool,
@@ -182,12 +183,12 @@ impl ToolStep {
         way + turn * tool.shape.reach()
     }
 
-    /// The boxes (m) outside of which no way meets its parts; `None` for a plane.
+    /// The boxes (m) outside of which no path meets its parts; `None` for a plane.
     pub(super) fn bounds(&self) -> impl Iterator<Item = Option<[Vector; 2]>> {
         self.strokes.iter().map(|(_, near)| near.bounds())
     }
 
-    /// The strokes of the parts that a way (m) may meet, by their numbers.
+    /// The strokes of the parts that a path (m) may meet, by their numbers.
     pub(super) fn near_strokes(&self, way: Way) -> impl Iterator<Item = (usize, &Stroke)> {
         let strokes = self.strokes.iter().enumerate();
         let near = strokes.filter(move |(_, (_, near))| near.is_met(way));
@@ -229,9 +230,10 @@ impl ToolStep {
         })
     }
 
-    /// The point on a part's surface, with the normal there, that tissue which was at a place (m) at a share of the pass may not pass; or, where it was deeper in the part than `most` (m), as deep below it.
-    /// What a cut lays open within a tool, or an iteration left there, gets no deeper: to throw it out at once would bring in energy, the more so the shorter the step. Only what a motion begins with
-    /// is pushed out.
+    /// The constraint plane, by a point on a part's surface and its normal, for tissue at a place (m) at a share of
+    /// the pass; if the tissue was deeper in the part than `most` (m), a parallel plane at that depth. Tissue that a
+    /// cut exposes within a tool, or that an iteration left there, gets no deeper: to push it out within one step
+    /// would add energy, the more the shorter the step. Only initial overlaps are pushed out.
     fn reached(
         &self,
         stroke: &Stroke,
@@ -252,7 +254,7 @@ impl ToolStep {
         }
     }
 
-    /// The most pieces in which ways are followed beside one of its parts.
+    /// The most pieces into which paths are divided for one of its parts.
     pub(super) fn pieces(&self) -> f64 {
         let pieces = self.strokes.iter().map(|(stroke, _)| stroke.pieces());
         f64::from(pieces.max().unwrap_or(1))
@@ -292,8 +294,9 @@ impl ToolStep {
         })
     }
 
-    /// The same contact, and how deep (m) it lies: as deep in the part as the triangle, with its corners at the contact's share of the pass and a way (m) in it, was there, where that is deeper
-    /// than rounds leave any that comes so far in a pass: see [`Self::reached`].
+    /// The same contact, with its depth (m): the depth in the part of the triangle, with its corners at the contact's
+    /// share of the pass and a path (m) in it, if that is more than the iteration leaves to any triangle that moves
+    /// that far in a pass; see [`Self::reached`].
     fn reached_by_triangle(
         &self,
         stroke: &Stroke,
@@ -311,7 +314,7 @@ impl ToolStep {
         (TriangleTouch { point, ..touch }, below)
     }
 
-    /// The strokes whose boxes the box of a triangle's way (m) meets, by the numbers of their parts.
+    /// The strokes whose boxes meet the box of a triangle's path (m), by the numbers of their parts.
     fn near_triangle(
         &self,
         from: &Triangle,
@@ -323,8 +326,8 @@ impl ToolStep {
         self.near_strokes((low, high))
     }
 
-    /// The velocity (m/s) of the tool at a place (m) after the step by which its work is counted: in staggered steps the mean of this step's and the last one's. With
-    /// it the work of contact is what the energy of the step needs.
+    /// The velocity (m/s) of the tool at a place (m) after the step, for the work of contact: in staggered steps the
+    /// mean of this step's and the last one's, which conserves the energy of the step.
     pub(super) fn velocity(&self, place: Vector, dt: f64) -> Vector {
         if let Some(body) = &self.body {
             return body.working_velocity(sub(place, self.now.position()));
@@ -351,7 +354,7 @@ impl ToolStep {
     }
 }
 
-/// The longest way (m) of a corner of a triangle.
+/// The longest path (m) of a corner of a triangle.
 fn longest_way(from: &Triangle, to: &Triangle) -> f64 {
     let ways = from
         .iter()
@@ -366,7 +369,7 @@ mod tests {
     use crate::motion::Motion;
     use crate::shape::{Convex, Shape};
 
-    /// A step of a tool at rest beside tissue of 0.6 m.
+    /// A step of a tool at rest, for tissue of 0.6 m.
     fn step(convex: Convex, is_first: bool) -> ToolStep {
         let tool = Tool {
             name: "tool".into(),

@@ -19,12 +19,12 @@ pub struct Tools {
     pub(super) tools: Vec<Tool>,
     pub(super) cells: Vec<TouchedCell>,
     pub(super) triangles: Vec<TouchedTriangle>,
-    /// The numbers of `cells`, and where they rest (m).
+    /// The numbers of `cells`, and their places (m) at rest.
     pub(super) numbers: Vec<u32>,
     pub(super) rest: Vec<[f64; 3]>,
     /// The tools that may touch each cell, one bit each.
     pub(super) tools_at: Vec<u64>,
-    /// Numbers of what is kept.
+    /// Numbers of stored items.
     pub(super) counts: Counts,
     /// The tools whose contacts act on each other, one bit each.
     pub(super) linking: u64,
@@ -225,7 +225,8 @@ impl Tools {
         self.linking >> tool & 1 == 1
     }
 
-    /// Places of the touched cells that tools have hold of after a step, by what they keep ([`sinew_core::State::contact`]).
+    /// Indices of the touched cells that tools grasp after a step, by the contact variables
+    /// ([`sinew_core::State::contact`]).
     pub fn held<'s>(&'s self, contact: &'s [f64]) -> impl Iterator<Item = usize> + 's {
         let numbers = contact.get(self.counts.of_held());
         let rows = numbers.unwrap_or_default().as_chunks::<OF_HELD>().0;

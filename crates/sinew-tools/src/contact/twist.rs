@@ -11,7 +11,7 @@ pub(super) struct Twist {
 }
 
 impl Twist {
-    /// From one pose to another, the turn by the shortest way.
+    /// The twist from one pose to another, with the shortest rotation.
     pub(super) fn between(from: &Pose, to: &Pose) -> Self {
         Self {
             along: sub(to.position(), from.position()),

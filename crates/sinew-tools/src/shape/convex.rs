@@ -7,7 +7,7 @@ use crate::vector::{cross, dot, length, scaled, sub};
 
 /// A convex shape in its own frame. Lengths are in metres, points finite.
 ///
-/// The constructors check what they are given; a variant cannot be made without them, but read:
+/// The constructors check their arguments; variants can be read, but not made without them:
 ///
 /// ```
 /// use sinew_tools::Convex;
@@ -104,9 +104,9 @@ impl Convex {
 
     /// The point of the surface that is nearest to a point (m), and its normal.
     ///
-    /// Of several the answer is one: above the centre of a sphere, along x from the axis of a capsule, on the first of the
-    /// nearest faces inside a cuboid. Outside a cuboid the normal is the direction from the nearest point, also at edges and
-    /// corners.
+    /// If several are nearest, one is returned: above the centre of a sphere, along x from the axis of a capsule, on the
+    /// first of the nearest faces inside a cuboid. Outside a cuboid the normal is the direction from the nearest point, also
+    /// at edges and corners.
     #[must_use]
     pub fn nearest(&self, point: [f64; 3]) -> Nearest {
         match *self {
@@ -177,10 +177,11 @@ impl Convex {
         }
     }
 
-    /// Half the smallest width (m) of what hides behind the shape along a direction in its own frame: nodes that are nearer to each other do not let it pass between them that way.
-    /// Infinite for a plane.
+    /// Half the smallest width (m) of the shape's projection along a direction in its own frame: nodes that are
+    /// nearer to each other do not let it pass between them that way. Infinite for a plane.
     ///
-    /// That of a cuboid with half edges a_i is `sum a_i |e_i|` along e, across d; between its kinks that is a sine above 0: so it is least at one of them, where e is across d and an edge.
+    /// The width of a cuboid with half edges a_i along e, across d, is `sum a_i |e_i|`; between its kinks that is a
+    /// sine above 0: so the least is at a kink, with e across d and an edge.
     #[must_use]
     pub fn half_width_across(&self, direction: [f64; 3]) -> f64 {
         let Self::Cuboid { size } = *self else {

@@ -56,7 +56,7 @@ pub(crate) struct NearestPair {
 }
 
 impl Hull {
-    /// The hull of a shape, whose edges are rounded a little where it has any; none for a plane.
+    /// The hull of a shape, with slightly rounded edges; `None` for a plane.
     pub(crate) fn of(convex: &Convex) -> Option<Self> {
         match *convex {
             Convex::Sphere { radius } => Some(Self {
@@ -91,7 +91,7 @@ impl Hull {
         })
     }
 
-    /// The share of a segment in the middle of its way through the box, where it passes through it.
+    /// The parameter of a segment at the middle of its part in the box, if it passes through it.
     fn passage(&self, [from, to]: [Vector; 2]) -> Option<f64> {
         let (mut enters, mut leaves) = (0.0_f64, 1.0_f64);
         for axis in 0..3 {
@@ -171,7 +171,8 @@ impl NearestPair {
         self.take(triangle, nearest_of_triangle(triangle, point), point);
     }
 
-    /// Takes the inner points of an edge of the core: against the edges of the triangle, and where it passes through.
+    /// Considers the inner points of an edge of the core: those nearest to the edges of the triangle, and its
+    /// intersection.
     fn take_edge(&mut self, triangle: &Triangle, [from, to]: [Vector; 2]) {
         for (a, b) in [(0, 1), (1, 2), (2, 0)] {
             let (along, across) = nearest_of_segments([triangle[a], triangle[b]], [from, to]);

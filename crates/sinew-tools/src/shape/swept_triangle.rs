@@ -6,20 +6,20 @@ use crate::vector::{Vector, add, between, dot, scaled, sub};
 /// Gap, as a share of a hull's radius, below which a triangle touches it.
 const TOUCHES: f64 = 1e-9;
 
-/// Depth, as a share of a hull's radius, from which on a triangle that was in contact elsewhere gets another contact. Far nearer ones would be all but the same, and their forces hard to tell
-/// apart.
+/// Depth, as a share of a hull's radius, from which on a triangle that was in contact elsewhere gets another contact.
+/// Contacts much closer together would be nearly the same, with indeterminate forces.
 const OVERLAPS: f64 = 0.1;
 
 /// Depth, as a share of a hull's radius, up to which a triangle is pushed out however little it moves.
 const LEFT: f64 = 1e-3;
 
-/// Most advances towards a first contact; what is still on its way then counts as touching.
+/// Most advances towards a first contact; a triangle that is still approaching then counts as touching.
 const MOST_ADVANCES: usize = 200;
 
 /// The contact of a triangle with a shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct TriangleTouch {
-    /// The share of the way at which it happens (0 to 1).
+    /// The share of the motion at the contact (0 to 1).
     pub(crate) share: f64,
     /// Weights of its corners at the point of contact.
     pub(crate) weights: Vector,
@@ -30,7 +30,8 @@ pub(crate) struct TriangleTouch {
 }
 
 impl Hull {
-    /// The first contact with a triangle whose corners move straight from one place to another (m), and that is met from outside.
+    /// The first contact with a triangle whose corners move straight from one place to another (m), from its outer
+    /// side.
     ///
     /// By conservative advancement: as the nearest points show a plane between triangle and core, none of the corners can be in contact before that which approaches
     /// the plane fastest has come as near as the radius.
@@ -61,19 +62,20 @@ impl Hull {
         None
     }
 
-    /// The contact with a triangle that is deep in the shape (m), as seen with its radius: what is less the next step finds.
+    /// The contact with a triangle that is deep in the shape (m), its radius included; the next step finds less deep
+    /// ones.
     pub(crate) fn overlap(&self, triangle: &Triangle) -> Option<TriangleTouch> {
         let (gap, touch) = self.look(triangle)?;
         (gap < -OVERLAPS * self.radius).then_some(touch)
     }
 
-    /// The depth (m) beyond which a triangle that a step begins with was not left to it by the one before, if both go so far (m) against the shape: twice the depth from which on it would have been
-    /// given another contact, and no deeper than it can have come.
+    /// The depth (m) beyond which a triangle cannot have been left in contact by the step before, if both steps move
+    /// it `way` (m) against the shape: twice the depth of another contact, and no deeper than it can have come.
     pub(crate) fn left(&self, way: f64) -> f64 {
         (2.0 * OVERLAPS * self.radius).min(way + LEFT * self.radius)
     }
 
-    /// The gap (m) to a triangle that is seen from outside, and where it is smallest.
+    /// The gap (m) to a triangle from its outer side, and the nearest points.
     pub(crate) fn look(&self, triangle: &Triangle) -> Option<(f64, TriangleTouch)> {
         let outward = doubled_area(triangle);
         let size = dot(outward, outward).sqrt();

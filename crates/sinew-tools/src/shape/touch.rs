@@ -17,7 +17,7 @@ pub struct Nearest {
 /// outside.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Touch {
-    /// The share of the way at which it happens (0 to 1).
+    /// The share of the motion at the contact (0 to 1).
     pub share: f64,
     /// The point on the surface (m), in the shape's own frame.
     pub point: [f64; 3],
@@ -26,7 +26,7 @@ pub struct Touch {
 }
 
 impl Touch {
-    /// A contact at the beginning of the way.
+    /// A contact at the beginning of the motion.
     pub(super) fn at_once(nearest: &Nearest) -> Self {
         Self {
             share: 0.0,

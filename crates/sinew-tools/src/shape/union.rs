@@ -54,7 +54,7 @@ impl Shape {
     }
 
     /// The distance (m) of a triangle of places in the world, whose corners are counter-clockwise as seen from its outer side, to the surface, negative
-    /// inside; infinite for planes and for what is behind the triangle.
+    /// inside; infinite for planes and for parts behind the triangle.
     #[must_use]
     pub(crate) fn distance_of_triangle(&self, pose: &Pose, corners: &[[f64; 3]; 3]) -> f64 {
         let distances = self.parts.iter().filter_map(|part| {

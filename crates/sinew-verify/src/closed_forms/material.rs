@@ -1,4 +1,4 @@
-//! Deformations of a law, and what it answers.
+//! Deformations of a law, and its response.
 
 use nalgebra::{Matrix2, SMatrix, Vector2};
 use sinew_fem::hyperelastic::{Hyperelastic, Tensor};

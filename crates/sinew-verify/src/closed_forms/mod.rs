@@ -1,4 +1,4 @@
-//! Closed forms of laws: what is asked, and what the code here gives.
+//! Closed forms of laws: the required figures, and those of the code here.
 //!
 //! E = 3500 Pa and nu = .45 throughout, C1 : C2 = 4 : 1.
 
@@ -16,7 +16,7 @@ use crate::error::LabError;
 
 const POISSONS_RATIO: f64 = 0.45;
 
-/// Largest error that passes, relative to what is asked, or to Young's modulus where that is 0.
+/// Largest error that passes, relative to the required figure, or to Young's modulus if that is 0.
 const TOLERANCE: f64 = 1e-8;
 
 /// A figure of a law that is known from elsewhere.
@@ -53,7 +53,7 @@ impl ClosedForms {
 ///
 /// # Errors
 ///
-/// [`LabError`] where one cannot be computed; wrong figures are no error.
+/// [`LabError`] if one cannot be computed; wrong figures are no error.
 pub(crate) fn all() -> Result<Vec<ClosedForm>, LabError> {
     let mut list = ClosedForms(Vec::new());
     uniaxial(&mut list)?;

@@ -1,7 +1,7 @@
 //! The 10-node tetrahedron with quadratic displacement and straight edges.
 //!
-//! It bends without locking and gives way in volume almost as it should, so that its figures converge fast. It shares nothing
-//! with the library's elements but sparse matrices and their factors.
+//! It bends without locking and hardly locks in volume, so that its figures converge fast. It shares only sparse
+//! matrices and their factors with the library's elements.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -24,7 +24,7 @@ const FAR: f64 = 0.138_196_601_125_010_5;
 
 /// A body of 10-node tetrahedra.
 pub struct Tet10 {
-    /// Places (m) of the nodes: those of the mesh, then the middles of its edges.
+    /// Positions (m) of the nodes: those of the mesh, then the middles of its edges.
     pub points: Vec<[f64; 3]>,
     tets: Vec<[u32; 10]>,
     /// The node in the middle of each edge, by the edge's ends in increasing order.
@@ -86,7 +86,7 @@ impl Tet10 {
         force
     }
 
-    /// The body of this material with all nodes held at places for which `is_held` holds.
+    /// The body of this material with all nodes fixed at places for which `is_held` is true.
     ///
     /// # Errors
     /// [`LabError`].

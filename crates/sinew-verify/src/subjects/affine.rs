@@ -110,7 +110,7 @@ fn uneven_cubes(cells: usize) -> impl Iterator<Item = Result<TetMesh, LabError>>
     splits.flat_map(move |split| (1..=3).map(move |seed| uneven_cube(cells, split, seed)))
 }
 
-/// The patch test of an element: all that a uniform strain leaves and brings about.
+/// The patch test of an element: residual forces, stresses and energies of a uniform strain.
 fn on_uneven_cubes(element: Element, nu: f64, source: Source) -> Check {
     let figures = [
         "largest force beside that of the uniform stress, over the largest",

@@ -27,7 +27,7 @@ pub(super) const SUBJECT: Subject = Subject {
 /// Force over 3 E I/L^2.
 const FORCE: f64 = 0.65 * 8.0 / 7.0;
 
-/// Law, rise of the tip and its way along the beam, both over the length, where they are known.
+/// Law, rise of the tip and its displacement along the beam, both over the length, if known.
 const TIPS: &[(&str, Option<[f64; 2]>)] = &[
     ("corotational", Some([0.347_27, -0.074_70])),
     ("neo-hookean", Some([0.347_46, f64::NAN])),
@@ -62,7 +62,7 @@ fn checks() -> Vec<Check> {
     rows.collect()
 }
 
-/// Newton iterations of each part, and rise and way of the tip, the mean of its nodes.
+/// Newton iterations of each part, and rise and displacement of the tip, the mean of its nodes.
 fn bent(id: &'static str) -> Result<(Vec<u64>, [f64; 2]), LabError> {
     const THICK: f64 = 0.1;
     let mesh = block([20, 2, 2], [1.0, THICK, THICK], Split::Mirrored)?;

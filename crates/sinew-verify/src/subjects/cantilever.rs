@@ -202,7 +202,7 @@ const OF_TET10: &[(usize, Figures)] = &[
     (4, &[(0.3, 0.992), (0.499, 0.969)]),
 ];
 
-/// Deflection of plain tetrahedra to two digits, beside the prototype's.
+/// Deflection of plain tetrahedra to two digits, with the prototype's.
 const TWO_DIGITS: &[(BeamMesh, Figures)] = &[
     (BeamMesh::Kuhn(2), &[(0.0, 0.55)]),
     (BeamMesh::Kuhn(4), &[(0.0, 0.82)]),
@@ -353,7 +353,8 @@ impl BeamMesh {
         }
     }
 
-    /// Digits as printed on meshes that are the same to the last node; patches grow in other ways on meshes without a grid.
+    /// Digits as printed on meshes that are the same to the last node; patches grow differently on meshes without a
+    /// grid.
     fn asked(self, kind: Kind, value: f64) -> Asked {
         match self {
             Self::Gmsh(_) if kind != Kind::P1 => Asked::relative(value, 0.03),

@@ -216,7 +216,7 @@ fn checks() -> Vec<Check> {
     checks
 }
 
-/// A block of 10 cells, held at the bottom.
+/// A block of 10 cells, fixed at the bottom.
 fn cube(nu: f64, damping: f64) -> Problem {
     Problem {
         damping: Rayleigh::new(damping, 0.0),
@@ -389,7 +389,7 @@ fn bounce() -> Result<Vec<f64>, LabError> {
 }
 
 /// The largest rise in a step of the step's own energy less the work of a tool, over the largest energy: the tool is pressed 10 mm into the cube,
-/// held and withdrawn, in tenths of a second or in a few steps.
+/// kept there and withdrawn, in tenths of a second or in a few steps.
 fn rise_under(
     id: &str,
     convex: Convex,

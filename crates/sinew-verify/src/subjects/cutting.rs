@@ -1,4 +1,4 @@
-//! Bodies that are cut, against what no cut may change.
+//! Cut bodies, and quantities that no cut may change.
 
 use std::sync::Arc;
 
@@ -307,7 +307,7 @@ fn inner_faces(cut: &CutModel) -> Vec<(u32, usize)> {
     faces.filter(is_first).collect()
 }
 
-/// The largest eigenvalue of K beside its own blocks, by iteration.
+/// The largest eigenvalue of K relative to its own blocks, by iteration.
 fn block_factor(model: &Model) -> Result<f64, LabError> {
     let k = model.operators().stiffness();
     let mut inverse = Vec::new();

@@ -198,10 +198,10 @@ fn checks() -> Vec<Check> {
     checks
 }
 
-/// Fibres in a body: their energy, direction and whether they are freed of volume change.
+/// Fibres in a body: their energy, direction, and a flag: true if their invariant is isochoric.
 type Family = (Stiffening, [f64; 3], bool);
 
-/// Stretches along the axes, and whether fibres are freed of volume change.
+/// Stretches along the axes, with a flag: true if the fibres' invariant is isochoric.
 const TWO_FAMILIES: [(&str, [f64; 3], bool); 4] = [
     ("around and along", [0.7, 1.25, 1.15], false),
     ("around and along", [0.7, 1.25, 1.15], true),

@@ -267,7 +267,7 @@ fn free(mesh: &TetMesh, nu: f64, element: Element) -> Result<Model, LabError> {
 }
 
 /// Supports of six components that take away rigid motions and nothing else: both forms of energy vanish on these motions, so
-/// that the eigenvalues between the forms stay as they are.
+/// that the eigenvalues between the forms are unchanged.
 fn against_rigid_motions(mesh: &TetMesh) -> Vec<Fixed> {
     let (low, high) = mesh.bounding_box();
     let corner = |place| On::Nodes(vec![mesh.nearest_node(place).0]);
@@ -278,7 +278,7 @@ fn against_rigid_motions(mesh: &TetMesh) -> Vec<Fixed> {
     ]
 }
 
-/// The smallest eigenvalue of K beside that of plain tetrahedra with lambda = 0.
+/// The smallest eigenvalue of K relative to that of plain tetrahedra with lambda = 0.
 fn coercivity(mesh: &TetMesh, element: Element) -> Result<f64, LabError> {
     let nu = 0.45;
     let build = |youngs_modulus, nu, element| {

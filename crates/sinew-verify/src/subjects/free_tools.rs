@@ -467,7 +467,7 @@ fn plate(coupling: f64) -> Result<Tool, LabError> {
     })
 }
 
-/// The largest rise of the energy above where it was lowest, over the largest, of balls of several masses and dampings
+/// The largest rise of the energy above its minimum before, over the largest, of balls of several masses and dampings
 /// in a second: with friction and without; and the smallest of the largest energies (J).
 fn light_tools(id: &str, share: f64) -> Result<Vec<f64>, LabError> {
     let rows = [
@@ -522,7 +522,7 @@ fn largest_rise_in_steps(
     Ok(rise / largest)
 }
 
-/// The same above where it was lowest before, and the largest energy (J).
+/// The same above its minimum before, and the largest energy (J).
 fn rise_above_lowest(
     pressed: Pressed,
     id: &str,
@@ -538,7 +538,7 @@ fn rise_above_lowest(
     Ok((rise, largest))
 }
 
-/// Shows the energy of body, tool and coupling after each step, and what is left of it without the work of the hand
+/// Shows the energy of body, tool and coupling after each step, and the rest of it without the work of the hand
 /// (J).
 fn follow(
     mut pressed: Pressed,

@@ -70,7 +70,7 @@ fn of_law(law: usize, poissons_ratio: f64) -> Problem {
     problem
 }
 
-/// A blade: its middle when it begins, half of it, and its way through the body.
+/// A blade: its middle at the start, half of it, and its path through the body.
 struct Blade {
     begins: Vector,
     half: Vector,
@@ -102,7 +102,7 @@ fn after_stroke(
     Ok((cut.body().pieces().count == 2, uncut))
 }
 
-/// Counts what strokes leave wrong.
+/// Counts of defects of strokes.
 #[derive(Default)]
 struct Left {
     not_two: f64,
@@ -132,8 +132,8 @@ fn state_of(
     Ok(state)
 }
 
-/// 20 sheets through a strip that is stretched by 0 to 30 % and held so, each with three laws: strokes that leave other than two pieces, and area told as
-/// uncut.
+/// 20 sheets through a strip under a constant stretch of 0 to 30 %, each with three laws: strokes that leave other
+/// than two pieces, and area reported as uncut.
 pub(super) fn under_tension() -> Result<Vec<f64>, LabError> {
     let size = [0.08, 0.04, 0.01];
     let mut left = Left::default();
@@ -180,7 +180,7 @@ pub(super) fn under_tension() -> Result<Vec<f64>, LabError> {
 }
 
 /// 100 strokes along 20 sheets through a free cube that begins at strains of 0 to 30 % with random velocities, by three laws: strokes that leave other than
-/// two pieces, and area told as uncut.
+/// two pieces, and area reported as uncut.
 pub(super) fn free() -> Result<Vec<f64>, LabError> {
     let mut left = Left::default();
     let middle = [0.05; 3];

@@ -112,7 +112,7 @@ fn cube(
     Ok(ToolSimulation::new(World::new(scene)?, "ball")?)
 }
 
-/// Forces on a hand.
+/// Forces on the user's hand.
 #[derive(Default)]
 struct Felt {
     taken_out: f64,
@@ -122,7 +122,7 @@ struct Felt {
     forces: Vec<f64>,
 }
 
-/// A hand that presses, lets go and moves aside for some seconds.
+/// A user's hand that presses, lets go and moves aside for some seconds.
 fn felt(is_rigid: bool, hertz: f64, stiffness: f64, seconds: u32) -> Result<Felt, LabError> {
     let radius = 0.012;
     let (height, depth) = if is_rigid {

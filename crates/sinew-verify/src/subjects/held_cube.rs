@@ -1,4 +1,4 @@
-//! A cube held at its four sides: compliance, frequencies and stable steps.
+//! A cube fixed at its four sides: compliance, frequencies and stable steps.
 
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -258,7 +258,7 @@ fn compliance(kind: Kind, cells: usize, nu: f64) -> Result<f64, LabError> {
     Ok(dot(&loads(&model), &equilibrium(&model)?))
 }
 
-/// 10-node tetrahedra, and those of them that move.
+/// 10-node tetrahedra, and their moving part.
 fn tet10(cells: usize, nu: f64) -> Result<(Tet10, HeldTet10), LabError> {
     let body = Tet10::new(&cube(cells, EDGE, Split::Kuhn)?);
     let tissue = Tissue {

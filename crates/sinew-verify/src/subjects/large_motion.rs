@@ -1,4 +1,4 @@
-//! Large motions of blocks, against those of another program.
+//! Large motions of blocks, compared with those of another program.
 
 use sinew_core::vectors::{largest, weighted_dot};
 use sinew_core::{Inputs, OptionValue, Options, Ramp, State, System};
@@ -291,8 +291,8 @@ fn refused(scene: Scene, rate: usize) -> Check {
     )
 }
 
-/// A method with its options, the step (ms), its error, and where they are known its Newton iterations a step by a factor, as in the prototype: with solutions by conjugate
-/// gradients, which are as near as an iteration needs, they are more.
+/// A method with its options, the step (ms), its error, and, if known, its Newton iterations a step by a factor, as
+/// in the prototype: with solutions by conjugate gradients, which are as near as an iteration needs, they are more.
 type Row = (
     Scene,
     &'static str,
@@ -413,8 +413,8 @@ const METHODS: &[Row] = &[
     ),
 ];
 
-/// Sweeps from which on a step hardly depends on where they set out from. The prototype's set out from rest, and those of the library from where the velocity leads: with
-/// fewer its errors are no more than bounds.
+/// Sweeps from which on a step hardly depends on their starting point. The prototype's set out from rest, and those
+/// of the library from the displacement by the velocity: with fewer its errors are no more than bounds.
 const FINISHED: u32 = 16;
 
 /// Errors of implicit and cellular methods on a scene.

@@ -37,7 +37,7 @@ const TERMS: [Term; 2] = [
     },
 ];
 
-/// `E sum g tau (1 - e^-t/tau) + ..` of a strain that grows evenly, `E (1 - sum g (1 - e^-t/tau))` of one that is held.
+/// `E sum g tau (1 - e^-t/tau) + ..` of a strain that grows evenly, `E (1 - sum g (1 - e^-t/tau))` of a constant one.
 const INTEGRAL: Source = Source::ClosedForm(
     "the hereditary integral of the series; Simo and Hughes, Computational Inelasticity, section 10.3",
 );
@@ -262,7 +262,7 @@ fn apart(found: &[[f64; 6]], expected: &[[f64; 6]]) -> f64 {
     largest(&differences) / largest(expected.as_flattened())
 }
 
-/// The share of a stress that is left at a time (s) after a strain at once.
+/// The share of a stress that remains at a time (s) after a step of strain.
 fn left(t: f64) -> f64 {
     let lost = TERMS
         .iter()

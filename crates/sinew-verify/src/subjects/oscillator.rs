@@ -1,4 +1,4 @@
-//! The paper's oscillator: methods beside its closed form.
+//! The paper's oscillator: methods compared with its closed form.
 
 use sinew_core::spectrum::critical_step;
 use sinew_core::{
@@ -241,7 +241,7 @@ fn exact(t: f64) -> f64 {
     VELOCITY / omega * (-decay * t).exp() * (omega * t).sin()
 }
 
-/// Times (s) and displacements (m) after each step; the motion ends where it is beyond 1 km.
+/// Times (s) and displacements (m) after each step; the motion ends if it is beyond 1 km.
 fn motion(
     method: &str,
     saturation: Option<f64>,

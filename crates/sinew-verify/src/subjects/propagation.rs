@@ -227,7 +227,7 @@ const TWO_STEP: &[TwoStep] = &[
     (Some(2e-6), true, 4e-6, 1020.0),
 ];
 
-/// Errors of the two-step propagator, its sweeps, and where it is fitted to the load its error over the one that it
+/// Errors of the two-step propagator, its sweeps, and, if it is fitted to the load, its error over the one that it
 /// estimates over eight periods.
 fn two_step() -> Check {
     let figures = TWO_STEP

@@ -1,4 +1,4 @@
-//! Bodies that are cut, against closed forms of what they are then.
+//! Cut bodies, compared with closed forms of slit bodies.
 
 use std::sync::Arc;
 
@@ -49,7 +49,7 @@ fn checks() -> Vec<Check> {
     ]
 }
 
-/// Nodes at which something holds.
+/// Nodes for which `holds` is true.
 fn nodes(mesh: &TetMesh, holds: impl Fn([f64; 3]) -> bool) -> On {
     let places = (0..).zip(&mesh.points);
     On::Nodes(
@@ -60,7 +60,7 @@ fn nodes(mesh: &TetMesh, holds: impl Fn([f64; 3]) -> bool) -> On {
     )
 }
 
-/// A blade along y, beyond the body, that goes along x at a height (m) up to some place (m).
+/// Cuts by a blade along y, longer than the body, that moves along x at a height (m) up to some place (m).
 fn slit(cut: &mut CutModel, height: f64, end: f64) -> Result<(), LabError> {
     let blade = |x: f64| [[x, -1.0, height], [x, 1.0, height]];
     let sheet = Sheet::swept(blade(-1.0), blade(end)).ok_or_else(LabError::no_body)?;

@@ -35,7 +35,7 @@ impl World {
         })
     }
 
-    /// Takes steps under the eyes of a recorder, which sees the present state first.
+    /// Takes steps observed by a recorder, which receives the present state first.
     ///
     /// # Errors
     /// [`AdvanceError`].
@@ -126,8 +126,8 @@ impl World {
     /// Between two acts of a blade steps are taken in batches, as by [`sinew_core::simulate()`].
     ///
     /// # Errors
-    /// [`AdvanceError`] where a step or the recorder fails, and for a motion that failed already, also for no steps. A step
-    /// that fails is counted as in [`World::step`].
+    /// [`AdvanceError`] if a step or the recorder fails, and for a motion that failed already, also for no steps. A
+    /// step that fails is counted as in [`World::step`].
     pub fn advance_shown<R: Recorder + ?Sized>(
         &mut self,
         steps: usize,

@@ -11,7 +11,7 @@ use super::World;
 use crate::command::ToolId;
 use crate::error::ReportError;
 
-/// Values over the mesh are written into slices with one entry for each node or tetrahedron of the body as it is now.
+/// Values over the mesh are written into slices with one entry for each node or tetrahedron of the current body.
 impl World {
     /// Number of meshes that the body has had: surfaces, nodes and tetrahedra are others once it has grown, by a cut, a
     /// reset or a restored state.
@@ -87,7 +87,7 @@ impl World {
         Ok(model.to_nodes(&self.field, out)?)
     }
 
-    /// Kinetic and elastic energy (J); `None` where the model has none.
+    /// Kinetic and elastic energy (J); `None` if the model has none.
     ///
     /// # Errors
     /// [`ReportError::State`].

@@ -58,7 +58,7 @@ enum SavedFailure {
     InWords(String),
 }
 
-/// Position (m) and rotation vector (rad) that a tool goes to.
+/// Position (m) and rotation vector (rad) to which a tool moves.
 type Target = Option<([f64; 3], [f64; 3])>;
 
 impl Saved {

@@ -1,4 +1,4 @@
-//! Failures of commands: one message each, with the line of the scene where there is one.
+//! Failures of commands: one message each, with the line of the scene if there is one.
 
 use std::env::var_os;
 use std::io::{self, IsTerminal, stderr};
@@ -78,7 +78,7 @@ pub(crate) enum Failure {
     /// An option that the scene's integrator refuses.
     #[error(transparent)]
     Option(#[from] OptionError),
-    /// Warnings where none are wanted.
+    /// Warnings that the command refuses.
     #[error("{count} {}, which --strict makes {}", plural(*count, "warning"), if *count == 1 { "an error" } else { "errors" })]
     Warnings {
         /// Number of warnings.
@@ -107,7 +107,7 @@ pub(crate) enum Failure {
     LongConverge {
         /// Predicted time (s).
         seconds: f64,
-        /// Time (s) up to which nobody is asked.
+        /// Time (s) up to which no confirmation is needed.
         limit: f64,
     },
     /// A scene that needs more memory than there is.
@@ -131,7 +131,7 @@ pub(crate) enum Failure {
         /// The reason.
         source: TetMeshError,
     },
-    /// A file that is there already and holds something else.
+    /// An existing file with other content.
     #[error("{} exists, holds something else and stays as it is; name another file, or write over it with --force", path.display())]
     Exists {
         /// The file.
@@ -145,7 +145,7 @@ pub(crate) enum Failure {
         /// The names of all.
         known: Vec<&'static str>,
     },
-    /// A name that does not tell a mesh format.
+    /// A name that does not identify a mesh format.
     #[error("{}: expected a name that ends in .msh or .vtu", path.display())]
     MeshFormat {
         /// The path.
@@ -167,7 +167,7 @@ pub(crate) enum Failure {
         /// The reason.
         source: RefineError,
     },
-    /// A mesh that a .msh file cannot hold.
+    /// A mesh that a .msh file cannot represent.
     #[error("cannot write {}: {source}", path.display())]
     WriteMsh {
         /// The path.
@@ -175,7 +175,7 @@ pub(crate) enum Failure {
         /// The reason.
         source: WriteMshError,
     },
-    /// A mesh that a .vtu file cannot hold.
+    /// A mesh that a .vtu file cannot represent.
     #[error("cannot write {}: {source}", path.display())]
     WriteVtu {
         /// The path.
@@ -183,7 +183,7 @@ pub(crate) enum Failure {
         /// The reason.
         source: WriteVtuError,
     },
-    /// A report and a mesh that both go to standard output.
+    /// A report and a mesh with standard output as their common destination.
     #[error("--json and --out {} both go to standard output; name a file with --out", out.display())]
     SharedOutput {
         /// The destination of the mesh.
@@ -299,7 +299,7 @@ pub(crate) enum Failure {
         "{count} parts of the results could not be compared, so that a tolerance says nothing of them"
     )]
     NotCompared {
-        /// Number of sentences about what was left out.
+        /// Number of sentences about omissions.
         count: usize,
     },
     /// A run that leaves no result in its folder.
@@ -384,7 +384,7 @@ impl Failure {
         }
     }
 
-    /// An error where there are warnings.
+    /// An error if there are warnings.
     pub(crate) fn of_warnings(warnings: &[Warning]) -> Result<(), Self> {
         match warnings.len() {
             0 => Ok(()),
@@ -504,7 +504,7 @@ impl Failure {
     }
 }
 
-/// Advice on the way from a mesh to one of tetrahedra with four nodes.
+/// Advice on the conversion of a mesh to one of tetrahedra with four nodes.
 fn way_to_tetrahedra(mesh: &Path, error: &TetMeshError) -> Option<String> {
     match error {
         TetMeshError::UnsupportedCells { kind, .. } if kind.linear() == CellType::Tetra => {

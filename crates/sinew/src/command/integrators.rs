@@ -44,7 +44,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     )?)
 }
 
-/// Says all of an integrator: what it is, its damping and loads, and its options, its own first.
+/// Prints all about an integrator: its formula, its damping and loads, and its options, its own first.
 fn describe(entry: &Entry) -> Result<(), Failure> {
     say(&format!("{}: {}", entry.id, entry.summary))?;
     if let Ok(integrator) = entry.build(&Options::new()) {

@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use signal_hook::consts::TERM_SIGNALS;
 
-/// A flag, set once this process is asked to end. A second request ends it at once.
+/// A flag, set once this process is asked to end. A second request ends it immediately.
 #[derive(Clone, Debug)]
 pub(crate) struct Interruption(Arc<AtomicBool>);
 
@@ -46,7 +46,7 @@ fn hang_up() -> Option<i32> {
     None
 }
 
-/// The signals that this process was started to ignore, a bit each from 1 on, where the system tells.
+/// The signals that this process was started to ignore, a bit each from 1 on, if the system reports them.
 fn ignored() -> u64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));

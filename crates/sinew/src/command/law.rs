@@ -135,7 +135,7 @@ fn is_table(path: &Path) -> bool {
     (is_csv && !path.is_dir()) || path == Path::new("-") || is_stream()
 }
 
-/// Writes a table and, where it is a file, the picture of each region beside it; all are checked before the first is
+/// Writes a table and, if it is a file, the picture of each region next to it; all are checked before the first is
 /// written.
 fn beside(
     table: Destination,
@@ -170,7 +170,7 @@ fn beside(
     Ok(written)
 }
 
-/// The picture beside a table: by its name, with the number of the region where there are several.
+/// The picture next to a table: by its name, with the number of the region if there are several.
 fn picture_beside(table: &Path, region: &RegionCurves, regions: usize) -> PathBuf {
     if regions == 1 {
         return table.with_extension("svg");

@@ -2,7 +2,7 @@
 
 use std::fs;
 
-/// Memory (bytes) that the computer, the control group and the limits of the process leave, as far as the system tells.
+/// Memory (bytes) that the computer, the control group and the limits of the process leave, if the system reports it.
 pub(crate) fn memory_left() -> Option<u64> {
     let left = [of_computer(), of_group(), of_process()];
     left.into_iter().flatten().min()

@@ -84,7 +84,7 @@ fn seen_from(scene: &Path, mesh: &Path) -> PathBuf {
     }
 }
 
-/// The way from an absolute folder to an absolute path.
+/// The relative path from an absolute folder to an absolute path.
 fn relative(folder: &Path, path: &Path) -> PathBuf {
     let shared = folder.components().zip(path.components());
     let shared = shared.take_while(|(a, b)| a == b).count();

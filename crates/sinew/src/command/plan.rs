@@ -87,7 +87,8 @@ pub enum PlanError {
     Advice(#[from] AdviceError),
 }
 
-/// The plan of a scene as one JSON object, or the answer to a question with the plan in it: what `sinew plan --json` prints.
+/// The plan of a scene as one JSON object, or the answer to a question with the plan in it, as printed by
+/// `sinew plan --json`.
 ///
 /// # Errors
 /// [`PlanError`].

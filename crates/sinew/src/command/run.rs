@@ -120,7 +120,7 @@ pub(crate) fn check_folder(
     Ok(())
 }
 
-/// Runs a world into its folder and says what came out.
+/// Runs a world into its folder and prints the outcome.
 pub(crate) fn in_folder(
     path: &Path,
     folder: &RunFolder,

@@ -48,7 +48,7 @@ impl Values {
         Ok(scene)
     }
 
-    /// Says what a step of the command line takes away from a scene with dt = "auto".
+    /// Warns of settings that a step of the command line removes from a scene with dt = "auto".
     fn say_of_parts(&self, scene: &Scene) {
         let is_auto = |scene: &Scene| scene.settings().dt == TimeStep::Auto;
         let key = |set: &String| key_of("--set", set);
@@ -102,7 +102,7 @@ impl Values {
 #[cfg(feature = "implicit")]
 const SHARE: f64 = 0.9;
 
-/// The memory that factors of a scene may take: as much as it says, or nine tenths of what is left.
+/// The memory that factors of a scene may take: the scene's limit, or nine tenths of the available memory.
 #[cfg(feature = "implicit")]
 pub fn memory_of(scene: &Scene) -> Memory {
     let asked = scene.settings().memory.map(|megabytes| 1e6 * megabytes);

@@ -17,7 +17,8 @@ const DT: f64 = 0.02;
 /// Names of the files that [`EffectiveMatrix::export`] writes.
 const FILES: [&str; 4] = ["column-starts.i32", "rows.i32", "values.f64", "force.f64"];
 
-/// `M + dt^2/4 K` (kg) of a cube of the peers' material, held at its sides and pressed on its top, with a step of 20 ms.
+/// `M + dt^2/4 K` (kg) of a cube of the peers' material, fixed at its sides and pressed on its top, with a step of 20
+/// ms.
 pub struct EffectiveMatrix {
     /// Nodes along an edge.
     pub side: usize,

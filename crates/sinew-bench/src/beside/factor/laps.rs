@@ -33,7 +33,7 @@ pub trait FactorLibrary {
     fn name(&self) -> String;
 }
 
-/// Our factor of one matrix beside the other one.
+/// Our factor of one matrix compared with the other library's.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FactorPair {
     /// Nodes along an edge of the cube.

@@ -1,4 +1,4 @@
-//! Ratios of factorisations and solutions as people read them, each with both residuals beside it.
+//! Table of ratios of factorisations and solutions, each with both residuals.
 
 use std::fmt;
 

@@ -82,7 +82,7 @@ fn centre(system: &dyn System, u: &[f64]) -> f64 {
     moment / mass
 }
 
-/// The place (m) to which a pulse F has brought a mass m by time t, from rest: `F/m` times the integral of the
+/// The position (m) of a mass m at time t under a pulse F, from rest: `F/m` times the integral of the
 /// pulse, taken twice.
 fn place(system: &dyn System, t: f64) -> Result<f64, LabError> {
     let linear = system

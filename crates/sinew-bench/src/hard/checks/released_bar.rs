@@ -1,4 +1,4 @@
-//! The first mode of a bar that is stretched and let go.
+//! The first mode of a bar that is stretched and released.
 
 use sinew_core::Integrator;
 use sinew_integrators::Frame;
@@ -78,7 +78,7 @@ pub(crate) fn check(
 
 /// Angular frequency (rad/s) and amplitude of a sampled oscillation about 0, by least squares:
 /// `q(n+1) + q(n-1) = 2 cos(omega dt) q(n)` first, then `q(n) = a cos(omega n dt) + b sin(omega n dt)`.
-/// NaN where the samples grow or fall.
+/// NaN if the samples grow or fall.
 fn oscillation(q: &[f64], dt: f64) -> (f64, f64) {
     let (mut across, mut square) = (0.0, 0.0);
     for three in q.windows(3) {

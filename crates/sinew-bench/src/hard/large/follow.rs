@@ -118,7 +118,7 @@ impl<'a> Ledger<'a> {
         }
     }
 
-    /// Work (J) of the loads over a step: the mean of both ends' along the way.
+    /// Work (J) of the loads over a step: their mean over both ends times the displacement.
     fn work_since(&mut self, before: &State, state: &State) -> f64 {
         let t = before.t();
         let moved: Vec<f64> = state.u.iter().zip(&before.u).map(|(b, a)| b - a).collect();
@@ -155,7 +155,8 @@ impl<'a> Ledger<'a> {
     }
 }
 
-/// Elastic energy (J) of a displacement, and the number of elements that are inside out; `None` where the law refuses it.
+/// Elastic energy (J) of a displacement, and the number of elements that are inside out; `None` if the law refuses
+/// it.
 fn elastic(system: &dyn System, u: &[f64], work: &mut [f64]) -> Option<(f64, usize)> {
     let trial = Trial {
         load: LoadTime::at(0.0),
@@ -171,7 +172,7 @@ fn elastic(system: &dyn System, u: &[f64], work: &mut [f64]) -> Option<(f64, usi
 /// The motion by central difference in steps of `dt` (s) or a little less, so short that its error does not count, at equal instants.
 ///
 /// # Errors
-/// [`LabError`] where the body refuses it.
+/// [`LabError`] if the body refuses it.
 pub(crate) fn reference(
     specimen: &Specimen,
     dt: f64,
@@ -186,7 +187,7 @@ pub(crate) fn reference(
 /// Follows a method over `duration` (s), with displacements at `instants` equal instants.
 ///
 /// # Errors
-/// [`LabError`] where there is no such method; that it refuses the body or a state is no error.
+/// [`LabError`] if there is no such method. A refusal of the body or of a state by it is no error.
 pub(crate) fn follow(
     specimen: &Specimen,
     planned: &Planned,

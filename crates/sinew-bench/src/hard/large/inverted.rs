@@ -40,8 +40,9 @@ fn specimen(law: &'static str, start: Start) -> Result<Specimen, LabError> {
     }))
 }
 
-/// Methods whose energy falls let it rise in no step, and others never above that at the start. Central difference has to bring
-/// the crushed cube back to where no element is inside out; what dissipates may settle in a fold, and does.
+/// Methods of decreasing energy let it rise in no step, and others never above the initial energy. Central difference
+/// has to restore the crushed cube to a state without inverted elements; dissipative methods may settle in a fold,
+/// and do.
 pub(crate) fn check(asked: Asked, start: Start) -> Result<Mark, LabError> {
     let mut tally = Tally::default();
     for law in LAWS {

@@ -1,4 +1,4 @@
-//! Steps ten times as long as the stable one at rest.
+//! Test with steps ten times as long as the stable one at rest.
 
 use sinew_core::{Ramp, StableStep};
 use sinew_fem::Element;
@@ -21,7 +21,7 @@ const TIMES: f64 = 10.0;
 /// Steps of a run.
 const STEPS: f64 = 40.0;
 
-/// Explicit methods in steps that are not cut, all of which must be refused or go wrong for all to see.
+/// Explicit methods in steps that are not cut, all of which must be refused or fail visibly.
 const EXPLICIT: [&str; 6] = [
     "forward-euler",
     "symplectic-euler",
@@ -50,7 +50,8 @@ fn specimens(law: &'static str) -> Result<[(&'static str, Specimen); 3], LabErro
     ])
 }
 
-/// No method makes energy in silence: it is refused by name, says so, or keeps what start and loads bring.
+/// No method gains energy silently: it is refused by name, reports the gain, or keeps to the energy of start and
+/// loads.
 pub(crate) fn check(asked: Asked) -> Result<Mark, LabError> {
     let mut tally = Tally::default();
     for law in ["neo-hookean", "stable-neo-hookean", "corotational"] {

@@ -22,7 +22,7 @@ const DURATION: f64 = 0.6;
 const INSTANTS: usize = 60;
 const FINE: f64 = 2.5e-4;
 
-/// A cube is pressed by 12 N, pulled by 12 N and let go, by a smooth load and by one that jumps to and fro.
+/// A cube is pressed by 12 N, pulled by 12 N and released, by a smooth load and by one that jumps.
 pub(crate) fn check(asked: Asked) -> Result<Mark, LabError> {
     let mut tally = Tally::default();
     let smooth = Ramp::Table {

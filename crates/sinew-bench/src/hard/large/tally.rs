@@ -1,4 +1,4 @@
-//! A mark over several runs, each of which ends in a state that is checked or in a refusal that names what went wrong.
+//! A mark over several runs, each of which ends in a state that is checked or in a refusal that names the fault.
 
 use super::follow::{Followed, Planned};
 use crate::hard::mark::{Asked, Worst};
@@ -8,8 +8,8 @@ use crate::results::Mark;
 /// Rounding of energies, over the largest of them.
 pub(super) const ROUNDING: f64 = 1e-12;
 
-/// Energy above what start and loads bring that methods without a promise need not tell, over the largest that was allowed: what implicit
-/// methods tell from on.
+/// Energy above that of start and loads that methods without a promise need not report, over the largest allowed: the
+/// threshold from which implicit methods report it.
 pub(super) const LITTLE: f64 = 0.05;
 
 /// Requirement for a run that reaches its end.
@@ -72,7 +72,7 @@ impl Tally {
         self.worst.include(demand.figure / demand.limit, what);
     }
 
-    /// Takes note of something that must not be.
+    /// Records a fault.
     pub(crate) fn fault(&mut self, what: String) {
         self.faults.push(what);
     }

@@ -13,7 +13,7 @@ pub struct Guard {
     pub name: String,
     /// The ratio, a median of laps in turn.
     pub ratio: f64,
-    /// Its limit; `None` where it is shown for comparison.
+    /// Its limit; `None` if it is shown for comparison.
     pub limit: Option<Limit>,
 }
 

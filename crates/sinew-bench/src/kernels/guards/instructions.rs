@@ -1,4 +1,4 @@
-//! The best instruction set beside those that every processor has.
+//! The best instruction set compared with the one that every processor has.
 
 use sinew_core::ElementPrecision;
 use sinew_core::{LinearSystem, State, System};

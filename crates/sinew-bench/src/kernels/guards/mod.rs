@@ -1,4 +1,4 @@
-//! Guards: ratios that tell when kernels lost what makes them fast.
+//! Guards: ratios that detect kernels which have become slow.
 
 use sinew_verify::LabError;
 mod crowd;

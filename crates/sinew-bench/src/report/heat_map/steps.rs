@@ -50,7 +50,7 @@ impl Steps {
         }
     }
 
-    /// The place of a step (s), in pixels from the left side of the panel; at the side where it lies outside.
+    /// The place of a step (s), in pixels from the left side of the panel; at the side if it lies outside.
     pub(super) fn place(&self, dt: f64) -> f64 {
         let share = self.axis.share(1e3 * dt);
         // No step at all lies left of all.

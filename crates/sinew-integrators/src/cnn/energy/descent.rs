@@ -23,12 +23,12 @@ pub(super) const ROUNDING: f64 = 8.0 * f64::EPSILON;
 /// A displacement over a step that is improved by nonlinear conjugate gradients with the cells' own blocks for a preconditioner.
 ///
 /// Directions are those of Polak and Ribiere, never negative (Gilbert and Nocedal, SIAM J. Optim. 2, 1992). They
-/// restart with every step, so that no history is kept.
+/// restart with every step, so that no history is stored.
 ///
 /// They start from the displacement by the velocity at the start of the step, if the potential is not higher there than
-/// at the start: what moves on as it did is found at once, and no stiffness of a block brakes it. Parts that may move
+/// at the start: steady motion is found at once, and no stiffness of a block brakes it. Parts that may move
 /// as rigid bodies are moved to the minimum of the potential over such motions, which the elastic energy does not feel,
-/// and the blocks are then those of a [`Deflation`](sinew_cnn::Deflation): so sweeps find what is left.
+/// and the blocks are then those of a [`Deflation`](sinew_cnn::Deflation): sweeps find the rest.
 pub(super) struct Descent {
     /// The displacement over the step (m).
     pub(super) moved: Vec<f64>,
@@ -47,7 +47,8 @@ pub(super) struct Descent {
     direction: Vec<f64>,
     /// d2W/du2 times the direction.
     curved: Vec<f64>,
-    /// The sum of squares, rooted, of what springs as stiff as each cell's own block would hold at the start of the step (J).
+    /// The root of the sum of squares of the energies (J) at the start of the step of springs as stiff as each cell's
+    /// own block.
     pub(super) stiff: f64,
     /// D times `moved`, and times the direction, without alpha M.
     damped: Vec<f64>,
@@ -119,7 +120,7 @@ impl Descent {
     /// Runs `sweeps` descent sweeps from the start of the step.
     ///
     /// # Errors
-    /// [`EvaluationError`] when the law has no tangent where it has a force.
+    /// [`EvaluationError`] when the law has a force but no tangent.
     pub(super) fn lower(
         &mut self,
         law: &Law<'_>,
@@ -152,7 +153,7 @@ impl Descent {
         Ok(found)
     }
 
-    /// Takes the own blocks of stiffness damping where it is held in the step.
+    /// Takes the own blocks of stiffness damping at its constant point of the step.
     ///
     /// # Errors
     /// [`EvaluationError`] when the law is outside its domain there.
@@ -163,7 +164,7 @@ impl Descent {
     }
 
     /// Moves by the velocity at the start of the step, and parts that may move as rigid bodies to the minimum of the
-    /// potential over such motions, where it is lower there; or these alone. Then takes rigid motions out of the
+    /// potential over such motions, if it is lower there; or only the latter. Then removes rigid motions from the
     /// blocks. Returns true if anything moved.
     fn lead(
         &mut self,
@@ -197,7 +198,8 @@ impl Descent {
         Ok(is_lower)
     }
 
-    /// Goes from the start of the step as far as the direction, where the potential is not higher there; whether it is not.
+    /// Moves from the start of the step by the whole direction if the potential is not higher there; returns true if
+    /// it moved.
     fn go_to_direction(
         &mut self,
         law: &Law<'_>,
@@ -328,7 +330,7 @@ impl Descent {
         Turn::Down { slope, steepness }
     }
 
-    /// Walks along the direction as far as the potential falls; whether it does.
+    /// Moves along the direction as far as the potential falls; returns true if it does.
     fn walk(
         &mut self,
         law: &Law<'_>,

@@ -1,9 +1,9 @@
 //! Step formulas.
 
-/// A step formula and what it weighs.
+/// A step formula with its weights.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Kind {
-    /// The implicit Euler method: order 1, damps what it moves.
+    /// The implicit Euler method: order 1, with numerical damping.
     ImplicitEuler,
     /// The trapezoidal rule (Newmark's method with beta = 1/4 and gamma = 1/2): order 2.
     #[default]

@@ -35,31 +35,34 @@ pub use self::kind::Kind;
 ///
 /// # Why the energy does not rise
 ///
-/// Let `E = v'M v/2 + W(u)` before the step and P be the mean load over it. A displacement y may be taken where `W(u + y) - P'y <= E`; then
-/// the velocity is reduced, if it must be, until `E+ <= E + P'y`. Implicit Euler's potential under the load P is E at y = 0, up to the
-/// constant `v'M v/2`, and never less than `W(u + y) - P'y`, as M and D have no negative eigenvalues; the sweeps only lower it. So its y
-/// may be taken, however few the sweeps. Where the trapezoidal rule's y may not, the step is taken again by implicit Euler.
-/// Where rounding spoils even that, or no sweep finds a lower point, the body stays where it is, with no velocity. Energies are
-/// compared by their difference along the step, so that rounding of a large energy that does not change spoils nothing.
-/// Both are those with supports where they are at the end of the step: the work of moving ones is counted apart.
+/// Let `E = v'M v/2 + W(u)` before the step and P be the mean load over it. A displacement y may be taken if
+/// `W(u + y) - P'y <= E`; then the velocity is reduced, if necessary, until `E+ <= E + P'y`. Implicit Euler's
+/// potential under the load P is E at y = 0, up to the constant `v'M v/2`, and never less than `W(u + y) - P'y`, as M
+/// and D have no negative eigenvalues; the sweeps only lower it. So its y may be taken after any number of sweeps. If
+/// the trapezoidal rule's y may not, the step is taken again by implicit Euler. If rounding spoils even that, or no
+/// sweep finds a lower point, the body keeps its displacement and gets zero velocity. Energies are compared by their
+/// difference along the step, so that rounding of a large constant energy spoils nothing. Both include supports at
+/// their places at the end of the step: the work of moving ones is counted separately.
 ///
-/// # What touches the body
+/// # Contact
 ///
-/// With tools and [`Kind::ImplicitEuler`] each sweep goes to the minimum of a bound of the potential by the cells' own blocks, in which contact is exact
-/// cell by cell, friction included, and `E+ <= E + P'y + W` holds with the work W of the tools (the proof is with the sweeps, `touched.rs`). The trapezoidal rule
-/// would let nodes bounce off a tool that they follow, and is refused.
+/// With tools and [`Kind::ImplicitEuler`] each sweep finds the minimum of a bound of the potential by the cells' own
+/// blocks, in which contact is exact cell by cell, friction included, and `E+ <= E + P'y + W` holds with the work W of
+/// the tools (the proof is with the sweeps, `touched.rs`). The trapezoidal rule would let nodes bounce off a tool that
+/// they follow, and is refused.
 ///
-/// Damping enters the potential whole: the mass-proportional part, dashpots, and stiffness damping as it is half way through the step by the velocity at its
-/// start, which takes the place of a function of the displacement. It has no negative eigenvalues anywhere. What supports in motion do by it is a load, and its work one of P.
+/// All damping enters the potential: the mass-proportional part, dashpots, and stiffness damping at the point half
+/// way through the step by the velocity at its start, in the place of a function of the displacement. It has no
+/// negative eigenvalues. Its force by supports in motion is a load, with its work part of P.
 ///
 /// # Order
 ///
 /// Parts that may move as rigid bodies are moved to the minimum of the potential over such motions first, by finite
-/// rotations, so that no sweep is needed for what moves as a whole ([`sinew_cnn::RigidMotions`]).
+/// rotations, so that rigid motion needs no sweeps ([`sinew_cnn::RigidMotions`]).
 ///
-/// Sweeps begin with no displacement beside that, an error of `dt v`, and each leaves a share of it that falls as `dt^2`, or as `dt` with stiffness damping or
-/// dashpots, which weigh `dt` times more. So the order is that of the formula from two sweeps on (from one for implicit Euler), with
-/// such damping from three (two).
+/// Sweeps begin with no other displacement, an error of `dt v`, and each leaves a share of it that falls as `dt^2`,
+/// or as `dt` with stiffness damping or dashpots, which weigh `dt` times more. So the order is that of the formula
+/// from two sweeps on (from one for implicit Euler), with such damping from three (two).
 #[derive(Clone, Copy, Debug)]
 pub struct CnnEnergy {
     kind: Kind,

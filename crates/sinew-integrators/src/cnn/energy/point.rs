@@ -39,10 +39,10 @@ impl Point {
 
     /// `W(other) - W(self) - (dW/du)' step` (J), the step to `other` being `length` times `direction`.
     ///
-    /// Half the change of the force along the step, where W is quadratic, and where the energies are too close for their rounding: there the two
-    /// are off by the third power of the step only, which is less than that rounding. `stiff` (J) is what springs as
-    /// stiff as each cell's own block would hold if all others stayed: the energy is a sum of elements' forces times displacements, and rounded
-    /// as these are.
+    /// If W is quadratic, or if rounding of the energies exceeds their difference, half the change of the force along
+    /// the step: then its error is of third order in the step only, less than that rounding. `stiff` (J) is the
+    /// energy of springs as stiff as each cell's own block with all others at rest: the energy is a sum of elements'
+    /// forces times displacements, and rounded as these are.
     pub(super) fn energy_beyond_slope(
         &self,
         other: &Self,
@@ -65,7 +65,7 @@ impl Point {
     }
 }
 
-/// A law with what its points have in common within a step.
+/// A law with the data that its points have in common within a step.
 #[derive(Clone, Copy)]
 pub(super) struct Law<'a> {
     pub(super) law: &'a dyn ElasticLaw,
@@ -77,12 +77,13 @@ pub(super) struct Law<'a> {
     /// Velocity (m/s) of the last accepted state.
     pub(super) v: &'a [f64],
     pub(super) internal: &'a [f64],
-    /// The time and the displacement (m) at which stiffness damping is held throughout the step, so that it is a quadratic form.
+    /// The time and the displacement (m) at which stiffness damping is evaluated, constant in the step, so that it is
+    /// a quadratic form.
     pub(super) held_at: (LoadTime<'a>, &'a [f64]),
 }
 
 impl<'a> Law<'a> {
-    /// The same with stiffness damping held at a time and a displacement.
+    /// The same with stiffness damping evaluated at a constant time and displacement.
     pub(super) fn damped_at<'b>(self, when: LoadTime<'b>, u: &'b [f64]) -> Law<'b>
     where
         'a: 'b,
@@ -105,7 +106,7 @@ impl Law<'_> {
         }
     }
 
-    /// The point at which stiffness damping is held.
+    /// The point at which stiffness damping is evaluated.
     pub(super) fn damped(&self) -> Trial<'_> {
         let (load, u) = self.held_at;
         Trial { load, ..self.at(u) }
@@ -131,7 +132,8 @@ impl Law<'_> {
         self.damping((self.damped(), Velocities::Cells(w)), w, out)
     }
 
-    /// The force (N) of all damping but the mass-proportional one at a displacement (m) and velocities (m/s), those of supports included.
+    /// The force (N) of all damping except mass damping at a displacement (m) and velocities (m/s), supports
+    /// included.
     pub(super) fn damping_force(
         &self,
         u: &[f64],

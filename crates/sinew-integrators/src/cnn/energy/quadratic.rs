@@ -2,7 +2,7 @@
 
 use sinew_core::vectors::add_scaled;
 
-/// `m/2 y'M y + d/2 y'D y - b'y`, y being the displacement over the step: what a step's potential holds besides `W`.
+/// `m/2 y'M y + d/2 y'D y - b'y`, y being the displacement over the step: the potential of a step without `W`.
 pub(super) struct Quadratic<'a> {
     /// M (kg).
     pub(super) masses: &'a [f64],

@@ -34,7 +34,8 @@ impl Rigid {
         })
     }
 
-    /// Writes the rigid displacements (m) from `u` (m) on at which the potential is least, were there no elastic energy; other cells stay as they are. Those of a quadratic law are small ones about rest.
+    /// Writes the rigid displacements (m) from `u` (m) on that minimise the potential without elastic energy; other
+    /// cells are unchanged. For a quadratic law they are small ones about rest.
     pub(super) fn lead(
         &mut self,
         u: &[f64],
@@ -59,7 +60,8 @@ impl Rigid {
         }
     }
 
-    /// Turns what a velocity moves in `dt` (s) from `u` (m) on, `way` (m), by its finite rotations.
+    /// Replaces the rigid part of `way` (m), the displacement in a step from `u` (m) on by a velocity, by finite
+    /// rotations.
     pub(super) fn turn(&mut self, u: &[f64], masses: &[f64], way: &mut [f64]) {
         for ((pull, mass), way) in self.pull.iter_mut().zip(masses).zip(&*way) {
             *pull = mass * way;

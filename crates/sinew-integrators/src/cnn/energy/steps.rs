@@ -23,17 +23,17 @@ pub struct EnergySteps {
     kind: Kind,
     sweeps: u32,
     descent: Descent,
-    /// Present where something touches the body.
+    /// Present if the body has contact.
     touched: Option<Touched>,
     start: Point,
     /// Loads at the start and the end of the step, and their mean, by which work is counted (N).
     load_before: Vec<f64>,
     load: Vec<f64>,
     mean_load: Vec<f64>,
-    /// The linear part of the step's potential (N), and the force of damping at one end of the step.
+    /// The linear part of the step's potential (N), and the damping force at one end of the step.
     pull: Vec<f64>,
     damped: Vec<f64>,
-    /// Buffer for the displacement (m) at which stiffness damping is held throughout a step.
+    /// Buffer for the displacement (m) at which stiffness damping is evaluated throughout a step.
     middle: Vec<f64>,
     /// The force (N) of that damping by the motion of supports.
     drag: Vec<f64>,
@@ -47,7 +47,7 @@ pub struct EnergySteps {
 
 /// Result of an attempt.
 struct Attempt {
-    /// Energy (J) that is left for the velocity; below 0 where the displacement alone takes more than there is.
+    /// Energy (J) that remains for the velocity; below 0 if the displacement alone takes more than is available.
     room: f64,
     found: Found,
 }
@@ -120,8 +120,8 @@ impl EnergySteps {
         }
     }
 
-    /// Finds the acceleration at the beginning of a step: from the force, or that of the end of the last step and what
-    /// the loads changed by between the two.
+    /// Finds the acceleration at the beginning of a step: from the force, or from that of the end of the last step
+    /// and the change of the loads since.
     fn find_acceleration(
         &mut self,
         step: &Step<'_>,
@@ -162,8 +162,9 @@ impl EnergySteps {
         Ok(work)
     }
 
-    /// Finds where stiffness damping is held in the step: half way, as far as the velocity at its start tells, so that a body that turns is not damped and the
-    /// order is kept; where the step starts, if the law has no meaning half way. What it does by the motion of supports is a load of the step.
+    /// Finds the point at which stiffness damping is evaluated in the step: half way, by the velocity at its start,
+    /// so that a body that turns is not damped and the order is kept; or the start of the step, if the law is
+    /// undefined half way. Its force by the motion of supports is a load of the step.
     fn hold_viscosity<'a>(
         &mut self,
         law: Law<'a>,
@@ -277,7 +278,7 @@ impl EnergySteps {
         Ok(Attempt { room, found })
     }
 
-    /// Work of contact (J) in the step from a state on; 0 where nothing touches the body.
+    /// Work of contact (J) in the step from a state on; 0 if nothing touches the body.
     fn work_of_contact(&self, contact: &dyn Contact, state: &State) -> f64 {
         let after = self.touched.as_ref().map(Touched::shown);
         after.map_or(0.0, |after| contact.work(after) - contact.work(state))

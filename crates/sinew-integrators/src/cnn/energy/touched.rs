@@ -1,4 +1,4 @@
-//! Sweeps that lower a step's potential while something pushes cells from outside.
+//! Sweeps that lower a step's potential with contact.
 
 use sinew_cnn::Deflation;
 use sinew_core::vectors::{dot, norm};
@@ -24,25 +24,26 @@ pub(super) enum SetOut {
     Still,
 }
 
-/// A displacement over a step, improved by sweeps of which each minimises a bound of the potential, exactly and with contact.
+/// A displacement over a step, improved by sweeps: each minimises a bound of the potential, exactly and with contact.
 ///
-/// The bound about a displacement z is `Phi(z) + g'(y - z) + (y - z)'(m M + beta B)(y - z)/2`, with the inertia as it
-/// is and the cells' own blocks B of the rest, with beta large enough for a bound. Its minimum lies where contact, in
-/// the metric `dt^2 (m M + beta B)`, leaves the cells whose contact-free displacement is `z - (m M + beta B)^-1 g`. So
+/// The bound about a displacement z is `Phi(z) + g'(y - z) + (y - z)'(m M + beta B)(y - z)/2`, with the exact inertia
+/// and the cells' own blocks B of the rest, with beta large enough for a bound. Its minimum is the result of contact,
+/// in the metric `dt^2 (m M + beta B)`, for cells with the contact-free displacement `z - (m M + beta B)^-1 g`. So
 /// each sweep ends with forces of contact that fit its displacement, friction included. It is a proximal gradient
 /// method with a momentum that restarts where it leads uphill (Beck and Teboulle, SIAM J. Imaging Sci. 2, 2009;
 /// O'Donoghue and Candes, Found. Comput. Math. 15, 2015).
 ///
-/// Sweeps set out from `z = dt v`, where `y - z` is of the order of `dt^2`: free motion is carried on in the first one.
-/// A bound of the inertia, such as twice of it, would keep a share of the velocity in each step, however short.
+/// Sweeps start at `z = dt v`, where `y - z` is of the order of `dt^2`: the first one continues free motion.
+/// A bound of the inertia, such as twice the inertia, would keep only a share of the velocity in each step.
 ///
-/// Parts that may move as rigid bodies feel nothing of B ([`Deflation`]), and turn by z as far as they turn in dt. In one block for each cell they would be braked by all that holds a cell in its neighbours.
+/// B has no effect on parts that may move as rigid bodies ([`Deflation`]), which turn by z as far as they turn in dt.
+/// With one block for each cell they would be braked by the stiffness that couples a cell to its neighbours.
 ///
 /// One sweep from z = 0 by whole blocks ends where `Phi(y) <= Phi(0) + lambda'y - y'(m M + beta B)y/2` with the forces lambda, for every law: the potential rises by the
-/// work of contact at most. Where other sweeps do not keep to that, this one is taken. Contacts that act on each other are found by an iteration, and what it leaves may be
-/// more than that: then the body stays where it is, unless something pushes it from there.
+/// work of contact at most. If other sweeps do not keep to that, this one is taken. Coupled contacts are found by an
+/// iteration, whose residual may be more than that: then the body keeps its displacement, unless something pushes it.
 pub(super) struct Touched {
-    /// The state that contact is shown: that at the start of the step, but for u, v and what contact keeps.
+    /// The state that contact receives: that at the start of the step, with other u, v and contact variables.
     shown: State,
     /// The displacement z (m) from which a sweep sets out, and the law there.
     origin: Vec<f64>,
@@ -106,7 +107,8 @@ impl Touched {
     /// Runs `sweeps` sweeps that lower the potential; their end is left in `descent`.
     ///
     /// # Errors
-    /// [`EvaluationError`] when the law has no own blocks or no damping where it has a force, or refuses where tools push the tissue.
+    /// [`EvaluationError`] when the law has a force but no own blocks or no damping, or is undefined for the
+    /// displacements that tools cause.
     pub(super) fn lower(
         &mut self,
         taken: Taken<'_>,
@@ -287,7 +289,7 @@ impl Touched {
         Ok(())
     }
 
-    /// Goes to the minimum of a bound, which is raised until it is one; whether that comes to an end.
+    /// Finds the minimum of a bound, which is raised until it is one; returns false if that does not end.
     fn sweep(
         &mut self,
         taken: Taken<'_>,

@@ -14,7 +14,7 @@ const FEW: usize = 500;
 
 /// The cells by nested dissection or by approximate minimum degree, whichever takes fewer operations to factorise.
 ///
-/// Both work on the graph of cells, which is three times smaller each way than that of degrees of freedom.
+/// Both work on the graph of cells, which has a third of the vertices of that of degrees of freedom.
 pub(super) fn cell_order(pattern: &Pattern) -> Result<Elimination, FactorError> {
     let by_degree = Elimination::of(pattern, &minimum_degree(pattern)?);
     if pattern.cells() < FEW {

@@ -83,7 +83,7 @@ impl Cholesky {
         })
     }
 
-    /// Numbers that the factor holds, zeros inside its panels included.
+    /// Number of stored entries of the factor, zeros inside its panels included.
     pub(super) fn stored(&self) -> usize {
         self.values.len()
     }
@@ -137,7 +137,7 @@ impl Cholesky {
                         if dof == diagonal {
                             value += combination.mass * matrices.mass[dof];
                             if value == 0.0 {
-                                // A held component: no force, no displacement.
+                                // A fixed component: no force, no displacement.
                                 value = 1.0;
                             }
                         }

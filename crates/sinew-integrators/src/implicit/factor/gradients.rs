@@ -28,7 +28,7 @@ pub(super) struct Gradients {
 }
 
 impl Gradients {
-    /// The tolerance of those that replace a factor.
+    /// The tolerance of conjugate gradients that replace a factor.
     pub(super) const TOLERANCE: f64 = 1e-12;
 
     pub(super) fn new(matrices: Matrices<'_>, tolerance: f64) -> Result<Self, FactorError> {
@@ -74,7 +74,7 @@ impl Gradients {
                         *entry += combination.mass * matrices.mass[cell * layers + layer];
                     }
                     if *entry == 0.0 {
-                        // A held component: no force, no displacement.
+                        // A fixed component: no force, no displacement.
                         *entry = 1.0;
                     }
                 }

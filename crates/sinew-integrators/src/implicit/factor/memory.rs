@@ -36,15 +36,16 @@ impl Memory {
         Self((set != NOT_SET).then_some(set))
     }
 
-    /// Sets what [`Memory::left`] says from now on in this process; `None` ends that. A program does it that knows what its computer has left.
+    /// Sets the value of [`Memory::left`] in this process from now on; `None` ends that. For programs that know the
+    /// memory that is available.
     pub fn set_left(memory: Option<Self>) {
         let bytes = memory.and_then(|memory| memory.0);
         SET.store(bytes.unwrap_or(NOT_SET), Ordering::Relaxed);
     }
 
-    /// Acts under a limit that holds for factors made on this thread meanwhile: for programs that run several scenes.
+    /// Runs `act` under a limit for factors made on this thread meanwhile: for programs that run several scenes.
     pub fn within<T>(self, act: impl FnOnce() -> T) -> T {
-        /// Puts back what was before, whatever the act did.
+        /// Restores the previous limit, even after a panic.
         struct Back(Option<Memory>);
         impl Drop for Back {
             fn drop(&mut self) {

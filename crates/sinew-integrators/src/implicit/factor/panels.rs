@@ -115,7 +115,7 @@ impl Panels {
 }
 
 impl Panel {
-    /// A run of columns, the last one repeated where there are fewer.
+    /// A run of columns, the last one repeated if there are fewer.
     #[inline(always)]
     fn columns<'a>(&self, values: &'a [f64], first: usize) -> [&'a [f64]; COLUMNS] {
         let height = self.width + self.below;
@@ -125,7 +125,7 @@ impl Panel {
         })
     }
 
-    /// Solves with the panel's triangle, and adds the products of what is below it.
+    /// Solves with the panel's triangle, and adds the products of the rows below it.
     #[inline(always)]
     fn lower(&self, values: &[f64], x: &mut [f64], below: &mut [f64]) {
         for first in (0..self.width).step_by(COLUMNS) {
@@ -150,7 +150,7 @@ impl Panel {
         }
     }
 
-    /// Subtracts the products of what is below the panel's triangle, and solves with its transpose.
+    /// Subtracts the products of the rows below the panel's triangle, and solves with its transpose.
     #[inline(always)]
     fn upper(&self, values: &[f64], x: &mut [f64], below: &[f64]) {
         for first in (0..self.width).step_by(COLUMNS).rev() {

@@ -1,4 +1,4 @@
-//! A factor where there is memory for it, and else conjugate gradients.
+//! A factor if there is memory for it, or else conjugate gradients.
 
 use super::cell_order::cell_order;
 use super::gradients::Gradients;
@@ -17,7 +17,7 @@ enum Kind {
     Factor(Box<Factor>),
     Gradients {
         gradients: Box<Gradients>,
-        /// Bytes of the factor that they replace; 0 where none was considered.
+        /// Bytes of the factor that they replace; 0 if none was considered.
         instead_of: u64,
     },
 }
@@ -75,7 +75,7 @@ impl Solver {
         }))
     }
 
-    /// The factor, where it is one.
+    /// The factor, if it is one.
     #[must_use]
     pub(crate) fn into_factor(self) -> Option<Factor> {
         match self.0 {
@@ -105,7 +105,7 @@ impl Solver {
     /// [`FactorError::NotConverged`] and [`FactorError::NotPositiveDefinite`] of conjugate gradients.
     ///
     /// # Panics
-    /// Where it is shorter than the matrix.
+    /// If it is shorter than the matrix.
     pub fn solve(&mut self, right_hand_side: &mut [f64]) -> Result<(), FactorError> {
         match &mut self.0 {
             Kind::Factor(factor) => {
@@ -123,7 +123,7 @@ impl Solver {
     /// As [`Solver::solve`].
     ///
     /// # Panics
-    /// Where it is shorter than the matrix.
+    /// If it is shorter than the matrix.
     pub fn precondition(&mut self, residual: &mut [f64]) -> Result<(), FactorError> {
         match &mut self.0 {
             Kind::Factor(_) => self.solve(residual),

@@ -114,7 +114,7 @@ impl TwoGrid {
         }
     }
 
-    /// Solves the equations of a cell with its neighbours as they are.
+    /// Solves the equations of a cell with its neighbours fixed.
     fn relax(
         &self,
         matrix: &BlockMatrix,

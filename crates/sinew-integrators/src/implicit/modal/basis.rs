@@ -15,7 +15,7 @@ use crate::load_case::LoadCase;
 pub(super) enum Choice {
     /// `count` modes, from a Lanczos basis of a given size or of twice as many.
     Modes { count: usize, basis: Option<usize> },
-    /// The fewest modes that bring the estimated error below this share of the response.
+    /// The fewest modes with an estimated error below this share of the response.
     Tolerance(f64),
 }
 
@@ -25,7 +25,7 @@ pub enum Vectors {
     /// Modes, the most excited of a Lanczos basis.
     #[default]
     Eigen,
-    /// Ritz vectors of the loads: the most excited of such a basis, and what is left of the static responses.
+    /// Ritz vectors of the loads: the most excited of such a basis, and the rest of the static responses.
     Ritz,
 }
 
@@ -42,7 +42,7 @@ pub(super) struct Basis {
     pub(super) complete: bool,
     /// Estimated share of the response to the loads that is lost; none for a fixed number of modes.
     pub(super) estimate: Option<f64>,
-    /// The inverse that tells how much the part of a state outside the modes matters.
+    /// The inverse that measures the part of a state outside the modes.
     pub(super) inverse: Option<Inverse>,
     pub(super) solves: u64,
     pub(super) factorizations: u64,

@@ -35,7 +35,7 @@ pub(super) struct CandidateModes {
     pub(super) modes: Vec<CandidateMode>,
 }
 
-/// Rigid motions, then the most excited modes, or the slowest where there are no loads.
+/// Rigid motions, then the most excited modes, or the slowest without loads.
 pub(super) fn most_excited(
     mut modes: Vec<CandidateMode>,
     cases: &[LoadCase],

@@ -13,15 +13,17 @@ const FOUND: f64 = 1e-12;
 /// Share of a displacement, squared and by mass, that counts as none.
 const NONE: f64 = 1e-20;
 
-/// The answer of a body to supports in slow motion as far as the modes do not have it: `u = g d - h (d'' + alpha d')` with d the factor of the motion, `K g = -K_p`, by which supports carry the body
-/// without inertia, and `K h = M g`, by which inertia bends it meanwhile. Modes alone end as a jump at the supports, whose forces are then those of strains that nobody sees. It is static correction (Dickens,
+/// The response of a body to supports in slow motion, without its part in the modes: `u = g d - h (d'' + alpha d')`
+/// with d the factor of the motion, `K g = -K_p`, by which supports carry the body without inertia, and `K h = M g`,
+/// by which inertia bends it meanwhile. Modes alone end in a jump at the supports, so that strains in no picture give
+/// their forces. It is static correction (Dickens,
 /// Nakagawa and Wittbrodt, Computers & Structures 62, 1997) in two terms of the series by derivatives of loads (Camarda, Haftka and Riley, Computers & Structures 26, 1987).
 #[derive(Debug, Default)]
 pub(super) struct Carried {
     courses: Vec<Course>,
     /// alpha (1/s).
     damping: f64,
-    /// An orthonormal basis of the displacements, by mass (kg^-1/2), one after the other.
+    /// A mass-orthonormal basis of the displacements (kg^-1/2), one vector after the other.
     directions: Vec<f64>,
 }
 
@@ -100,7 +102,7 @@ impl Carried {
     }
 }
 
-/// The part of a displacement that lies outside the modes. Their own forces are those that lead to its part inside.
+/// The part of a displacement outside the modes; the forces of modes give the part inside.
 fn outside(basis: &Basis, mass: &[f64], mut displacement: Vec<f64>) -> Vec<f64> {
     remove(mass, &basis.shapes, &mut displacement);
     remove(mass, &basis.shapes, &mut displacement);

@@ -7,14 +7,14 @@ use super::columns::{add, orthogonalise, project};
 use crate::implicit::factor::{Combination, Factor, symmetric_eigen};
 use crate::implicit::factor_error::FactorError;
 
-/// `A = M^1/2 (K + shift M)^-1 M^1/2` on the components that are not held. Its eigenvectors are
+/// `A = M^1/2 (K + shift M)^-1 M^1/2` on the free components. Its eigenvectors are
 /// M^1/2 times the modes, its eigenvalues 1/(omega^2 + shift).
 #[derive(Debug)]
 pub(super) struct Inverse {
     factor: Factor,
-    /// s^2 (1/s^2); 0 where the body is held, so that K has an inverse.
+    /// s^2 (1/s^2); 0 if the body has supports, so that K has an inverse.
     pub(super) shift: f64,
-    /// Square roots of the masses, 0 where a component is held.
+    /// Square roots of the masses, 0 for fixed components.
     pub(super) root: Vec<f64>,
     pub(super) solves: u64,
     pub(super) factorizations: u64,
@@ -82,7 +82,7 @@ impl Inverse {
         norm(&force) <= SOLVED * size
     }
 
-    /// Sets held components to zero.
+    /// Sets fixed components to zero.
     pub(super) fn mask(&self, x: &mut [f64]) {
         for (value, root) in x.iter_mut().zip(&self.root) {
             if *root == 0.0 {
@@ -174,7 +174,7 @@ impl Inverse {
     }
 }
 
-/// Marks components that are held at cells whose other components move: their rows of K are zero.
+/// Marks fixed components of cells whose other components move: their rows of K are zero.
 /// A cell without any stiffness floats.
 pub(super) fn held(operators: &LinearOperators) -> Vec<bool> {
     let stiffness = operators.stiffness();

@@ -36,7 +36,7 @@ use crate::{Frame, Method, OptionDefault, OptionHelp, OptionKind, Scheme, SetUp,
 /// loads is taken exactly at any step; steps are cut at the ramps' breakpoints.
 ///
 /// # Modes
-/// They come from the Lanczos method on `K^-1 M`, or on `(K + s^2 M)^-1 M` where the body floats, in a basis that
+/// They come from the Lanczos method on `K^-1 M`, or on `(K + s^2 M)^-1 M` if the body floats, in a basis that
 /// starts from the static response to the loads, so that modes that no load excites never enter. Modes at the fast end
 /// of the basis have not converged; each represents a bundle of modes, which represents the loads better than any one
 /// of them. Systems of up to 256 degrees of freedom have all their modes taken.
@@ -45,7 +45,7 @@ use crate::{Frame, Method, OptionDefault, OptionHelp, OptionKind, Scheme, SetUp,
 ///   the masses and over eight periods of the slowest mode, changes by less than the tolerance from
 ///   one basis to the next larger by a third. Then the modes of the smallest static response
 ///   |phi' F|/omega^2 are left out as far as the tolerance allows. Both shares together are
-///   [`Frame::estimated_error`], which is kept below four fifths of the tolerance. Where that takes a
+/// [`Frame::estimated_error`], which is kept below four fifths of the tolerance. If that takes a
 ///   basis of more than half of the degrees of freedom, set-up fails. Damping is left out of the estimate. It holds for loads that are applied
 ///   suddenly and stay: pulses shorter than the slowest periods and loads that switch excite fast
 ///   modes more, and may lose several times the share.
@@ -55,13 +55,13 @@ use crate::{Frame, Method, OptionDefault, OptionHelp, OptionKind, Scheme, SetUp,
 /// # Ritz vectors
 /// With `vectors = "ritz"`, load-dependent Ritz vectors (Wilson, Yuan and Dickens, Earthquake Eng. Struct. Dyn. 10,
 /// 1982) take the place of modes: the most excited vectors of a basis of twice as many, which takes a factor and a
-/// solution for each, and one vector for what is left of the static response to each ramp's loads, prescribed
+/// solution for each, and one vector for the rest of the static response to each ramp's loads, prescribed
 /// motions included. So the static part of a response is exact with any number of vectors: static correction by
 /// augmentation (Dickens, Nakagawa and Wittbrodt, Computers & Structures 62, 1997). There are at least as many
 /// vectors as different ramps. With `tolerance` they are the fewest that the tolerance allows.
 ///
 /// [`Frame::estimated_error`], which a plan says before the run, is that of the response to suddenly applied loads,
-/// with damping: what the vectors lose of their basis, and what the last quarter of the basis changed.
+/// with damping: the error of the vectors against their basis, and the change by the last quarter of the basis.
 ///
 /// # States
 /// Modes are a property of the system alone, so that a run can be continued from any of its states.
@@ -71,8 +71,9 @@ use crate::{Frame, Method, OptionDefault, OptionHelp, OptionKind, Scheme, SetUp,
 /// `modes = N`. A part within that share is dropped.
 ///
 /// # Supports in motion
-/// The body's answer to slow motion of supports is taken whole: what modes lack of it is added to them. So a support feels no force from a body that glides with it, and the
-/// inertia of the whole body where it is shaken slowly, with any number of modes.
+/// The body's response to slow motion of supports is complete: the part missing in the modes is added. So there is no
+/// force on a support from a body that moves with it at constant velocity, and that of the whole body's inertia if it
+/// is shaken slowly, with any number of modes.
 ///
 /// # Work
 /// A step projects displacement and velocity to the modes and lifts them back: `sweeps` counts
@@ -98,7 +99,7 @@ pub struct ModalSteps {
     breakpoints: Vec<f64>,
     modes: Vec<Mode>,
     linear: Vec<Response>,
-    /// For each load case, empty where its ramp is never sinusoidal.
+    /// For each load case, empty if its ramp is never sinusoidal.
     harmonic: Vec<Vec<Response>>,
     pieces: Vec<Piece>,
     exponential: Exponential,

@@ -72,7 +72,7 @@ impl Response {
     }
 }
 
-/// A ramp within a piece of time that holds none of its breakpoints inside.
+/// A ramp within an interval of time without breakpoints inside.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Piece {
     /// Value at the start, and the amount added linearly until the end.
@@ -82,7 +82,7 @@ pub(super) struct Piece {
 }
 
 impl Piece {
-    /// The piece of a ramp from `start` (s), `h` (s) long. The formula that holds in the middle is used
+    /// The piece of a ramp from `start` (s), `h` (s) long. The formula of its middle is used
     /// throughout, so that rounding of the ends does not matter.
     pub(super) fn of(ramp: &Ramp, start: f64, h: f64) -> Self {
         let middle = start + 0.5 * h;

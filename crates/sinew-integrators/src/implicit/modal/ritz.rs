@@ -12,12 +12,12 @@ use crate::implicit::factor::symmetric_eigen;
 /// Vectors of the basis for each vector that is taken from it.
 const BASIS: usize = 2;
 
-/// Length of a static response beside the others, relative to its own, below which it is rounding.
+/// Length of the part of a static response orthogonal to the others, relative to its own, below which it is rounding.
 const DEPENDENT: f64 = 1e-10;
 
 impl Search<'_> {
     /// Ritz vectors of the loads: the most excited of a basis that starts from the static response to each load case
-    /// (Wilson, Yuan and Dickens, Earthquake Eng. Struct. Dyn. 10, 1982), and one for what is left of each static
+    /// (Wilson, Yuan and Dickens, Earthquake Eng. Struct. Dyn. 10, 1982), and one for the rest of each static
     /// response (modal truncation augmentation: Dickens, Nakagawa and Wittbrodt, Computers & Structures 62, 1997).
     /// Their error is estimated for these rates of damping in proportion to masses (1/s) and stiffness (s).
     pub(super) fn ritz(

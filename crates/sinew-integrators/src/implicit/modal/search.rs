@@ -14,7 +14,7 @@ use crate::load_case::LoadCase;
 /// Share of the degrees of freedom that a Lanczos basis may take up in the search for a tolerance.
 const SHARE: f64 = 0.5;
 
-/// Share of the tolerance that the estimate is held to: it is a mean over all phases of the modes,
+/// Share of the tolerance that bounds the estimate: it is a mean over all phases of the modes,
 /// and a run sees some of them.
 pub(super) const MARGIN: f64 = 0.8;
 

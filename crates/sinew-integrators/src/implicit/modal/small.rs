@@ -14,7 +14,7 @@ pub(super) const SMALL: usize = 256;
 /// Ratio of omega^2 to the largest omega^2 that counts as zero.
 const RIGID: f64 = 1e-12;
 
-/// The eigenvectors of `M^-1/2 K M^-1/2` on the components that are not held.
+/// The eigenvectors of `M^-1/2 K M^-1/2` on the free components.
 pub(super) fn all_modes(
     operators: &LinearOperators,
     cases: &[LoadCase],

@@ -55,7 +55,7 @@ impl Plan {
     }
 }
 
-/// A tangent and its factor, made in each iteration, so that a solution is a function of where it began.
+/// A tangent and its factor, made in each iteration, so that a solution is a function of its starting point.
 #[derive(Debug)]
 pub(super) struct ByFactor {
     factor: Factor,

@@ -1,4 +1,4 @@
-//! Conjugate gradients in a step, and by what blocks they are preconditioned.
+//! Conjugate gradients in a step, with their block preconditioners.
 
 use sinew_core::{EvaluationError, Layers, Pattern, StepReport, TangentKind};
 
@@ -15,7 +15,7 @@ const BY_BLOCKS_AT_REST: u64 = 30;
 pub(super) struct ByGradients {
     gradients: Gradients,
     choice: Choice,
-    /// Inverse blocks at rest, where they are known.
+    /// Inverse blocks at rest, if known.
     at_rest: Option<Vec<f64>>,
     /// True while the preconditioner is made of them.
     has_rest: bool,
@@ -40,7 +40,7 @@ impl ByGradients {
         self.at_rest = self.has_rest.then(|| self.gradients.inverse().to_vec());
     }
 
-    /// True if a factor on this pattern is more work, as far as the body at rest tells.
+    /// True if a factor on this pattern is more work, estimated for the body at rest.
     pub(super) fn are_less_work(
         &mut self,
         at_rest: &mut dyn Products,

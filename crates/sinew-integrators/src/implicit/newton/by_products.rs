@@ -98,7 +98,7 @@ impl Gradients {
         &self.inverse
     }
 
-    /// Takes inverse blocks of before.
+    /// Reuses inverse blocks.
     pub(super) fn take_inverse(&mut self, inverse: &[f64]) {
         self.inverse.copy_from_slice(inverse);
     }

@@ -10,13 +10,15 @@ const ASSEMBLY: f64 = 45.0;
 /// ... and to factorise, for each product of blocks over each block of the tangent.
 const OF_BLOCKS: f64 = 0.06;
 
-/// Newton iterations of a step with a factor that is hard enough for the question to arise, those of projected tangents and searches included, about.
+/// Typical Newton iterations of a step with a factor, hard enough that both ways are considered, projected tangents
+/// and searches included.
 const ITERATIONS: f64 = 6.0;
 
-/// Cells below which a step takes a factor: less than any count tells apart.
+/// Number of cells below which a step takes a factor, without a count.
 const FEW: usize = 8;
 
-/// Iterations of conjugate gradients that take as long as a step with a factor, and the two bounds by it.
+/// Number of iterations of conjugate gradients that take as long as a step with a factor, and the two bounds derived
+/// from it.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Choice {
     /// Once counted.

@@ -30,7 +30,7 @@ pub(super) struct Counts {
     /// Solutions by conjugate gradients, and iterations that these took.
     pub(super) solutions: u64,
     pub(super) iterations: u64,
-    /// Steps, and those that went on with a factor, by reason.
+    /// Steps, and those that continued with a factor, by reason.
     pub(super) steps: u64,
     went_on: [u64; Reason::ALL.len()],
 }
@@ -41,7 +41,7 @@ impl Counts {
         self.went_on[reason as usize] += 1;
     }
 
-    /// Iterations for a solution, in the mean, where there was any.
+    /// Mean iterations of a solution, if there was any.
     pub(super) fn iterations_a_solution(&self) -> Option<f64> {
         (self.solutions > 0).then(|| self.iterations as f64 / self.solutions as f64)
     }

@@ -1,4 +1,4 @@
-//! Watches whether the energy grows by more than loads and supports bring in.
+//! Detection of growth of the energy beyond the work of loads and supports.
 
 use sinew_core::vectors::{dot, weighted_dot};
 use sinew_core::{ElasticLaw, LoadTime, State, Step, StepReport, Trial};
@@ -6,7 +6,7 @@ use sinew_core::{ElasticLaw, LoadTime, State, Step, StepReport, Trial};
 /// Growth over all the energy that start, loads and supports moved, from which on it is reported.
 const TOLD: f64 = 0.05;
 
-/// Sums up the energy that a motion may have: that of its start, and the work of loads and supports. Damping, which
+/// Sums up the energy that a motion may have: its initial energy, and the work of loads and supports. Damping, which
 /// takes energy away, is left out, so that growth is found late where there is much of it. It restarts with each
 /// motion: results depend on it by a remark only.
 pub(super) struct EnergyWatch {
@@ -55,7 +55,7 @@ impl EnergyWatch {
         }
     }
 
-    /// Checks the state before a step; its elastic energy (J), with the forces (N) of that, where they were computed.
+    /// Checks the state before a step; returns its elastic energy (J) and forces (N), if they were computed.
     pub(super) fn look(
         &mut self,
         step: &Step<'_>,

@@ -29,7 +29,8 @@ pub(super) trait Equations {
     /// The masses (kg), and the derivative of g as a combination of them, the tangent and the other damping.
     fn derivative(&self) -> (&[f64], Combination);
 
-    /// Writes the part of the derivative at `x` that has no symmetry, and so is not in the tangent, times a change of x; whether there is any.
+    /// Writes the skew part of the derivative at `x`, which is not in the tangent, times a change of x; returns true
+    /// if there is any.
     fn skew_product(&mut self, _x: &[f64], _change: &[f64], _out: &mut [f64]) -> bool {
         false
     }
@@ -39,7 +40,7 @@ pub(super) trait Equations {
         0
     }
 
-    /// The derivative at `x` by its products, where they are to be had.
+    /// The derivative at `x` by its products, if available.
     fn products_at(&mut self, _x: &[f64]) -> Option<&mut dyn Products> {
         None
     }

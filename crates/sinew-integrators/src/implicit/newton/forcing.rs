@@ -6,14 +6,15 @@ const FIRST: f64 = 0.01;
 /// The most that a solution may leave.
 const MOST: f64 = 0.3;
 
-/// Share of the tolerance up to which a solution goes that is to be the last.
+/// Share of the tolerance to which the presumably last solution is computed.
 const LAST: f64 = 0.5;
 
-/// Shares of residuals that solutions may leave: about what the equations' nonlinearity leaves (Eisenstat and Walker, SIAM J. Sci. Comput. 17, 1996).
+/// Relative residuals that linear solutions may leave: about those that the nonlinearity leaves (Eisenstat and
+/// Walker, SIAM J. Sci. Comput. 17, 1996).
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Forcing {
     tolerance: f64,
-    /// True if what linear equations lack falls with the square of the residual.
+    /// True if the residual of linear solutions falls with the square of Newton's residual.
     is_quadratic: bool,
     /// Residual over the size of the forces.
     residual: f64,

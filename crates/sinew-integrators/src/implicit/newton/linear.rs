@@ -15,13 +15,13 @@ use super::settings::NewtonSettings;
 use crate::implicit::factor::Factor;
 use crate::implicit::factor_error::FactorError;
 
-/// Most iterations of conjugate gradients in a step where there is no factor to take instead.
+/// Most iterations of conjugate gradients in a step if no factor is available instead.
 const MOST: u64 = 20_000;
 
 /// Newton iterations by products after which a factor is tried.
 const MOST_BY_PRODUCTS: u64 = 30;
 
-/// The way to a direction.
+/// Method for a direction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Way {
     Products,
@@ -37,7 +37,8 @@ pub(super) enum Direction {
     Beginning,
 }
 
-/// Conjugate gradients, or a factor made in each iteration: in both ways a solution is a function of where it began.
+/// Conjugate gradients, or a factor made in each iteration: in both ways a solution is a function of its starting
+/// point.
 pub(super) struct Linear {
     factor_use: FactorUse,
     tolerance: f64,
@@ -54,7 +55,7 @@ pub(super) struct Linear {
 }
 
 impl Linear {
-    /// Analyses the pattern if a factor is always used, and otherwise looks at the derivative at rest, where there is one.
+    /// Analyses the pattern if a factor is always used, and otherwise tests the derivative at rest, if any.
     pub(super) fn set_up(
         (law, layers): (&dyn ElasticLaw, Layers),
         weights: &[f64],
@@ -154,7 +155,7 @@ impl Linear {
         true
     }
 
-    /// Takes nothing but a factor from the beginning of the step on, which is begun again; false if there is none, or was no other way.
+    /// Uses only a factor for the restarted step; returns false if there is none, or if it was used already.
     pub(super) fn insist_on_factor(&mut self) -> bool {
         if self.by_gradients.is_some() {
             self.take_factor(Reason::Stuck);
@@ -254,12 +255,12 @@ impl Linear {
         self.forcing.gone(share);
     }
 
-    /// Iterations of conjugate gradients for a solution, in the mean, where they were used.
+    /// Mean iterations of conjugate gradients for a solution, if they were used.
     pub(super) fn iterations_a_solution(&self) -> Option<f64> {
         self.counts.iterations_a_solution()
     }
 
-    /// A sentence about how equations were solved, where there was a choice.
+    /// A sentence about the solution of equations, if there was a choice.
     pub(super) fn remark(&self) -> Option<String> {
         let is_choice = self.factor_use != FactorUse::Always;
         let is_choice = is_choice && !Choice::is_clear(self.plan.pattern());

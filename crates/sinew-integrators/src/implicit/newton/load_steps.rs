@@ -46,7 +46,7 @@ struct StaticEquations<'s> {
 }
 
 impl<'s> StaticEquations<'s> {
-    /// A point that is held for ever: what relaxes has done so.
+    /// A point after full relaxation.
     fn trial<'t>(&'t self, u: &'t [f64]) -> Trial<'t> {
         Trial {
             load: LoadTime::at(0.0),
@@ -108,12 +108,12 @@ impl Equations for StaticEquations<'_> {
 pub(in crate::implicit) struct Unreached {
     /// The share of the load that is carried.
     pub(in crate::implicit) share: f64,
-    /// The end of the last attempt to go beyond.
+    /// The error of the last attempt to increase the load.
     pub(in crate::implicit) error: NewtonError,
 }
 
-/// The displacement at which the law carries a load, from the undeformed body on: the load grows by steps that are
-/// halved where Newton's method fails and lengthened where it succeeds.
+/// The displacement in equilibrium with a load, from the undeformed body on: the load grows by steps that are halved
+/// if Newton's method fails and lengthened if it succeeds.
 pub(in crate::implicit) fn follow_load(
     system: &dyn System,
     law: &dyn ElasticLaw,

@@ -8,7 +8,7 @@ use crate::implicit::factor_error::FactorError;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum NewtonError {
-    /// The way to the solution leads out of the law's domain.
+    /// The path to the solution leaves the law's domain.
     #[error(transparent)]
     Refused(#[from] EvaluationError),
     /// The iteration ended before the forces balanced.

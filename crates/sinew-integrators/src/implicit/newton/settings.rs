@@ -11,7 +11,7 @@ const MOST: u32 = 1000;
 /// Tolerance, iteration limit and solver of Newton's method on nonlinear systems; linear ones take one solution with a factor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NewtonSettings {
-    /// The acceleration that what is left unbalanced would cause, over the largest of those that balance each other: elastic
+    /// The acceleration of the residual force, over the largest of the accelerations that balance each other: elastic
     /// forces over masses, or inertia. Root mean squares, weighted by mass.
     pub tolerance: f64,
     /// Iterations of a step after which it counts as not converged.

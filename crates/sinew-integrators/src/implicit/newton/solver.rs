@@ -24,7 +24,7 @@ const MOST_HALVINGS: u32 = 30;
 /// Doublings of a step along the projected tangent's direction.
 const MOST_DOUBLINGS: u32 = 30;
 
-/// The share of the descent that the slope promises which a step must bring (Armijo).
+/// The share of the descent predicted by the slope that a step must achieve (Armijo).
 const ARMIJO: f64 = 1e-4;
 
 /// Share of the energies below which their change is not trusted, and slopes decide (Hager and Zhang, SIAM J. Optim. 16,
@@ -95,10 +95,10 @@ impl Newton {
         })
     }
 
-    /// Takes the trial for the point where it alone is defined, or has the lower potential.
+    /// Replaces the point by the trial if only the trial is defined, or if it has the lower potential.
     ///
     /// # Errors
-    /// The refusal of the point where neither is defined.
+    /// The refusal of the point if neither is defined.
     pub(super) fn take_better(
         &mut self,
         point: Result<(), EvaluationError>,
@@ -227,7 +227,7 @@ impl Newton {
         Iterated::Stuck
     }
 
-    /// Sets the direction by a kind of tangent, where that has one.
+    /// Sets the direction by a kind of tangent, if that has one.
     fn direct(
         &mut self,
         equations: &mut impl Equations,
@@ -250,7 +250,8 @@ impl Newton {
         None
     }
 
-    /// Halves the step until it leads down as far as its slope promises; the share of it that was taken.
+    /// Halves the step until the potential decreases sufficiently (Armijo's condition); returns the share of the step
+    /// taken.
     fn search(
         &mut self,
         equations: &mut impl Equations,
@@ -282,7 +283,7 @@ impl Newton {
     }
 
     /// Continues along the direction, each time twice as far, as long as the potential decreases: a projected tangent,
-    /// stiffer than the law or without any stiffness at all, says little about lengths.
+    /// stiffer than the law or without any stiffness, gives no reliable length.
     fn lengthen(&mut self, equations: &mut impl Equations, slope: f64, work: &mut StepReport) {
         let mut share = 1.0;
         for _ in 0..MOST_DOUBLINGS {

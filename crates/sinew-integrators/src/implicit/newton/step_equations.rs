@@ -24,7 +24,7 @@ pub(in crate::implicit) struct Unknown<'e> {
     pub(in crate::implicit) coefficients: [f64; 2],
     /// c.
     pub(in crate::implicit) of_forces: f64,
-    /// m; where it is not 0 the state keeps an acceleration.
+    /// m; if it is not 0 the state keeps an acceleration.
     pub(in crate::implicit) of_last_inertia: f64,
     /// `c_old`.
     pub(in crate::implicit) of_old_forces: f64,
@@ -39,8 +39,9 @@ pub(in crate::implicit) struct Unknown<'e> {
 pub(in crate::implicit) struct ViscousPlace<'e> {
     /// Position and velocity of supports.
     pub(in crate::implicit) load: LoadTime<'e>,
-    /// The time (s) by which the displacement lies before the end, at that velocity. A velocity that is the way of a step over its time belongs to the middle:
-    /// there `sym(F'dF)` is the change of Green's strain, whatever the body turns in a step.
+    /// The time (s) by which the displacement lies before the end, at that velocity. A velocity that is a step's
+    /// displacement over its time belongs to the middle: there `sym(F'dF)` is the change of Green's strain, for any
+    /// rotation in a step.
     pub(in crate::implicit) before: f64,
 }
 
@@ -76,13 +77,13 @@ pub(super) struct StepEquations<'s> {
 /// Scratch space for stiffness damping.
 #[derive(Default)]
 pub(super) struct Viscous {
-    /// Its force (N) where the last tangent was made, and beside it.
+    /// Its force (N) at the last tangent's point, and at a point next to it.
     pub(super) force: Vec<f64>,
     pub(super) beside: Vec<f64>,
-    /// Displacement (m) at which it acts, and beside that.
+    /// Displacement (m) at which it acts, and one next to it.
     pub(super) at: Vec<f64>,
     pub(super) u: Vec<f64>,
-    /// Size of the smallest cell (m), or what there is in its place.
+    /// Size of the smallest cell (m), or a substitute.
     pub(super) cell: f64,
 }
 
@@ -235,7 +236,8 @@ impl StepEquations<'_> {
         }
     }
 
-    /// Sets x so that the displacement is the state's moved on by its velocity for a time (s), as far as x moves it.
+    /// Sets x so that the displacement is the state's plus its velocity times `after` (s), in the components that x
+    /// moves.
     pub(super) fn begin_at(&self, after: f64, x: &mut [f64]) {
         let reach = self.unknown.reach();
         let [predicted, _] = self.unknown.predicted;

@@ -24,7 +24,7 @@ pub(in crate::implicit) struct NewtonSteps {
     v: Vec<f64>,
     old_forces: Vec<f64>,
     viscous: Viscous,
-    /// Size of the body (m), 0 where it has none.
+    /// Size of the body (m), 0 if it has none.
     extent: f64,
     watch: EnergyWatch,
     steps: u64,

@@ -17,7 +17,7 @@ pub(super) struct Unsymmetric {
     product: Vec<f64>,
 }
 
-/// Vectors of the basis that are allocated beforehand: as many as a part takes that is a tenth of the matrix.
+/// Vectors of the basis that are allocated beforehand: enough for a skew part of a tenth of the matrix.
 const USUAL: usize = 5;
 
 impl Unsymmetric {

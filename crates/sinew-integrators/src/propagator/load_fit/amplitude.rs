@@ -99,7 +99,7 @@ mod tests {
     use super::*;
 
     proptest! {
-        /// Never less than what the recurrence does in a thousand steps; hardly more where steps are small.
+        /// Never less than the amplitude of the recurrence in a thousand steps; hardly more for small steps.
         #[test]
         fn the_largest_is_what_is_reached(
             (u_0, u_1) in (-1.0..1.0_f64, -1.0..1.0_f64),

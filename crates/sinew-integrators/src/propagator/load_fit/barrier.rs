@@ -2,7 +2,7 @@
 
 use super::dense::solve;
 
-/// Share of the way to the nearest bound that a Newton step may take.
+/// Share of the distance to the nearest bound that a Newton step may take.
 const TO_THE_BOUND: f64 = 0.95;
 
 /// The polynomials T_k(2x - 1) at a point.
@@ -24,7 +24,7 @@ impl Row {
     }
 }
 
-/// A quadratic form `g' H g/2 + b' g` as it is summed up.
+/// A quadratic form `g' H g/2 + b' g`, accumulated term by term.
 struct Normal {
     matrix: Vec<f64>,
     gradient: Vec<f64>,

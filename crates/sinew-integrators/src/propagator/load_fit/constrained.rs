@@ -10,7 +10,7 @@ use crate::propagator::series::evaluate;
 /// Points per coefficient at which the fit is kept within its bounds.
 const GUARDS_PER_TERM: usize = 8;
 
-/// Squared weight of the whole spectrum beside that of the loads: it says what the polynomial does where loads
+/// Squared weight of the whole spectrum relative to that of the loads: it determines the polynomial where loads
 /// excite nothing.
 const BACKGROUND: f64 = 1e-8;
 
@@ -195,7 +195,7 @@ impl Fit<'_> {
         }
     }
 
-    /// Weighs the modes for deviations of lambda G as they are, but of at most `clip`.
+    /// Weighs the modes for deviations of lambda G, clipped to `clip`.
     fn weigh(&self, deviations: &mut Deviations, g: &[f64], clip: f64) {
         let rows = deviations.rows.iter_mut().zip(&self.excitation.modes);
         for ((row, target, weight), mode) in rows {

@@ -17,7 +17,7 @@ const POINTS_PER_TERM: usize = 8;
 /// |cos theta| of a turning point from which on theta counts as passing 0 or pi there.
 const TURNS: f64 = 0.8;
 
-/// Weight of the error under loads beside that of amplitudes.
+/// Weight of the error under loads relative to that of amplitudes.
 const LOADED: f64 = 1e6;
 
 /// Points per coefficient at which the largest amplitude is sought.
@@ -49,7 +49,7 @@ pub(super) struct Start {
     pub(super) of_jump: Vec<f64>,
     /// Largest amplitude of any mode, from a velocity or from a displacement alone, over that of the exact motion.
     pub(super) amplitude: f64,
-    /// Error of the response to a jump of the loads that s brings about, relative to the response.
+    /// Error, due to s, of the response to a jump of the loads, relative to the response.
     pub(super) error: f64,
 }
 
@@ -81,7 +81,7 @@ impl Fitted<'_> {
         evaluate(self.g, x * self.interval, self.interval)
     }
 
-    /// `w dt`, `w^2 = lambda - alpha^2/4`; 0 where a mode creeps.
+    /// `w dt`, `w^2 = lambda - alpha^2/4`; 0 if a mode creeps.
     fn turn(&self, x: f64) -> f64 {
         let squared = x * self.interval - self.alpha * self.alpha / 4.0;
         squared.max(0.0).sqrt() * self.dt

@@ -38,7 +38,7 @@ impl Part<'_> {
 /// The entities that the file must list, with their physical tags.
 pub(super) struct Entities {
     physical: BTreeMap<Entity, Vec<i32>>,
-    /// The entity of the nodes if the mesh does not tell.
+    /// The entity of the nodes if the mesh gives none.
     pub(super) default_for_nodes: Entity,
 }
 

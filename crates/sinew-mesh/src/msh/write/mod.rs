@@ -28,7 +28,8 @@ pub enum MshVersion {
 
 /// Writes a mesh as a .msh file: points, cells, tags, physical groups, data fields and periodic links.
 ///
-/// Equal meshes give equal bytes, and every number reads back exactly. Contents that a version cannot hold are changed:
+/// Equal meshes give equal bytes, and every number reads back exactly. Contents that a version cannot store are
+/// changed:
 ///
 /// * **4.1** attaches groups to geometrical entities. A block whose cells differ in entity or groups is written as several
 ///   blocks, and where one entity would have to be in different groups, or a cell has none, new entity numbers are given.

@@ -55,7 +55,7 @@ impl Spot {
         self.table.all_keys().into_iter().map(Described::describe)
     }
 
-    /// True if a key's conditions hold with the other keys that are given.
+    /// True if a key's conditions are met by the other keys that are given.
     pub(super) fn lets(&self, key: &KeyDescription) -> bool {
         let entries = self.entries();
         key.conditions.iter().all(|condition| match condition.goes {
@@ -101,7 +101,7 @@ pub(super) fn all() -> Vec<Spot> {
     spots
 }
 
-/// The first examples of what every body has.
+/// The first examples of the keys that every body has.
 fn body() -> Table {
     let first = |table: &TableDescription| table.examples[0].parse::<Table>().unwrap();
     let mut body = first(&DOCUMENT);

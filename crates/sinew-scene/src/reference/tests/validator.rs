@@ -1,4 +1,4 @@
-//! A validator of JSON schemas (draft 7), as far as the schema of scenes goes.
+//! A validator of JSON schemas (draft 7), limited to the features that the schema of scenes uses.
 
 use regex_lite::Regex;
 use serde_json::{Map, Value};

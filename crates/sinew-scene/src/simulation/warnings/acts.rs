@@ -10,7 +10,7 @@ use crate::scene::{Blade, Body, Subject};
 use crate::simulation::Simulation;
 use crate::simulation::model::BodyModel;
 
-/// Stress of a load over the stiffness of what it acts on beyond which no tissue bears it.
+/// Stress of a load over the stiffness of the tissue under it, beyond which no tissue bears it.
 const BEARS: f64 = 10.0;
 
 pub(super) fn warnings(body: &Body, built: &BodyModel) -> Vec<Warning> {
@@ -55,7 +55,7 @@ fn uncut(body: &Body) -> Option<Warning> {
     })
 }
 
-/// A warning of the load that is largest against the stiffness of the body, where no tissue bears it.
+/// A warning of the largest load relative to the stiffness of the body, if no tissue bears it.
 pub(super) fn out_of_proportion(body: &Body, built: &BodyModel) -> Option<Warning> {
     let problem = &body.problem;
     let moduli = problem.regions.iter().map(|region| {
@@ -107,7 +107,7 @@ fn largest(ramp: &Ramp) -> f64 {
 }
 
 impl Simulation {
-    /// A way to find why a motion of the scene diverged, after a semicolon.
+    /// Advice, after a semicolon, to find the cause of a divergence.
     #[must_use]
     pub fn after_divergence(&self) -> String {
         let large = match (self.scene().subject(), self.model().body()) {

@@ -1,11 +1,11 @@
-//! Initial displacements of held components.
+//! Initial displacements of fixed components.
 
 use super::{Warning, WarningKind};
 use crate::number::count;
 use crate::scene::{Body, Initial};
 use crate::simulation::model::BodyModel;
 
-/// A warning for each initial displacement that asks held or moved components to be elsewhere.
+/// A warning for each initial displacement that asks fixed or moved components to be elsewhere.
 pub(super) fn held(body: &Body, built: &BodyModel) -> Vec<Warning> {
     let mut warnings = Vec::new();
     for (index, initial) in body.initial.iter().enumerate() {
@@ -43,7 +43,7 @@ pub(super) fn held(body: &Body, built: &BodyModel) -> Vec<Warning> {
     warnings
 }
 
-/// The nodes with a component that is asked to be elsewhere and is held or moved.
+/// The nodes with a component that is asked to be elsewhere and is fixed or moved.
 fn held_nodes(
     built: &BodyModel,
     group: Option<&str>,

@@ -1,4 +1,4 @@
-//! Parts of the body that no support holds.
+//! Parts of the body without supports.
 
 use super::{Warning, WarningKind};
 use crate::number::{count, short, vector};
@@ -17,7 +17,7 @@ struct Part {
     held: bool,
 }
 
-/// A warning about the parts of which no component is held or moved.
+/// A warning about the parts of which no component is fixed or moved.
 pub(super) fn free(built: &BodyModel) -> Option<Warning> {
     let parts = parts(built);
     let free: Vec<&Part> = parts.iter().filter(|part| !part.held).collect();

@@ -62,7 +62,7 @@ pub(super) fn warnings(simulation: &Simulation, built: &BodyModel) -> Vec<Warnin
 /// Instants at which a tool is looked for in nodes that it does not meet.
 const LOOKS: u32 = 64;
 
-/// A warning of nodes that are held or moved, and that a tool passes through.
+/// A warning of nodes that are fixed or moved, and that a tool passes through.
 fn unmet(simulation: &Simulation, built: &BodyModel, index: usize) -> Option<Warning> {
     let Subject::Body(body) = simulation.scene().subject() else {
         return None;

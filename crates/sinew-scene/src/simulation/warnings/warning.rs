@@ -6,14 +6,14 @@ use serde::{Serialize, Serializer};
 
 use crate::number::short;
 
-/// Something about a scene that runs, and may not be what its author meant. It prints as one line.
+/// A warning about a scene that runs but may not be intended so. It prints as one line.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Warning {
     /// Its kind.
     pub kind: WarningKind,
     /// The fact, with its numbers.
     pub what: String,
-    /// A way to mend it; empty where there is none to name.
+    /// The remedy; empty if there is none.
     pub mend: String,
     /// The numbers of the fact by names that end in their units, for programs.
     pub numbers: Vec<(&'static str, f64)>,
@@ -73,7 +73,7 @@ impl fmt::Display for Warning {
 pub enum WarningKind {
     /// A remark of the reader of the mesh file.
     MeshFile,
-    /// Parts of the body that touch and do not hold together.
+    /// Parts of the body that touch without being joined.
     TouchingParts,
     /// Faces of elements that lie on others without being the same.
     MismatchedFaces,
@@ -95,7 +95,7 @@ pub enum WarningKind {
     Locking,
     /// A law that fails in motions that tissue undergoes.
     WeakLaw,
-    /// An initial displacement of held components, which stay where they are.
+    /// An initial displacement of fixed components, which stay where they are.
     HeldInitial,
     /// A prescribed position that jumps.
     MotionJumps,
@@ -113,7 +113,7 @@ pub enum WarningKind {
     UnmetNodes,
     /// A tool that is thin against the triangles of the surface.
     SmallTool,
-    /// A tool that goes farther than the body is large in a step.
+    /// A tool that moves by more than the body's size in a step.
     FastTool,
     /// A load or motion that changes before or after the run only.
     OutsideRun,
@@ -123,13 +123,13 @@ pub enum WarningKind {
     ClampedNetwork,
     /// A load that the integrator will refuse.
     RefusedLoad,
-    /// A load that comes and goes within a step.
+    /// A load that begins and ends within a step.
     UnresolvedLoad,
     /// A step longer than the duration.
     LongStep,
     /// Steps that do not end at the duration.
     UnevenSteps,
-    /// A run that takes more than a minute, as its first steps tell.
+    /// A run that is predicted to take more than a minute.
     LongRun,
     /// A probe farther from the body than an element.
     FarProbe,

@@ -32,7 +32,7 @@ impl Recording {
         Ok(Self { folders })
     }
 
-    /// Creates the files that hold the commands of the panes while the session lasts.
+    /// Creates the files for the commands of the panes during the session.
     pub(super) fn journals(&self) -> Result<Vec<Journal>, Failure> {
         let mut journals = Vec::new();
         for folder in &self.folders {
@@ -67,8 +67,8 @@ impl Recording {
         }
     }
 
-    /// Replays the session of each pane into its folder, which holds its log from then on. If this fails, the log stays
-    /// next to its folder.
+    /// Replays the session of each pane into its folder, which contains its log from then on. If this fails, the log
+    /// stays next to its folder.
     pub(super) fn write(
         self,
         session: sinew_live::Ended,
@@ -102,7 +102,7 @@ impl Recording {
     }
 }
 
-/// A message with the place of the commands of a session that was not recorded; `is_whole` if the file holds all of
+/// A message with the place of the commands of a session that was not recorded; `is_whole` if the file has all of
 /// them.
 fn where_commands_are(beside: &Path, is_whole: bool) -> String {
     let path = beside.display();
@@ -152,7 +152,7 @@ fn record(
     Ok(())
 }
 
-/// Path of the log of a session until its folder holds the log.
+/// Path of the log of a session until its folder contains the log.
 fn log_beside(folder: &Path) -> PathBuf {
     let mut path = folder.components().as_path().to_owned().into_os_string();
     path.push(".session.log");

@@ -9,11 +9,11 @@ use super::scene_file::written;
 use crate::command::Failure;
 use crate::command::own_file::{Force, holds};
 
-/// A ready scene, with what it reads.
+/// A ready scene, with the file that it reads.
 struct Ready {
     name: &'static str,
     scene: &'static str,
-    /// Name and contents of the file beside it: a mesh, or the table of a tool.
+    /// Name and contents of the file next to it: a mesh, or the table of a tool.
     file: Option<(&'static str, &'static [u8])>,
 }
 
@@ -147,7 +147,7 @@ pub(super) fn list() -> Result<(), Failure> {
     )?)
 }
 
-/// Writes a scene to `out`, and what it reads beside it.
+/// Writes a scene to `out`, with the file that it reads next to it.
 pub(super) fn write(name: &str, out: &Path, force: Force) -> Result<(), Failure> {
     let ready = READY.iter().find(|ready| ready.name == name);
     let Some(Ready { scene, file, .. }) = ready else {

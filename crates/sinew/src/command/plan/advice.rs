@@ -148,7 +148,7 @@ fn asked(advice: &Advice) -> String {
     }
 }
 
-/// The part of the scene that pilots covered, with the loads that change after it; empty where they
+/// The part of the scene that pilots covered, with the loads that change after it; empty if they
 /// covered all of it.
 fn up_to(advice: &Advice) -> String {
     if advice.covers_the_scene() {

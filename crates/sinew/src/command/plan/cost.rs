@@ -148,7 +148,7 @@ impl Cost {
     }
 }
 
-/// Refuses what does not fit the memory that this computer has left, before it is built.
+/// Refuses a scene that exceeds the available memory, before it is built.
 pub(super) fn check_memory(footprint: &Footprint) -> Result<(), Failure> {
     match memory_left() {
         Some(available) if footprint.bytes as u64 > available => Err(Failure::Memory {

@@ -7,8 +7,8 @@ use sinew_scene::{Plan, Simulation, Warning};
 use super::cost::Cost;
 use super::cost_json;
 
-/// A plan as one JSON object: its sections as they are printed, its numbers, and its warnings with theirs. Numbers that
-/// do not exist are left out.
+/// A plan as one JSON object: its printed sections, its numbers, and its warnings with theirs. Absent numbers
+/// are left out.
 pub(super) fn as_json(simulation: &Simulation, plan: &Plan, cost: &Cost) -> Value {
     let sections = plan.sections.iter().map(|section| {
         let (heading, lines) = (section.heading, &section.lines);

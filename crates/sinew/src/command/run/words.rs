@@ -47,7 +47,7 @@ pub(super) fn schedule(
 const ERROR_NOT_KNOWN: &str =
     "the error of this run is not known: `sinew plan --tolerance` measures it";
 
-/// A line about steps that were taken again, where there were any.
+/// A line about steps that were taken again, if there were any.
 fn retaken(times: u64) -> Option<String> {
     let times = match times {
         0 => return None,
