@@ -15,6 +15,14 @@ pub(super) struct LastEvaluation {
 }
 
 impl LastEvaluation {
+    /// None yet, with space for the displacement of this number of nodes.
+    pub(super) fn none(nodes: usize) -> Self {
+        Self {
+            displacement: Vec::with_capacity(nodes),
+            ..Self::default()
+        }
+    }
+
     /// The findings at this displacement (m), if it is that of the last evaluation, to the bit.
     pub(super) fn at(&mut self, displacement: &[[f64; 4]], with_energy: bool) -> Option<Deformed> {
         let found = self.found.filter(|_| self.is_at(displacement))?;

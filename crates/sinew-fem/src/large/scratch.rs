@@ -181,7 +181,7 @@ impl Scratch {
             displacement: Aligned::filled([0.0; 4], nodes),
             change: vec![[0.0; 4]; nodes],
             sums: vec![[0.0; 4]; taken],
-            last: LastEvaluation::default(),
+            last: LastEvaluation::none(nodes),
             kept: Kept::new(regions, rooms, 1),
             gradients: vec![no_rows(); smoothed],
             product: ProductRooms::default(),

@@ -45,7 +45,7 @@ use crate::{Frame, Method, OptionDefault, OptionHelp, OptionKind, Scheme, SetUp,
 ///   the masses and over eight periods of the slowest mode, changes by less than the tolerance from
 ///   one basis to the next larger by a third. Then the modes of the smallest static response
 ///   |phi' F|/omega^2 are left out as far as the tolerance allows. Both shares together are
-/// [`Frame::estimated_error`], which is kept below four fifths of the tolerance. If that takes a
+///   [`Frame::estimated_error`], which is kept below four fifths of the tolerance. If that takes a
 ///   basis of more than half of the degrees of freedom, set-up fails. Damping is left out of the estimate. It holds for loads that are applied
 ///   suddenly and stay: pulses shorter than the slowest periods and loads that switch excite fast
 ///   modes more, and may lose several times the share.
