@@ -247,7 +247,7 @@ pub enum Weight {
     },
 }
 
-/// A bound, counted where it is reached.
+/// A bound; values that reach it are counted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Clamp {
     /// Bounds each component separately to this size: the network's saturation.
