@@ -588,7 +588,7 @@ impl<'a> Batch<'a> {
     }
 }
 
-/// The degree of freedom farthest beyond `limit` (m); one that is not a number is farthest of all.
+/// The degree of freedom farthest beyond `limit` (m); NaN is the farthest.
 #[must_use]
 pub fn worst_beyond(u: &[f64], limit: f64) -> Option<usize> {
     // Without a branch, in integers as wide as the values, so that several are compared at a time: this is done after

@@ -11,7 +11,7 @@ use crate::revision::Revision;
 /// A plain value: a clone is a checkpoint, and a run continued from a clone with a fresh integrator is bit-identical.
 /// It therefore carries everything that a method must keep.
 ///
-/// Two states are equal where all that determines the motion is equal; the identity of the loads
+/// Two states are equal if all that determines the motion is equal; the identity of the loads
 /// does not count.
 #[derive(Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
