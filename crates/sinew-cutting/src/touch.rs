@@ -141,7 +141,7 @@ impl CuttableBody {
         self.room.nodes.set(node, distance, flat);
     }
 
-    /// Notes a node that this search has seen and is here now, where the blade passes it for the first time.
+    /// Records a node at this position, seen by this search, if the blade passes it for the first time.
     fn pass(&mut self, node: u32, seeing: &Seeing<'_>, place: Vector) {
         let (distance, flat) = self.room.nodes.of(node);
         if self.marks.has_passed(node) {
