@@ -576,7 +576,7 @@ pub fn single_precision_is_double_precision_rounded<L: HyperelasticLaw>(law: L) 
     }
 }
 
-/// A law that is not defined for inverted elements refuses them, flat ones, and what is not a number; another has
+/// A law that is not defined for inverted elements refuses them, flat ones, and NaN; another has
 /// finite stresses there. A law with a limit describes it, and single precision, whose range is smaller, has a limit
 /// wherever double precision has one.
 pub fn what_is_refused_is_where_the_law_is_not_defined<L: HyperelasticLaw>(law: L) {

@@ -127,7 +127,7 @@ fn perpendicular<N: Number>(unit: [N; 3]) -> [N; 3] {
 
 /// Iterations of the polar decomposition before singular values are taken.
 const ITERATIONS: usize = 12;
-/// Volume ratio below which they are taken at once.
+/// Volume ratio below which singular values are used immediately.
 const FLAT: f64 = 0.05;
 
 /// The proper rotation R of F = R S, also where J < 0.

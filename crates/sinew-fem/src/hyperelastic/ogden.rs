@@ -362,7 +362,8 @@ mod tests {
         }
     }
 
-    /// Divided differences are series where stretches are near and differences elsewhere: both agree where they meet.
+    /// Divided differences are series for nearly equal stretches and differences otherwise: both agree at the
+    /// transition.
     #[test]
     fn tangents_have_no_seam_where_series_end() {
         let law = of(&[1000.0, 1.3, 200.0, 5.0, 50.0, -2.0], 0.45);

@@ -34,7 +34,7 @@ pub struct TermStep {
 ///
 /// # Errors
 ///
-/// [`ParameterError`] if a share or a time is not above 0, or where nothing of the stress would stay.
+/// [`ParameterError`] if a share or a time is not above 0, or if no stress would remain.
 pub fn check(terms: &[Term]) -> Result<(), ParameterError> {
     for term in terms {
         let expected = "a finite number above 0";
