@@ -68,7 +68,7 @@ pub trait Scheme: Send + Sized + 'static {
         Ok(StableStep::Any)
     }
 
-    /// The largest stable step where these are the fastest motions.
+    /// The largest stable step if these are the fastest motions.
     fn stable_step_of(&self, _spectrum: &Spectrum) -> StableStep {
         StableStep::Unknown
     }

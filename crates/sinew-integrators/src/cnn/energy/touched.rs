@@ -30,7 +30,7 @@ pub(super) enum SetOut {
 /// and the cells' own blocks B of the rest, with beta large enough for a bound. Its minimum is the result of contact,
 /// in the metric `dt^2 (m M + beta B)`, for cells with the contact-free displacement `z - (m M + beta B)^-1 g`. So
 /// each sweep ends with forces of contact that fit its displacement, friction included. It is a proximal gradient
-/// method with a momentum that restarts where it leads uphill (Beck and Teboulle, SIAM J. Imaging Sci. 2, 2009;
+/// method with a momentum that restarts if it leads uphill (Beck and Teboulle, SIAM J. Imaging Sci. 2, 2009;
 /// O'Donoghue and Candes, Found. Comput. Math. 15, 2015).
 ///
 /// Sweeps start at `z = dt v`, where `y - z` is of the order of `dt^2`: the first one continues free motion.

@@ -134,7 +134,7 @@ impl Solver {
         }
     }
 
-    /// A sentence about how equations are solved, where that is not by a factor.
+    /// A sentence about the solution of equations, if that is not by a factor.
     #[must_use]
     pub fn remark(&self) -> Option<String> {
         let Kind::Gradients {

@@ -35,7 +35,8 @@ const DOUBTFUL: f64 = 1e-6;
 const OVERSHOT: f64 = 0.5;
 
 /// Change of the potential from one point to another, a share of `along` apart, and the size of its parts. The forces that have
-/// no energy count with the mean of both ends, which is exact where they are linear, as inertia, loads and viscous damping are.
+/// no energy count with the mean of both ends, which is exact if they are linear, as inertia, loads and viscous
+/// damping are.
 fn change(from: &Point, to: &Point, along: &[f64], share: f64) -> (f64, f64) {
     let [before, after] = [from, to].map(|point| share * point.other_slope(along));
     let others = 0.5 * (before + after);
