@@ -150,7 +150,7 @@ pub struct Row {
     /// reference comes to rest; of hard cases only.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub static_error: Option<f64>,
-    /// Relative change of the method's energy in 1000 steps, where nothing damps or loads the
+    /// Relative change of the method's energy in 1000 steps, if nothing damps or loads the
     /// system; of hard cases only.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub energy_drift: Option<f64>,
@@ -223,7 +223,7 @@ pub enum RowVerdict {
     Accurate,
     /// Finished, bounded, nothing saturated, error above [`ACCURATE`].
     Wrong,
-    /// Finished and bounded with saturated cells, whatever the error.
+    /// Finished and bounded with saturated cells, for any error.
     Guarded,
     /// Finished, but passed the bound.
     Unbounded,
