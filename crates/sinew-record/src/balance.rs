@@ -100,7 +100,7 @@ pub(crate) struct Balance {
     may_be_cut: bool,
     pub(crate) sums: Sums,
     pub(crate) last: Option<LastRow>,
-    /// All nodes at the last row, where some are moved.
+    /// All nodes at the last row, if some are moved.
     nodes: Option<Nodes>,
     /// Closed form of the energy that the method takes, if known.
     form: Option<NumericalDissipation>,
@@ -112,7 +112,7 @@ pub(crate) struct Balance {
     has_rows_of_steps: bool,
 }
 
-/// A row, with all nodes then where some are moved.
+/// A row, with all nodes then if some are moved.
 type End<'a> = (&'a LastRow, Option<&'a Nodes>);
 
 /// Work (J) of loads and of supports, without the work against the inertia of the supports' own nodes, and energy (J)
@@ -538,7 +538,7 @@ impl Balance {
         loads
     }
 
-    /// All nodes at a row, where some are moved.
+    /// All nodes at a row, if some are moved.
     fn nodes(&self, row: &LastRow, inputs: &Inputs) -> Result<Option<Nodes>, RecordRunError> {
         let Some(model) = self.moved_body() else {
             return Ok(None);

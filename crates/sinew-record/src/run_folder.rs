@@ -225,7 +225,7 @@ impl RunFolder {
         Ok((Self { folder, record }, scene))
     }
 
-    /// True if the run in this folder has come to its end.
+    /// True if the run in this folder is completed.
     ///
     /// # Errors
     /// [`RecordRunError`] for a summary that cannot be read.
