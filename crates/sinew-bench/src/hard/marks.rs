@@ -59,7 +59,7 @@ pub(crate) fn all(measured: &Measured<'_>, mut begins: impl FnMut(&str)) -> Vec<
     marks
 }
 
-/// The mark that a check gives; failed where the check cannot be made.
+/// The mark that a check gives; failed if the check cannot be made.
 fn given(asked: Asked, check: &mut dyn FnMut(Asked) -> Result<Mark, LabError>) -> Mark {
     check(asked).unwrap_or_else(|error| asked.not_measured(error.to_string()))
 }

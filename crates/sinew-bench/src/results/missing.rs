@@ -9,7 +9,7 @@ use sinew_measure::Gap;
 /// everything else is as it would be without it.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Missing {
-    /// Id of the case or the map; the file where a scene could not be read.
+    /// Id of the case or the map; the file if a scene could not be read.
     pub scene: String,
     /// The run, or the value of a map's parameter; none if it concerns the scene as a whole.
     #[serde(default, skip_serializing_if = "Option::is_none")]
