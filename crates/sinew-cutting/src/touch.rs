@@ -20,7 +20,7 @@ const AT_EDGE: f64 = 0.02;
 pub(crate) struct Beside(pub(crate) [f64; 4]);
 
 impl Beside {
-    /// The side on which most of it lies; 1 where both have as much.
+    /// The side on which most of it lies; 1 if both have as much.
     pub(crate) fn side(self) -> i8 {
         if self.0.iter().sum::<f64>() < 0.0 {
             -1
