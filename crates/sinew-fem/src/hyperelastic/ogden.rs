@@ -103,7 +103,7 @@ struct Term<N> {
 
 impl<N: Number> Term<N> {
     /// Its share in the shear of two axes: the difference of `2 mu/alpha l^alpha` over that of the squares of the
-    /// stretches, from that of their logarithms where both are near.
+    /// stretches, from that of their logarithms if both are near.
     #[inline(always)]
     fn shear<const A: usize, const B: usize>(&self, stretches: &Stretches<N>, of_logs: N) -> N {
         let one = N::of(1.0);

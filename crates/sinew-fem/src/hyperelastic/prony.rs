@@ -152,7 +152,7 @@ pub fn first_piola<N: Number>(deformation: &Deformation<N>, second: Symmetric<N>
 }
 
 /// The deviatoric part `P - (P : F)/(3 J) c` of a first Piola-Kirchhoff stress, whose Cauchy stress has no pressure: that of the invariants without change of volume, for
-/// laws that have such a part. It relaxes alone where only the deviatoric part is viscous.
+/// laws that have such a part. It relaxes alone if only the deviatoric part is viscous.
 #[inline(always)]
 #[must_use]
 pub fn deviatoric<N: Number>(deformation: &Deformation<N>, stress: Tensor<N>) -> Tensor<N> {
