@@ -53,7 +53,7 @@ pub(super) struct Descent {
     /// D times `moved`, and times the direction, without alpha M.
     damped: Vec<f64>,
     damped_direction: Vec<f64>,
-    /// Present where parts may move as rigid bodies.
+    /// Present if parts may move as rigid bodies.
     pub(super) rigid: Option<Rigid>,
 }
 

@@ -12,7 +12,8 @@ use crate::cnn::coupled_contact::{Coupled, CoupledContact};
 /// Times each cell's own block, without inertia, by which the potential is bounded at first.
 const FIRST_BOUND: f64 = 2.0;
 
-/// The highest bound that leaves rigid motions their inertia: where the potential rises along such a motion, as that of a large turn may, no higher one helps.
+/// The highest bound that leaves rigid motions their inertia: if the potential rises along such a motion, as that of
+/// a large turn may, no higher one helps.
 const MOST_DEFLATED: f64 = 64.0;
 
 /// Displacement over a step from which sweeps set out.
@@ -59,7 +60,7 @@ pub(super) struct Touched {
     damped: Vec<f64>,
     /// Inverse blocks of the metric (1/kg).
     inverse: Vec<f64>,
-    /// Present where parts may move as rigid bodies.
+    /// Present if parts may move as rigid bodies.
     coupled: Option<CoupledContact>,
     /// True if the metric leaves rigid motions their inertia.
     is_deflated: bool,

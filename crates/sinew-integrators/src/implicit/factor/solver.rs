@@ -7,8 +7,8 @@ use super::memory::Memory;
 use super::{Factor, bytes};
 use crate::implicit::factor_error::FactorError;
 
-/// A solver of equations with a [`Combination`] that is symmetric and positive definite: by its factor, or by conjugate gradients where a factor takes more memory
-/// than there is.
+/// A solver of equations with a [`Combination`] that is symmetric and positive definite: by its factor, or by
+/// conjugate gradients if a factor takes more memory than there is.
 #[derive(Debug)]
 pub struct Solver(Kind);
 

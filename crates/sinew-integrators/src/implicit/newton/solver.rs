@@ -31,7 +31,7 @@ const ARMIJO: f64 = 1e-4;
 /// 2005): in a body strained by 1e-6 the rounding of positions spoils ten digits of the energy, and four of the forces.
 const DOUBTFUL: f64 = 1e-6;
 
-/// The share of a slope that may be left, upwards, where slopes decide.
+/// The share of a slope that may be left, upwards, if slopes decide.
 const OVERSHOT: f64 = 0.5;
 
 /// Change of the potential from one point to another, a share of `along` apart, and the size of its parts. The forces that have
@@ -52,7 +52,7 @@ enum Iterated {
     Stuck,
 }
 
-/// Newton's method with a line search, and projection where the exact tangent leads nowhere (Longva et al.,
+/// Newton's method with a line search, and projection if the exact tangent gives no descent (Longva et al.,
 /// arXiv 2311.14526, 2023).
 pub(super) struct Newton {
     settings: NewtonSettings,
