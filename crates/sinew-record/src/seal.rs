@@ -185,7 +185,7 @@ impl SealedTable {
     /// Makes sure that the disk has all of it, under its name, and seals it.
     ///
     /// # Errors
-    /// [`RecordRunError`], also where its file was removed or replaced.
+    /// [`RecordRunError`], also if its file was removed or replaced.
     pub(crate) fn secure(&mut self, folder: &OwnedFolder) -> Result<Seal, RecordRunError> {
         self.file.secure()?;
         let seal = self.sealing.seal();
