@@ -51,12 +51,12 @@ impl Place {
         self.error(self.header.clone(), fault)
     }
 
-    /// An error that points at a key; at the table where the key is not given.
+    /// An error that points at a key; at the table if the key is not given.
     pub(crate) fn key_fault(&self, key: &str, fault: Fault) -> SceneError {
         self.error(self.keys.get(key).map(|place| place.key.clone()), fault)
     }
 
-    /// An error that points at a key's value; at the table where the key is not given.
+    /// An error that points at a key's value; at the table if the key is not given.
     pub(crate) fn value_fault(&self, key: &str, fault: Fault) -> SceneError {
         self.error(self.keys.get(key).map(|place| place.value.clone()), fault)
     }
@@ -69,7 +69,7 @@ impl Place {
         }
     }
 
-    /// Line of a key, or of the table where the key is not given; counted from 1.
+    /// Line of a key, or of the table if the key is not given; counted from 1.
     pub(crate) fn line(&self, key: &str) -> Option<usize> {
         let span = self
             .keys

@@ -42,7 +42,7 @@ fn idle(body: &Body) -> Option<Warning> {
     })
 }
 
-/// A warning where the body may be cut and nothing does.
+/// A warning if the body may be cut and nothing does.
 fn uncut(body: &Body) -> Option<Warning> {
     let cutting = body.cutting.as_ref()?;
     let is_uncut = cutting.blade == Blade::None && cutting.remove.is_none();
