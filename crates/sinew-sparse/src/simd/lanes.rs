@@ -29,7 +29,7 @@ pub(crate) trait Lanes<T: Real>: Copy {
     unsafe fn parts(self) -> [Self; 2];
     /// Prefetches the 64 bytes at an address, which need not be valid, into the first cache.
     unsafe fn prefetch(from: *const T);
-    /// `self factor + other`, rounded once where the instruction set can.
+    /// `self factor + other`, rounded once if the instruction set can.
     unsafe fn mul_add(self, factor: Self, other: Self) -> Self;
     /// The number of the same sign whose size is `limit` at most; NaN stays NaN.
     unsafe fn clamp(self, limit: Self) -> Self;

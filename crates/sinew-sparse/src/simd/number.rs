@@ -58,7 +58,7 @@ pub trait Number:
     /// Writes three numbers and 0 to a row for each lane, `stride` rows apart from the first.
     fn store_rows(columns: [Self; 3], to: &mut [[Self::Real; 4]], stride: usize);
 
-    /// `self factor + other`, rounded once where the processor can.
+    /// `self factor + other`, rounded once if the processor can.
     #[must_use]
     fn mul_add(self, factor: Self, other: Self) -> Self;
 
