@@ -37,7 +37,7 @@ impl Measured<'_> {
         self.rows.iter().filter(|row| row.case == id).collect()
     }
 
-    /// True if a mark on this case is asked for. A quick run leaves out slow cases.
+    /// True if a mark on this case is requested. A quick run leaves out slow cases.
     fn has(&self, id: &str) -> bool {
         self.planned.iter().any(|planned| planned == id)
     }

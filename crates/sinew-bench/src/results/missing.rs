@@ -1,11 +1,11 @@
-//! Things that a bench was asked for and cannot show.
+//! Requested results that a bench cannot show.
 
 use std::fmt;
 
 use serde::{Deserialize, Serialize};
 use sinew_measure::Gap;
 
-/// A scene, a run or a number that was asked for and is not there. `null` replaces it in JSON and `n/a` in tables;
+/// A scene, a run or a number that was requested and is not there. `null` replaces it in JSON and `n/a` in tables;
 /// everything else is as it would be without it.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Missing {
