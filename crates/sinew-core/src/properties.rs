@@ -267,7 +267,7 @@ pub enum StableStep {
     Any,
     /// Stable up to this step (s); 0 means never.
     UpTo(f64),
-    /// The method cannot say.
+    /// The method gives no statement.
     Unknown,
 }
 

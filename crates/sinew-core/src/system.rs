@@ -27,7 +27,7 @@ pub struct Scales<'a> {
 /// `M a + f_int(u, v) = f_ext(t)` with lumped M.
 ///
 /// Evaluation changes nothing; a step that is accepted is announced once through
-/// [`System::accept`]. [`System::equations`] says where the forces come from: a system is either its
+/// [`System::accept`]. [`System::equations`] gives the source of the forces: a system is either its
 /// matrices and loads or its own force law, never both, so that all methods see the same forces.
 /// Forces from outside enter through [`crate::Inputs`].
 pub trait System: Send + Sync {
@@ -183,7 +183,7 @@ pub trait ForceLaw: Send + Sync {
     }
 
     /// Bounds of the fastest motions about a state, or about rest, from which stable steps follow;
-    /// `None` if they are unknown. About rest to some digits; about a state, which is asked for during runs, an
+    /// `None` if they are unknown. About rest to some digits; about a state, which is requested during runs, an
     /// estimate to a few per cent will do.
     fn spectrum(&self, _about: Option<&State>) -> Option<Spectrum> {
         None
