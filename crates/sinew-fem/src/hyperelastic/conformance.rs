@@ -625,7 +625,7 @@ pub fn what_is_refused_is_where_the_law_is_not_defined<L: HyperelasticLaw>(law: 
     }
 }
 
-/// A law that says nothing of a dilation of its own has `J - 1`, which is that of its viscosity.
+/// A law without a dilation of its own has `J - 1`, which is that of its viscosity.
 pub fn the_dilation_is_that_of_the_viscosity<L: HyperelasticLaw>(law: L) {
     if L::OWN_DILATION {
         return;
