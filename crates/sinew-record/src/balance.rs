@@ -84,7 +84,7 @@ pub(crate) struct LastRow {
     pub(crate) u: Vec<f64>,
     pub(crate) v: Vec<f64>,
     pub(crate) a: Vec<f64>,
-    /// Internal variables, if forces on supports in motion are asked for.
+    /// Internal variables, if forces on supports in motion are requested.
     pub(crate) internal: Vec<f64>,
 }
 

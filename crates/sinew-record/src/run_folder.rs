@@ -234,7 +234,7 @@ impl RunFolder {
         Ok(summary.is_some() && self.folder.read(checkpoint::NAME)?.is_none())
     }
 
-    /// The largest number of threads that the run was asked for.
+    /// The requested largest number of threads.
     #[must_use]
     pub fn threads(&self) -> Option<&str> {
         self.record.threads.as_deref()

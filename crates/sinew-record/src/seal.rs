@@ -1,4 +1,4 @@
-//! Seals of files: their lengths and hashes, by which a run that continues knows that they are as it left them.
+//! Seals of files: their lengths and hashes, by which a continued run checks that they are unchanged.
 
 use std::io::{self, Read, Write};
 
