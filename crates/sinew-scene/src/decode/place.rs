@@ -61,7 +61,7 @@ impl Place {
         self.error(self.keys.get(key).map(|place| place.value.clone()), fault)
     }
 
-    /// The key that says which part of the body the table is about.
+    /// The key that names the part of the body of the table.
     pub(crate) fn part_key(&self) -> &'static str {
         match self.keys.contains_key("where") {
             true => "where",

@@ -40,7 +40,7 @@ pub enum NoStableStep {
         /// Integrator id.
         integrator: String,
     },
-    /// The integrator cannot say up to which step it is stable.
+    /// The integrator cannot compute its largest stable step.
     #[error(transparent)]
     NoAnswer(#[from] StableStepError),
 }
