@@ -53,7 +53,7 @@ fn in_one_line(errors: &[CaseError]) -> String {
     errors.join("; ")
 }
 
-/// Steps (s) at which a scene is measured unless others are asked for: its own and fractions of
+/// Steps (s) at which a scene is measured unless others are requested: its own and fractions of
 /// it, most of which meet the instants at which errors are taken.
 #[must_use]
 pub fn default_steps(dt: f64, quick: bool) -> Vec<f64> {

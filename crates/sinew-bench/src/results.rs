@@ -40,7 +40,7 @@ pub struct BenchResults {
     pub cases: Vec<CaseInfo>,
     /// One row per run.
     pub rows: Vec<Row>,
-    /// Runs that were asked for and not made.
+    /// Runs that were requested and not made.
     #[serde(default)]
     pub skipped: Vec<Skipped>,
     /// Missing scenes and maps. The written file also lists the numbers that cannot be shown;
@@ -55,7 +55,7 @@ pub struct BenchResults {
     pub maps: Vec<StabilityMap>,
 }
 
-/// A run that was asked for and not made.
+/// A run that was requested and not made.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Skipped {
     /// Id of the case.

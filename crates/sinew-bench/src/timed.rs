@@ -8,7 +8,7 @@ use sinew_core::{
 };
 use sinew_measure::thread_cpu_time;
 
-/// Reasons for which the time of a run says nothing.
+/// Reasons for which the time of a run is meaningless.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum TimedRunError {
@@ -26,7 +26,7 @@ pub enum TimedRunError {
     Unfinished {
         /// Steps that were taken.
         taken: usize,
-        /// Steps that were asked for.
+        /// The requested steps.
         steps: usize,
         /// True if every displacement is a number.
         is_finite: bool,

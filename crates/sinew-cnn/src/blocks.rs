@@ -113,7 +113,7 @@ fn multiply_in_place<const L: usize>(entries: &[f64], x: &mut [f64]) {
 }
 
 /// Gauss-Jordan on a symmetric positive semidefinite block; a pivot that vanishes leaves its row
-/// and column zero, which is the pseudo-inverse where the block is zero in that direction.
+/// and column zero, which is the pseudo-inverse if the block is zero in that direction.
 fn invert(n: usize, block: &mut [f64]) {
     let scale = block
         .iter()

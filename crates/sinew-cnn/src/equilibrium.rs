@@ -19,7 +19,7 @@ pub struct Equilibrium {
 
 /// The displacement at rest under forces f (N), to a residual of `enough` times their norm, by conjugate gradients with
 /// the cells' own blocks for a preconditioner (Hestenes and Stiefel, J. Res. Natl. Bur. Stand. 49, 1952), which needs
-/// no factor. The residual is larger where forces move an unsupported component. Motions without resistance do not
+/// no factor. The residual is larger if forces move an unsupported component. Motions without resistance do not
 /// contribute otherwise.
 #[must_use]
 pub fn equilibrium(operators: &LinearOperators, force: &[f64], enough: f64) -> Equilibrium {

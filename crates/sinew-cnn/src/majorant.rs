@@ -308,7 +308,7 @@ impl Majorant {
 
 /// Rounds a positive number down to 26 binary digits. Eigenvalues found by iteration differ in their
 /// last digits with the order of nodes and the unit of length, and would let the motion differ with
-/// them; where a smaller number is on the safe side those digits are given up.
+/// them; if a smaller number is on the safe side those digits are given up.
 fn blunted(value: f64) -> f64 {
     f64::from_bits(value.to_bits() & !((1 << 26) - 1))
 }

@@ -50,7 +50,7 @@ pub struct HostNeeds<'a> {
     pub all: bool,
     /// Degrees of freedom whose displacement it samples.
     pub watched: &'a [u32],
-    /// Cells whose u and v contact may read and change: it asks for those near its tools ([`ShowCells`]).
+    /// Cells whose u and v contact may read and change: it requests those near its tools ([`ShowCells`]).
     pub contact: &'a [u32],
 }
 
@@ -288,8 +288,8 @@ impl<'a> Batch<'a> {
     /// Parts of the state that the host may read or change as a step or substep ends, `ahead` of them after the next
     /// one (0).
     ///
-    /// Known beforehand for a machine with a memory of its own, such as a graphics processor: what no step asks for
-    /// can stay there. The last one of a batch shows all cells, and so does each one where the system reads the state
+    /// Known beforehand for a machine with a memory of its own, such as a graphics processor: data that no step needs
+    /// can stay there. The last one of a batch shows all cells, and so does each one if the system reads the state
     /// after every step. A machine that finds a displacement beyond [`Batch::divergence_limit`], or an error, shows
     /// all cells as well.
     #[must_use]
@@ -344,7 +344,8 @@ impl<'a> Batch<'a> {
     }
 
     /// Resolves contact on a trial state, before [`Batch::end_step`]; `pushed` receives the changed cells, and `cells`
-    /// provides the cells that the contact asks for. Components of velocities move displacements at a speed of at most
+    /// provides the cells that the contact requests. Components of velocities move displacements at a speed of at
+    /// most
     /// `saturation` (m/s). `kick` is the time (s) by which a change of velocity is divided to correct the acceleration
     /// in the state.
     pub fn meet(
@@ -588,7 +589,7 @@ impl<'a> Batch<'a> {
     }
 }
 
-/// The degree of freedom farthest beyond `limit` (m); one that is not a number is farthest of all.
+/// The degree of freedom farthest beyond `limit` (m); NaN is the farthest.
 #[must_use]
 pub fn worst_beyond(u: &[f64], limit: f64) -> Option<usize> {
     // Without a branch, in integers as wide as the values, so that several are compared at a time: this is done after

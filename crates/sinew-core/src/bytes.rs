@@ -22,7 +22,7 @@ pub enum BytesError {
         kind: &'static str,
         /// Bytes given.
         found: usize,
-        /// Bytes that the head announces, or those of the shortest content where the head itself is cut.
+        /// Bytes that the head announces, or those of the shortest content if the head itself is cut.
         expected: usize,
     },
     /// Too many bytes.

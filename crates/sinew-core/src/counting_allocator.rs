@@ -58,7 +58,7 @@ impl CountingAllocator {
     }
 }
 
-/// Notes an allocation of this thread.
+/// Records an allocation of this thread.
 fn count(bytes: usize) {
     // A thread that ends has no counters any more.
     let _ = ALLOCATIONS.try_with(|allocations| allocations.set(allocations.get() + 1));

@@ -200,7 +200,7 @@ impl Inputs {
 }
 
 impl Ramp {
-    /// This ramp, or the values so far of the input that it follows; 0 where inputs lack the channel.
+    /// This ramp, or the values so far of the input that it follows; 0 if inputs lack the channel.
     #[must_use]
     pub fn known<'a>(&'a self, inputs: &'a Inputs) -> &'a Self {
         match self {

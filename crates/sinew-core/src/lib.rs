@@ -3,7 +3,7 @@
 //! * [`State`] is a plain value: a clone is a checkpoint.
 //! * [`System`] is `M a + f_int(u, v) = f_ext(t)`; a [`LinearSystem`] also shows its matrices.
 //! * [`Integrator`] takes a state one step further and counts its work.
-//! * [`Recorder`] says when it wants to see a state.
+//! * [`Recorder`] selects the states that it observes.
 //! * [`simulate()`] runs an integrator; divergence is a result, not a panic.
 //! * The feature `conformance` adds the laws that every integrator keeps, as tests.
 //!

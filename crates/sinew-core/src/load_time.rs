@@ -21,7 +21,7 @@ const FEW_RADIANS: f64 = 2.0;
 /// A load that is smooth over the window is taken at the instant. One that jumps or has a kink
 /// inside is replaced by a mean over the window, weighted so that its impulse arrives however it varies
 /// between two instants, and so that a method keeps the order that it has for smooth loads, up
-/// to order 2. Places of supports ([`Ramp::Position`]) are taken at the instant whatever the window.
+/// to order 2. Places of supports ([`Ramp::Position`]) are taken at the instant for any window.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LoadTime<'a> {
     t: f64,
@@ -161,7 +161,7 @@ impl<'a> LoadTime<'a> {
         self.t
     }
 
-    /// Times (s) on both sides of the instant, inside the window by a rounding; the same where there is one side only.
+    /// Times (s) on both sides of the instant, inside the window by a rounding; equal if there is one side only.
     fn beside(self) -> [f64; 2] {
         let (from, to) = match self.window {
             Window::Instant => return [self.t; 2],

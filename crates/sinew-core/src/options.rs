@@ -94,7 +94,7 @@ pub enum OptionError {
 }
 
 impl OptionError {
-    /// The option at fault, where the error is about one.
+    /// The option at fault, if the error is about one.
     #[must_use]
     pub fn key(&self) -> Option<&str> {
         match self {
@@ -170,7 +170,7 @@ impl Options {
         self.0.is_empty()
     }
 
-    /// A number that satisfies `fits`, or `default` where the option is absent.
+    /// A number that satisfies `fits`, or `default` if the option is absent.
     ///
     /// # Errors
     /// [`OptionError::Value`] with `expected` when it is no number or does not fit.

@@ -254,7 +254,7 @@ pub enum EnergyBehaviour {
     Falls,
     /// Grows.
     Grows,
-    /// Never rises, whatever the step, on every system that meets the method's needs: points that its law refuses are
+    /// Never rises, for any step, on every system that meets the method's needs: points that its law refuses are
     /// avoided. Damped or under loads it rises by no more than their work.
     NeverRises,
 }
@@ -267,7 +267,7 @@ pub enum StableStep {
     Any,
     /// Stable up to this step (s); 0 means never.
     UpTo(f64),
-    /// The method cannot say.
+    /// The method gives no statement.
     Unknown,
 }
 

@@ -11,7 +11,7 @@ use crate::revision::Revision;
 /// A plain value: a clone is a checkpoint, and a run continued from a clone with a fresh integrator is bit-identical.
 /// It therefore carries everything that a method must keep.
 ///
-/// Two states are equal where all that determines the motion is equal; the identity of the loads
+/// Two states are equal if all that determines the motion is equal; the identity of the loads
 /// does not count.
 #[derive(Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -44,7 +44,8 @@ pub struct State {
     pub start: Option<Start>,
     /// The substeps into which steps are cut by the current stiffness, for methods that do so.
     pub cut: Option<StepCut>,
-    /// Two fields over all degrees of freedom that have turned towards the body's fastest motion, where steps are cut by it
+    /// Two fields over all degrees of freedom that have turned towards the body's fastest motion, if steps are cut by
+    /// it
     /// ([`crate::spectrum::follow_largest_eigenvalue`]); empty elsewhere.
     pub fastest: Vec<f64>,
 }
@@ -270,8 +271,8 @@ impl State {
         self.velocity != VelocityTime::Same && self.clock.last_step() == Some(dt)
     }
 
-    /// The displacement (m) and the velocity (m/s) by which damping acts where the method asks for the forces of this state, with the time for which
-    /// it takes place and speed of supports.
+    /// The displacement (m) and the velocity (m/s) by which damping acts when the method computes the forces of this
+    /// state, with the time for which it takes place and speed of supports.
     #[must_use]
     pub fn damping(&self) -> (Cow<'_, [f64]>, Cow<'_, [f64]>, LoadTime<'static>) {
         let (u, v) = (Cow::Borrowed(&self.u[..]), Cow::Borrowed(&self.v[..]));

@@ -51,7 +51,7 @@ pub enum SetupError {
     Rounding {
         /// Integrator id.
         integrator: &'static str,
-        /// The error asked for (relative).
+        /// The requested error (relative).
         asked: f64,
         /// The error of rounding (relative).
         expected: f64,

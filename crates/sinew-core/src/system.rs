@@ -17,7 +17,7 @@ use crate::spectrum::Spectrum;
 use crate::state::State;
 use crate::trial::Trial;
 
-/// Sizes by which a guard cuts steps where a method knows no stable one.
+/// Sizes by which a guard cuts steps if a method knows no stable one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scales<'a> {
     /// Shortest distance from each cell to a neighbour (m), one entry a cell.
@@ -27,7 +27,7 @@ pub struct Scales<'a> {
 /// `M a + f_int(u, v) = f_ext(t)` with lumped M.
 ///
 /// Evaluation changes nothing; a step that is accepted is announced once through
-/// [`System::accept`]. [`System::equations`] says where the forces come from: a system is either its
+/// [`System::accept`]. [`System::equations`] gives the source of the forces: a system is either its
 /// matrices and loads or its own force law, never both, so that all methods see the same forces.
 /// Forces from outside enter through [`crate::Inputs`].
 pub trait System: Send + Sync {
@@ -73,12 +73,13 @@ pub trait System: Send + Sync {
         true
     }
 
-    /// Positions of the cells at rest (m), where the system has them: machines search for rows that repeat.
+    /// Positions of the cells at rest (m), if the system has them: machines search for rows that repeat.
     fn cell_positions(&self) -> Option<Vec<[f64; 3]>> {
         None
     }
 
-    /// Its connected parts that supports leave rigid motions, where the system knows them: these strain nothing and must cost nothing but their inertia.
+    /// Its connected parts that supports leave rigid motions, if the system knows them: these strain nothing and must
+    /// cost nothing but their inertia.
     fn free_parts(&self) -> Vec<FreePart> {
         Vec::new()
     }
@@ -100,7 +101,7 @@ pub trait System: Send + Sync {
         contact.is_some_and(|contact| !contact.may_be_left_out())
     }
 
-    /// Energies, where the system knows them.
+    /// Energies, if the system knows them.
     fn energy(&self, _u: &[f64], _v: &[f64]) -> Option<Energy> {
         None
     }
@@ -116,7 +117,7 @@ pub trait System: Send + Sync {
         None
     }
 
-    /// Sizes by which a guard cuts steps, where the system has cells in space.
+    /// Sizes by which a guard cuts steps, if the system has cells in space.
     fn scales(&self) -> Option<Scales<'_>> {
         None
     }
@@ -132,7 +133,7 @@ pub trait LinearSystem: System {
     /// M, D, K and the loads.
     fn operators(&self) -> &LinearOperators;
 
-    /// The elements that K is a sum of, where the system knows them.
+    /// The elements that K is a sum of, if the system knows them.
     fn elements(&self) -> Option<&dyn Elements> {
         None
     }
@@ -171,18 +172,18 @@ pub trait ForceLaw: Send + Sync {
         0
     }
 
-    /// The energy behind the forces and its tangent, where the law has one.
+    /// The energy behind the forces and its tangent, if the law has one.
     fn elastic(&self) -> Option<&dyn ElasticLaw> {
         None
     }
 
-    /// Its forces as sums over elements, where machines with threads and vectors can compute them.
+    /// Its forces as sums over elements, if machines with threads and vectors can compute them.
     fn element_forces(&self) -> Option<&dyn ElementForces> {
         None
     }
 
     /// Bounds of the fastest motions about a state, or about rest, from which stable steps follow;
-    /// `None` if they are unknown. About rest to some digits; about a state, which is asked for during runs, an
+    /// `None` if they are unknown. About rest to some digits; about a state, which is requested during runs, an
     /// estimate to a few per cent will do.
     fn spectrum(&self, _about: Option<&State>) -> Option<Spectrum> {
         None
@@ -190,7 +191,7 @@ pub trait ForceLaw: Send + Sync {
 }
 
 impl<'s> dyn System + 's {
-    /// The matrices, where the system is linear.
+    /// The matrices, if the system is linear.
     #[must_use]
     pub fn as_linear(&self) -> Option<&dyn LinearSystem> {
         match self.equations() {
@@ -199,7 +200,7 @@ impl<'s> dyn System + 's {
         }
     }
 
-    /// The elastic law, where the system has one; matrices are one.
+    /// The elastic law, if the system has one; matrices are one.
     #[must_use]
     pub fn as_elastic(&self) -> Option<&dyn ElasticLaw> {
         match self.equations() {

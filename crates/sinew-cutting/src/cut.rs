@@ -195,8 +195,9 @@ impl CuttableBody {
         self.marks.set(tet, mark);
     }
 
-    /// Lets a tetrahedron that the sheet divides change sides where the faces that are cut then lie nearer to the sheet. So single
-    /// ones do not come off as chips, and the cut is smoother than by the side of most of each tetrahedron alone.
+    /// Lets a tetrahedron that the sheet divides change sides if the cut faces then lie nearer to the sheet. So
+    /// single ones do not come off as chips, and the cut is smoother than by the side of most of each tetrahedron
+    /// alone.
     fn smooth(&mut self, tet: u32, positions: &[Vector]) {
         let beside = self.beside(tet);
         let mut mark = self.marks.of(tet);

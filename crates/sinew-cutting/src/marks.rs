@@ -209,7 +209,7 @@ impl Marks {
         self.places.clear();
     }
 
-    /// Notes the place (m) to which a node was moved, so that this counts as no motion.
+    /// Records the place (m) to which a node was moved, so that this does not count as motion of tissue.
     pub(crate) fn set_place(&mut self, node: u32, place: [f64; 3]) {
         if let Some(before) = self.places.get_mut(node as usize) {
             *before = place;

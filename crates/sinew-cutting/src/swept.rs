@@ -30,7 +30,8 @@ impl Sums {
         self.share_moved = add(self.share_moved, scaled(moved, weight * share));
     }
 
-    /// The line of least squares: at share 0, and by how much more at share 1. Level where the shares spread by less than `least`.
+    /// The line of least squares: at share 0, and by how much more at share 1. Level if the shares spread by less
+    /// than `least`.
     fn line(&self, least: f64) -> [Vector; 2] {
         let mean = self.share / self.weight;
         let spread = self.square / self.weight - mean * mean;

@@ -2,7 +2,8 @@
 
 use sinew_mesh::vector::{Vector, cross, dot, scaled, sub};
 
-/// The nodes of each face, opposite the node of the same place; their normals point outwards where the volume is positive.
+/// The nodes of each face, opposite the node of the same place; their normals point outwards if the volume is
+/// positive.
 pub(crate) const FACES: [[usize; 3]; 4] = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];
 
 /// The nodes of each edge.
@@ -23,7 +24,7 @@ pub(crate) fn quality(vertices: &[Vector; 4]) -> f64 {
     12.0 * (3.0 * volume.abs()).cbrt().powi(2) * volume.signum() / squares.iter().sum::<f64>()
 }
 
-/// Gradients of the four shape functions; not finite where the tetrahedron is flat.
+/// Gradients of the four shape functions; not finite if the tetrahedron is flat.
 pub(crate) fn gradients(vertices: &[Vector; 4]) -> [Vector; 4] {
     let factor = 1.0 / (6.0 * volume(vertices));
     std::array::from_fn(|vertex| {

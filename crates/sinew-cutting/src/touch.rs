@@ -20,7 +20,7 @@ const AT_EDGE: f64 = 0.02;
 pub(crate) struct Beside(pub(crate) [f64; 4]);
 
 impl Beside {
-    /// The side on which most of it lies; 1 where both have as much.
+    /// The side on which most of it lies; 1 if both have as much.
     pub(crate) fn side(self) -> i8 {
         if self.0.iter().sum::<f64>() < 0.0 {
             -1
@@ -141,7 +141,7 @@ impl CuttableBody {
         self.room.nodes.set(node, distance, flat);
     }
 
-    /// Notes a node that this search has seen and is here now, where the blade passes it for the first time.
+    /// Records a node at this position, seen by this search, if the blade passes it for the first time.
     fn pass(&mut self, node: u32, seeing: &Seeing<'_>, place: Vector) {
         let (distance, flat) = self.room.nodes.of(node);
         if self.marks.has_passed(node) {

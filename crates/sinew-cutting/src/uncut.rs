@@ -80,8 +80,9 @@ impl CuttableBody {
         self.marks.of(tet).side > 0
     }
 
-    /// The part of each tetrahedron, if all faces between the sides were cut; [`CHIP`] where the blade has touched all of it, and it is not the largest one of a
-    /// side that has no other. Chips that stay on the other side make a cut rough, and are no bridges.
+    /// The part of each tetrahedron, if all faces between the sides were cut; [`CHIP`] if the blade has touched all
+    /// of it, and it is not the largest one of a side that has no other. Chips that stay on the other side make a cut
+    /// rough, and are no bridges.
     pub(crate) fn parts(&self) -> Vec<u32> {
         let tets = self.tets.len();
         let mut parts = vec![NONE; tets];

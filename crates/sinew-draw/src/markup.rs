@@ -36,7 +36,7 @@ pub fn prose(text: &str) -> String {
     out
 }
 
-/// An attribute of an HTML element, with a blank before it; nothing where its value is empty.
+/// An attribute of an HTML element, with a blank before it; nothing if its value is empty.
 pub(crate) fn attribute(name: &str, value: &str) -> String {
     if value.is_empty() {
         String::new()

@@ -58,7 +58,7 @@ impl Sheet {
     }
 }
 
-/// A text in lines that are no wider than `width` (px), where its words allow that.
+/// A text in lines that are no wider than `width` (px), if its words allow that.
 fn broken(text: &str, size: f64, width: f64) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split_whitespace() {

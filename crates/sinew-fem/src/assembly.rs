@@ -108,8 +108,8 @@ fn members(regions: usize, region_of: &[u32]) -> Vec<Vec<u32>> {
     members
 }
 
-/// K (N/m), of springs where a region is a network and of single tetrahedra elsewhere. They are added one after another, so the
-/// sums do not depend on the number of threads.
+/// K (N/m), of springs in regions that are networks and of single tetrahedra elsewhere. They are added one after
+/// another, so the sums do not depend on the number of threads.
 fn stiffness(
     mesh: &TetMesh,
     body: &Body,

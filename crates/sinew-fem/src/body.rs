@@ -74,7 +74,7 @@ impl Body {
     }
 }
 
-/// The blocks of the stiffness matrix that [`crate::Model::build`] makes where some region averages strain over its
+/// The blocks of the stiffness matrix that [`crate::Model::build`] makes if some region averages strain over its
 /// neighbourhoods; `None` if none does, or if the problem does not fit the mesh, as in building. For a forecast of
 /// memory: no matrix is made.
 #[must_use]

@@ -66,7 +66,7 @@ pub struct Course {
     /// Displacement from rest (m) at factor 1; for [`Ramp::Linear`], whose factor is the time, the velocity (m/s). 0
     /// along axes that are not prescribed.
     pub displacement: [f64; 3],
-    /// The factor over time. An [`Ramp::Input`] must be given by [`sinew_core::Between::Line`] where the body has
+    /// The factor over time. An [`Ramp::Input`] must be given by [`sinew_core::Between::Line`] if the body has
     /// stiffness damping or dashpots: a position that jumps has no velocity that damping could see.
     pub ramp: Ramp,
 }

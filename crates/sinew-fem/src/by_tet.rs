@@ -28,7 +28,7 @@ pub(crate) struct RegionByTet {
     pub(crate) shares: Shares,
     /// The direction of each family of fibres as unit vectors; `None` if it is the same in all tetrahedra.
     pub(crate) directions: Vec<Option<UnitVectors>>,
-    /// The material's axes, where its law has some.
+    /// The material's axes, if its law has some.
     pub(crate) axes: Option<Axes>,
     /// The least and the largest factor of the density.
     pub(crate) densities: [f64; 2],

@@ -64,7 +64,7 @@ impl Element {
         self != Self::P1
     }
 
-    /// The size of patches that was asked for.
+    /// The requested size of patches.
     #[must_use]
     pub fn patch(self) -> Option<u32> {
         match self {

@@ -33,7 +33,7 @@ pub(crate) struct LoadsOnBody {
 
 impl LoadsOnBody {
     /// Shares out the loads and, with the lumped `masses` of the nodes (kg), gravity. Notes in the facts of the
-    /// prescribed motions the loads that fall on them. Refuses a load on supports alone, where the body is not cut.
+    /// prescribed motions the loads that fall on them. Refuses a load on supports alone, if the body is not cut.
     pub(crate) fn new(
         mesh: &TetMesh,
         body: &Body,

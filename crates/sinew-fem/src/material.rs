@@ -41,7 +41,7 @@ enum Kind {
         /// The direction of each family of fibres in each tetrahedron of the mesh; `None` if all have that of
         /// `tissue`.
         directions: Vec<Option<UnitVectors>>,
-        /// The axes, where the law has some.
+        /// The axes, if the law has some.
         axes: Option<Axes>,
     },
     Springs {

@@ -370,7 +370,7 @@ impl<S: StepByHand> Ready<S> {
 }
 
 impl Loaded {
-    /// Gives the machine the guarded program where the batch is guarded, and the plain one otherwise.
+    /// Gives the machine the guarded program if the batch is guarded, and the plain one otherwise.
     fn guard(&mut self, batch: &Batch<'_>) {
         let dt = batch.dt();
         let wanted = batch.guarding().map(Guarding::limits);

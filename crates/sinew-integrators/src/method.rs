@@ -74,7 +74,7 @@ pub trait Method: Scheme {
     }
 }
 
-/// The energy that a method conserves where nothing damps or loads the system.
+/// The energy that a method conserves on a system without damping and loads.
 ///
 /// The two leapfrog forms are for the step between two displacements: v is the velocity
 /// between them and w their mean.

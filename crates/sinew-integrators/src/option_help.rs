@@ -73,7 +73,7 @@ pub enum OptionLabel {
     KeyAndValue,
     /// The value alone, before all other options: the kind of a method.
     Value,
-    /// `symbol=value`, where the field has a symbol for it.
+    /// `symbol=value`, if the field has a symbol for it.
     Symbol(&'static str),
     /// The values of these keys of a table, in this order, as far as the table has them; the first
     /// must be there.

@@ -2,7 +2,7 @@
 
 use sinew_core::System;
 
-/// Error (relative) of a run in single precision whatever the body: rounding in recurrences of some hundred
+/// Error (relative) of a run in single precision for any body: rounding in recurrences of some hundred
 /// sweeps.
 pub const LEAST_F32_ROUNDING: f64 = 5e-5;
 

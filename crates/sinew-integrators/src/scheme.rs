@@ -16,7 +16,7 @@ pub trait Scheme: Send + Sized + 'static {
     /// The name users type.
     const ID: &'static str;
 
-    /// Steps that no program of sweeps expresses; [`Infallible`] where a program always
+    /// Steps that no program of sweeps expresses; [`Infallible`] if a program always
     /// does.
     type ByHand: StepByHand + 'static;
 
@@ -50,7 +50,7 @@ pub trait Scheme: Send + Sized + 'static {
         false
     }
 
-    /// Remedy where loads break the condition of [`Properties::changing_loads`].
+    /// Remedy if loads break the condition of [`Properties::changing_loads`].
     fn load_remedy(&self) -> &'static str {
         "choose a dt that meets that instant"
     }
@@ -68,7 +68,7 @@ pub trait Scheme: Send + Sized + 'static {
         Ok(StableStep::Any)
     }
 
-    /// The largest stable step where these are the fastest motions.
+    /// The largest stable step if these are the fastest motions.
     fn stable_step_of(&self, _spectrum: &Spectrum) -> StableStep {
         StableStep::Unknown
     }

@@ -19,7 +19,7 @@ pub trait Stepper: Integrator {
         None
     }
 
-    /// The largest step at which it is stable where these are the fastest motions.
+    /// The largest step at which it is stable if these are the fastest motions.
     fn stable_step_of(&self, _spectrum: &Spectrum) -> StableStep {
         StableStep::Unknown
     }

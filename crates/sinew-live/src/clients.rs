@@ -19,7 +19,7 @@ const MOST_CREDITS: u32 = 4;
 /// Messages queued for one page; a page with more unread ones is disconnected. Several for each order that may wait in the inbox.
 const MOST_WAITING: usize = 1024;
 
-/// Most pages at once.
+/// Most simultaneous pages.
 pub(crate) const MOST_CLIENTS: usize = 16;
 
 /// A picture for pages.
@@ -111,7 +111,7 @@ impl Clients {
         }
     }
 
-    /// Notes the last command of a client that was carried out.
+    /// Records the last command of a client that was carried out.
     pub(crate) fn applied(&self, id: u32, command: u32) {
         if let Some(client) = self.lock().find(id) {
             client.applied = client.applied.max(command);

@@ -174,7 +174,7 @@ impl Live {
         self.engine.keep_logs(journals)
     }
 
-    /// Serves the page and simulates until `ends` says so.
+    /// Serves the page and simulates until `ends` returns true.
     ///
     /// # Errors
     /// [`LiveError::Serve`] if the system refuses a thread or a connection.

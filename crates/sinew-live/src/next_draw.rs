@@ -2,10 +2,10 @@
 
 use std::time::{Duration, Instant};
 
-/// Time from the making of a picture to a page that can draw it, where both have much to do.
+/// Time from the making of a picture to a page that can draw it, if both have much to do.
 const UNDER_WAY: Duration = Duration::from_millis(6);
 
-/// Time between two draws where a page announces none.
+/// Time between two draws if a page announces none.
 const BETWEEN_DRAWS: Duration = Duration::from_millis(16);
 
 /// The next draw of a page. A page that can take two pictures gets one immediately, so that it always has one to

@@ -35,7 +35,7 @@ pub(crate) enum Constant {
     Row(usize),
 }
 
-/// A program whose vectors are codes: twice the number of a register, and one more where a register that
+/// A program whose vectors are codes: twice the number of a register, and one more if a register that
 /// neighbours read is written to its second vector; then the constants.
 #[derive(Debug)]
 pub(crate) struct Compiled<T> {

@@ -92,7 +92,7 @@ impl<T: Precision> Layout<T> {
         Arc::clone(&forces.operators().derived::<BesideElements<T>>(of).0)
     }
 
-    /// Templates on a lattice, where cells are on one and few templates make all rows; made once for all
+    /// Templates on a lattice, if cells are on one and few templates make all rows; made once for all
     /// clones of the operators.
     #[must_use]
     pub fn repeated(system: &dyn LinearSystem) -> Option<Arc<Self>> {
@@ -159,7 +159,7 @@ impl<T: Precision> Layout<T> {
         }
     }
 
-    /// Number of templates, where rows repeat.
+    /// Number of templates, if rows repeat.
     #[must_use]
     pub fn templates(&self) -> Option<usize> {
         match &self.stiffness {

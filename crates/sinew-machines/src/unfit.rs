@@ -4,17 +4,17 @@
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Unfit {
-    /// Templates were asked for where rows do not repeat.
+    /// Templates were requested although rows do not repeat.
     #[error(
         "machine = \"repeated\" needs equal rows on a lattice, and this body has none; take \"auto\" or \"general\""
     )]
     NoTemplates,
-    /// Kernels were asked for where forces follow from a law.
+    /// Kernels were requested although forces follow from a law.
     #[error(
         "machine = {0:?} runs matrices alone, and the forces of this system follow from a law; take \"auto\""
     )]
     Law(&'static str),
-    /// Single precision was asked for where forces follow from a law that no kernels run.
+    /// Single precision was requested although forces follow from a law that no kernels run.
     #[error(
         "precision = \"f32\" is for matrices, and for hyperelastic bodies without stiffness damping and memory on any machine but the \
          reference; leave `precision` out"

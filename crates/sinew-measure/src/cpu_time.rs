@@ -52,7 +52,7 @@ pub fn thread_cpu_time() -> Duration {
     }
 }
 
-/// CPU time of all threads of the process since some fixed instant. Wall time where the platform has no such
+/// CPU time of all threads of the process since some fixed instant. Wall time if the platform has no such
 /// clock.
 #[must_use]
 pub fn process_cpu_time() -> Duration {

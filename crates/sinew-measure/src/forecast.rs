@@ -48,16 +48,17 @@ const COLD: usize = 2;
 /// more.
 const ENOUGH: usize = 40;
 
-/// Time (s) that they take at least, where steps are short.
+/// Time (s) that they take at least, if steps are short.
 const LEAST: f64 = 0.03;
 
 /// The same for force laws, of which steps take more work as the motion continues.
 const LEAST_OF_LAWS: f64 = 0.25;
 
-/// Time (s) by which they end where steps are long.
+/// Time (s) by which they end if steps are long.
 const MOST: f64 = 0.25;
 
-/// Time (s) that a run under force laws may take for all of its steps to be taken: their work changes as tissue stiffens or lets go.
+/// Time (s) of a run under force laws up to which all of its steps are taken: their work changes as tissue stiffens
+/// or softens.
 const WHOLE: f64 = 5.0;
 
 /// Share of the steps so far that are taken before the rest is estimated again.

@@ -61,7 +61,7 @@ impl ErrorHistory {
     ///
     /// A wrong frequency shifts an undamped motion by an angle that grows as t, so that the squared error grows at most
     /// as t^2. Its growth between the first and the last half, or the first and the last quarter, is continued so, with
-    /// a margin; an error that falls stays as it is in the last half, and so does the size of the motion. Where the
+    /// a margin; a falling error is taken as constant after the last half, and so is the size of the motion. If the
     /// motion continues, the error of the start may still hide that of the phase: all of the error of the last half
     /// then grows as t^2. No error grows beyond that of a motion that is out of phase.
     pub(crate) fn expected_over(&self, duration: f64) -> f64 {

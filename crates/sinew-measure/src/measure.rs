@@ -234,7 +234,7 @@ struct Comparison<'a> {
     of_impulses: ErrorNorm,
     /// Impulses (N s) at the last instant, of the run and of the reference.
     impulses: [Vec<f64>; 2],
-    /// Present where the error beyond the last instant is asked for.
+    /// Present if the error beyond the last instant is requested.
     history: Option<ErrorHistory>,
     /// Present for bodies that follow a force law.
     deformation: Option<DeformationWatch<'a>>,

@@ -64,7 +64,7 @@ pub struct Row {
     pub case: String,
     /// Id of the integrator.
     pub integrator: String,
-    /// The body's law and element, where runs of a case differ in them.
+    /// The body's law and element, if runs of a case differ in them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub material: Option<String>,
     /// Options that differ from the integrator's defaults.
@@ -96,7 +96,7 @@ pub struct Row {
     /// Relative L2 error of the displacement (fraction, 1 = as wrong as returning zero); none only
     /// when diverged or refused.
     pub error: Option<f64>,
-    /// Bound (fraction) below which the error lies, where the reference cannot measure one so small:
+    /// Bound (fraction) below which the error lies, if the reference cannot measure one so small:
     /// a hundred times its own error. `error` is then the difference from it and no figure to quote.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub error_is_below: Option<f64>,
@@ -150,7 +150,7 @@ pub struct Row {
     /// reference comes to rest; of hard cases only.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub static_error: Option<f64>,
-    /// Relative change of the method's energy in 1000 steps, where nothing damps or loads the
+    /// Relative change of the method's energy in 1000 steps, if nothing damps or loads the
     /// system; of hard cases only.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub energy_drift: Option<f64>,
@@ -223,7 +223,7 @@ pub enum RowVerdict {
     Accurate,
     /// Finished, bounded, nothing saturated, error above [`ACCURATE`].
     Wrong,
-    /// Finished and bounded with saturated cells, whatever the error.
+    /// Finished and bounded with saturated cells, for any error.
     Guarded,
     /// Finished, but passed the bound.
     Unbounded,
@@ -287,7 +287,7 @@ impl Row {
         }
     }
 
-    /// The error in per cent without the sign, as in `1.23`, or as in `< 4.5e-8` where the reference can
+    /// The error in per cent without the sign, as in `1.23`, or as in `< 4.5e-8` if the reference can
     /// say no more; none if there is no error.
     #[must_use]
     pub fn error_in_percent(&self) -> Option<String> {

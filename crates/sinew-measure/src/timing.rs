@@ -10,7 +10,7 @@ use crate::cpu_time::CostSince;
 /// The repeats and the time that go into measuring the cost of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Effort {
-    /// Repeats that are aimed at, of which the median counts: fewer where they would pass the
+    /// Repeats that are aimed at, of which the median counts: fewer if they would exceed the
     /// budget, but always one; more if they take less than a quarter of it. 0: nothing is timed.
     pub repeats: usize,
     /// CPU time (s) after which no further repeat is begun.

@@ -8,7 +8,7 @@ pub(crate) const PAGE: &str = concat!(
     "/blob/main/docs/to-a-scene.md"
 );
 
-/// Advice on a surface, in whatever file.
+/// Advice on a surface, in a file of any format.
 pub(crate) fn on_surface() -> String {
     format!("gmsh fills a surface with tetrahedra and names its parts; {PAGE} has the commands")
 }

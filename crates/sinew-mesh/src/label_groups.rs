@@ -26,7 +26,7 @@ pub enum LabelError {
     /// No data of cells have the name.
     #[error("no data of cells are named \"{name}\"; {}", listed(known))]
     Unknown {
-        /// The name that was asked for.
+        /// The requested name.
         name: String,
         /// The names that there are.
         known: Vec<String>,
@@ -36,7 +36,7 @@ pub enum LabelError {
         "{count} data of cells are named \"{name}\"; keep one of them, or give each a name of its own"
     )]
     Several {
-        /// The name that was asked for.
+        /// The requested name.
         name: String,
         /// Their number.
         count: usize,

@@ -203,7 +203,7 @@ pub struct CellSet {
 }
 
 impl Mesh {
-    /// The tag of a point: its tag in the file, or its index plus one where the mesh has no tags.
+    /// The tag of a point: its tag in the file, or its index plus one if the mesh has no tags.
     #[must_use]
     pub fn node_tag(&self, point: u32) -> u64 {
         let ordinal = u64::from(point) + 1;
@@ -233,7 +233,7 @@ impl Mesh {
         rows.map(|row| [row[0], row[1], row[2], row[3]]).collect()
     }
 
-    /// The tag of a cell: its tag in the file, or its index within the mesh plus one where its block has no tags.
+    /// The tag of a cell: its tag in the file, or its index within the mesh plus one if its block has no tags.
     #[must_use]
     pub fn element_tag(&self, cell: CellIndex) -> u64 {
         let tag = self

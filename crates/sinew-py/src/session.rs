@@ -477,7 +477,7 @@ impl Session {
         self.world.command(py, Command::Forces(all))
     }
 
-    /// Goes on with another method, and another step (s) if dt is given. Options are those of the scene reference.
+    /// Continues with another method, and another step (s) if dt is given. Options are those of the scene reference.
     #[pyo3(signature = (integrator, dt = None, **options_of_it))]
     fn switch(
         &self,

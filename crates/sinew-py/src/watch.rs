@@ -7,7 +7,7 @@ use sinew_core::{Moment, RecordError, Verdict};
 use sinew_record::{Companion, Pace};
 use sinew_world::Recorder;
 
-/// Looks several times a second whether a signal came.
+/// Checks for signals several times a second.
 pub(crate) struct Watch {
     pace: Pace,
     /// The exception that ended the steps.

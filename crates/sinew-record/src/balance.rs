@@ -34,7 +34,7 @@ pub(crate) struct Energies {
     pub(crate) cuts: Option<f64>,
     /// Energy that damping took since the beginning.
     pub(crate) damped: f64,
-    /// Energy that the method took since the beginning, where its closed form is known.
+    /// Energy that the method dissipated since the beginning, if its closed form is known.
     pub(crate) method: Option<f64>,
     /// Change of energy that the entries above do not explain: energy stored and dissipated by memory (negative then),
     /// energy that the method takes, if unknown, and errors from the distance between rows.
@@ -84,7 +84,7 @@ pub(crate) struct LastRow {
     pub(crate) u: Vec<f64>,
     pub(crate) v: Vec<f64>,
     pub(crate) a: Vec<f64>,
-    /// Internal variables, where forces on supports in motion are asked for.
+    /// Internal variables, if forces on supports in motion are requested.
     pub(crate) internal: Vec<f64>,
 }
 
@@ -100,7 +100,7 @@ pub(crate) struct Balance {
     may_be_cut: bool,
     pub(crate) sums: Sums,
     pub(crate) last: Option<LastRow>,
-    /// All nodes at the last row, where some are moved.
+    /// All nodes at the last row, if some are moved.
     nodes: Option<Nodes>,
     /// Closed form of the energy that the method takes, if known.
     form: Option<NumericalDissipation>,
@@ -112,7 +112,7 @@ pub(crate) struct Balance {
     has_rows_of_steps: bool,
 }
 
-/// A row, with all nodes then where some are moved.
+/// A row, with all nodes then if some are moved.
 type End<'a> = (&'a LastRow, Option<&'a Nodes>);
 
 /// Work (J) of loads and of supports, without the work against the inertia of the supports' own nodes, and energy (J)
@@ -304,7 +304,7 @@ impl Balance {
         Some(self.body.system().as_linear()?.operators())
     }
 
-    /// The body, where parts of it are moved.
+    /// The body, if parts of it are moved.
     fn moved_body(&self) -> Option<&Model> {
         let body = self.body.model().body()?;
         (!body.problem.moves.is_empty()).then_some(&body.model)
@@ -538,7 +538,7 @@ impl Balance {
         loads
     }
 
-    /// All nodes at a row, where some are moved.
+    /// All nodes at a row, if some are moved.
     fn nodes(&self, row: &LastRow, inputs: &Inputs) -> Result<Option<Nodes>, RecordRunError> {
         let Some(model) = self.moved_body() else {
             return Ok(None);

@@ -56,7 +56,7 @@ impl EnergyLoss {
         }
     }
 
-    /// A sentence about the energy, where the method took much of it.
+    /// A sentence about the energy, if the method dissipated much of it.
     #[must_use]
     pub fn in_words(&self) -> Option<String> {
         let method = format!("`{}`", self.body.scene().settings().integrator);

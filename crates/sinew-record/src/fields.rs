@@ -26,7 +26,7 @@ pub(crate) struct Snapshot {
     pub(crate) u: Vec<f64>,
     /// Velocity (m/s).
     pub(crate) v: Vec<f64>,
-    /// Acceleration (m/s^2); empty if none is asked for.
+    /// Acceleration (m/s^2); empty if none is requested.
     pub(crate) a: Vec<f64>,
     /// Internal variables.
     pub(crate) internal: Vec<f64>,
@@ -89,7 +89,7 @@ pub(crate) struct Fields {
     settings: OutputSettings,
     u: Vec<[f64; 3]>,
     v: Vec<[f64; 3]>,
-    /// Accelerations; empty if none are asked for.
+    /// Accelerations; empty if none are requested.
     a: Vec<[f64; 3]>,
     /// None if nothing touches the body.
     contact: Option<ContactFields>,

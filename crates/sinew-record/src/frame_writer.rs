@@ -141,7 +141,7 @@ impl<'a> FrameWriter<'a> {
         }
     }
 
-    /// Has a frame written of a moment with the velocity (m/s) at its time. Waits where the one before the last is not
+    /// Has a frame written of a moment with the velocity (m/s) at its time. Waits if the one before the last is not
     /// written yet.
     ///
     /// # Errors

@@ -31,7 +31,7 @@ impl Pace {
         self.at.saturating_add(self.steps)
     }
 
-    /// Notes a check after a step.
+    /// Records a check after a step.
     pub fn look(&mut self, step: usize) {
         let taken = step.saturating_sub(self.at);
         if taken > 0 {

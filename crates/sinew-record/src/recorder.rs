@@ -19,7 +19,7 @@ use crate::seal::SealedTable;
 use crate::tables;
 use crate::tool_rows::{self, ToolRows};
 
-/// Most rows of a table, where the scene does not ask for more.
+/// Most rows of a table, if the scene does not ask for more.
 const MOST_ROWS: usize = 10_000;
 
 /// Degrees of freedom up to which energies and reactions of every step cost next to nothing.

@@ -23,7 +23,7 @@ pub(crate) const NAME: &str = "report.html";
 /// Most probes whose curves are drawn.
 const MOST_DRAWN: usize = 24;
 
-/// The page. It says nothing of the computer, so that it is the same wherever the run was taken.
+/// The page. It contains no facts about the computer, so that it is the same on all of them.
 pub(crate) fn page(
     summary: &Summary<'_>,
     surface: Option<&BoundarySurface>,

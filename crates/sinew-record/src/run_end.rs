@@ -56,7 +56,7 @@ pub enum Ended {
         /// The element and the reason.
         reason: String,
     },
-    /// Stopped before its end; where a run leaves checkpoints, with one.
+    /// Stopped before its end; if a run leaves checkpoints, with one.
     Interrupted {
         /// Time (s).
         t: f64,

@@ -225,7 +225,7 @@ impl RunFolder {
         Ok((Self { folder, record }, scene))
     }
 
-    /// True if the run in this folder has come to its end.
+    /// True if the run in this folder is completed.
     ///
     /// # Errors
     /// [`RecordRunError`] for a summary that cannot be read.
@@ -234,7 +234,7 @@ impl RunFolder {
         Ok(summary.is_some() && self.folder.read(checkpoint::NAME)?.is_none())
     }
 
-    /// The largest number of threads that the run was asked for.
+    /// The requested largest number of threads.
     #[must_use]
     pub fn threads(&self) -> Option<&str> {
         self.record.threads.as_deref()

@@ -1,4 +1,4 @@
-//! Seals of files: their lengths and hashes, by which a run that continues knows that they are as it left them.
+//! Seals of files: their lengths and hashes, by which a continued run checks that they are unchanged.
 
 use std::io::{self, Read, Write};
 
@@ -185,7 +185,7 @@ impl SealedTable {
     /// Makes sure that the disk has all of it, under its name, and seals it.
     ///
     /// # Errors
-    /// [`RecordRunError`], also where its file was removed or replaced.
+    /// [`RecordRunError`], also if its file was removed or replaced.
     pub(crate) fn secure(&mut self, folder: &OwnedFolder) -> Result<Seal, RecordRunError> {
         self.file.secure()?;
         let seal = self.sealing.seal();

@@ -13,7 +13,7 @@ pub(crate) const PROBES: &str = "probes.csv";
 pub(crate) const ENERGY: &str = "energy.csv";
 pub(crate) const REACTIONS: &str = "reactions.csv";
 
-/// A line that says where each probe is, and the line of column names.
+/// A line with the place of each probe, and the line of column names.
 pub(crate) fn probes_head(body: &SceneBody) -> String {
     let mut text = String::new();
     for probe in body.probes().iter() {

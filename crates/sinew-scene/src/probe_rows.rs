@@ -46,7 +46,7 @@ pub enum ProbeRowError {
 }
 
 /// Rows of the probes of a simulation. If all of them record displacements, a row needs only the
-/// degrees of freedom that are [watched](ProbeRows::watched), so that a method can take many steps at once.
+/// degrees of freedom that are [watched](ProbeRows::watched), so that a method can take many steps in one batch.
 #[derive(Debug, Clone)]
 pub struct ProbeRows {
     probes: Arc<[Probe]>,

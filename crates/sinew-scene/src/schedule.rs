@@ -2,7 +2,7 @@
 
 use crate::scene::Instants;
 
-/// Most numbers of a table, where the scene does not ask for more.
+/// Most numbers of a table, if the scene does not ask for more.
 const MOST_NUMBERS: usize = 5_000_000;
 
 /// Rows that a table of very many columns has.

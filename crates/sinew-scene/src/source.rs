@@ -68,7 +68,7 @@ impl SceneSource {
         }
     }
 
-    /// Gives a file that the scene reads: its content counts, whatever is at that path. The path is a resolved one.
+    /// Gives a file that the scene reads: this content replaces that at the path, which is a resolved one.
     ///
     /// ```
     /// use sinew_mesh::structured::{Split, cube};

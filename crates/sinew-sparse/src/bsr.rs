@@ -22,7 +22,7 @@ pub struct Bsr<'a> {
 }
 
 impl BlockMatrix {
-    /// Block sparse rows of the matrix. Columns and entries are borrowed where rows are stored one after the other,
+    /// Block sparse rows of the matrix. Columns and entries are borrowed if rows are stored one after the other,
     /// which only a cut changes ([`BlockMatrix::take_rows`]), and copied otherwise.
     ///
     /// ```

@@ -65,13 +65,13 @@ pub fn norm(a: &[f64]) -> f64 {
     dot(a, a).sqrt()
 }
 
-/// The largest |a_i|, 0 without any; infinite if one is not a number.
+/// The largest |a_i|, 0 without any; infinite if one is NaN.
 #[must_use]
 pub fn largest(a: &[f64]) -> f64 {
     a.iter().fold(0.0, |most, value| larger(most, value.abs()))
 }
 
-/// The larger of two sizes; a value that is not a number counts as infinite.
+/// The larger of two sizes; NaN counts as infinite.
 #[must_use]
 pub fn larger(a: f64, b: f64) -> f64 {
     if b.is_nan() { f64::INFINITY } else { a.max(b) }

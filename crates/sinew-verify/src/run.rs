@@ -32,14 +32,14 @@ pub struct VerifyPlan {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("there is no subject {name:?}; the subjects are {known}")]
 pub struct UnknownSubject {
-    /// The name asked for.
+    /// The requested name.
     pub name: String,
     /// All names.
     pub known: String,
 }
 
 impl VerifyPlan {
-    /// Checks everything that was asked for. What cannot be computed is a row that fails, with its reason.
+    /// Checks everything that was requested. A figure that cannot be computed is a row that fails, with its reason.
     ///
     /// # Errors
     /// [`UnknownSubject`], before anything is computed.

@@ -26,7 +26,7 @@ pub(crate) const ELEMENTS: [Element; 5] = [
     },
 ];
 
-/// Name of an element, with the size of its patches where that is not the default.
+/// Name of an element, with the size of its patches if that is not the default.
 pub(crate) fn name(element: Element) -> String {
     match element {
         Element::Fbar { patch: Some(patch) }

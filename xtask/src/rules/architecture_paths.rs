@@ -5,7 +5,7 @@ use std::path::Path;
 use super::breach::{Breach, RuleError};
 use super::files::source;
 
-/// Looks for every path in backticks in the file ARCHITECTURE.md of `root`.
+/// Checks every path in backticks in the file ARCHITECTURE.md of `root`.
 pub(super) fn check(root: &Path) -> Result<Vec<Breach>, RuleError> {
     let text = source(&root.join("ARCHITECTURE.md"))?;
     let names = text.split('`').skip(1).step_by(2);

@@ -1,4 +1,4 @@
-//! No crate's tests need a crate that itself needs, for whatever purpose, the first one.
+//! No crate's tests need a crate that itself needs, for any purpose, the first one.
 
 use std::collections::BTreeSet;
 

@@ -26,6 +26,7 @@ const FIRST_WORDS: &[(&str, &str)] = &[
 const PHRASES: &[(&str, &str)] = &[
     ("anew", "`again` or `rebuilt`"),
     ("goes on", "`continues`"),
+    ("hang together", "`are joined`"),
     ("has hold of", "`grasps`"),
     ("have hold of", "`grasp`"),
     ("held fast", "`constant` or `fixed`"),
@@ -136,9 +137,10 @@ impl Comment {
         if let Some((words, better)) = FIRST_WORDS.iter().find(|(word, _)| *word == first) {
             found.push(self.misfit(0, words, better));
         }
+        let words = self.words.to_ascii_lowercase();
         for (phrase, better) in PHRASES {
-            for (at, _) in self.words.match_indices(phrase) {
-                if is_apart(&self.words, at, phrase.len()) {
+            for (at, _) in words.match_indices(phrase) {
+                if is_apart(&words, at, phrase.len()) {
                     found.push(self.misfit(at, phrase, better));
                 }
             }
@@ -215,6 +217,7 @@ mod tests {
             [(1, "As"), (1, "anew"), (2, "goes on"), (5, "lips")]
         );
         assert!(found("/// An ellipse that begin_anew draws.").is_empty());
+        assert_eq!(found("/// Goes on."), [(1, "goes on")]);
     }
 
     #[test]

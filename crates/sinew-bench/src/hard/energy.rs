@@ -8,7 +8,7 @@ use sinew_integrators::ConservedEnergy;
 ///
 /// For leapfrog methods `E+ = E- + dt w'(F - D w)`, w being the mean of two velocities (multiply
 /// the step by w; the products with K telescope): the energy never exceeds the first one and the
-/// work of the loads. P itself is not asked for: `P v` is the sum of the forces so far.
+/// work of the loads. P itself is not needed: `P v` is the sum of the forces so far.
 #[derive(Debug)]
 pub(crate) struct Ledger<'a> {
     operators: &'a LinearOperators,

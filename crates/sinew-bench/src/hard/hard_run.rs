@@ -12,7 +12,7 @@ use sinew_verify::LabError;
 /// Distance from equilibrium (relative) below which a reference counts as come to rest.
 const AT_REST: f64 = 1e-3;
 
-/// Measures a method on a case, with its step over the critical one and, where they apply, its
+/// Measures a method on a case, with its step over the critical one and, if they apply, its
 /// distance from equilibrium at the end and the drift of its energy.
 ///
 /// # Errors

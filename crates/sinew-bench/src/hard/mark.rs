@@ -12,7 +12,7 @@ pub(crate) struct Asked {
 }
 
 impl Asked {
-    /// The mark with its figure, which passes up to the limit; one that is not a number fails.
+    /// The mark with its figure, which passes up to the limit; NaN fails.
     pub(crate) fn measured(
         self,
         figure: f64,

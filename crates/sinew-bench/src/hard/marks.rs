@@ -37,7 +37,7 @@ impl Measured<'_> {
         self.rows.iter().filter(|row| row.case == id).collect()
     }
 
-    /// True if a mark on this case is asked for. A quick run leaves out slow cases.
+    /// True if a mark on this case is requested. A quick run leaves out slow cases.
     fn has(&self, id: &str) -> bool {
         self.planned.iter().any(|planned| planned == id)
     }
@@ -59,7 +59,7 @@ pub(crate) fn all(measured: &Measured<'_>, mut begins: impl FnMut(&str)) -> Vec<
     marks
 }
 
-/// The mark that a check gives; failed where the check cannot be made.
+/// The mark that a check gives; failed if the check cannot be made.
 fn given(asked: Asked, check: &mut dyn FnMut(Asked) -> Result<Mark, LabError>) -> Mark {
     check(asked).unwrap_or_else(|error| asked.not_measured(error.to_string()))
 }

@@ -19,7 +19,7 @@ pub struct Roofs {
     pub multiply_adds: Vec<OperationRate>,
 }
 
-/// The rate at which one thread reads a number of bytes over and over.
+/// The rate at which one thread reads a number of bytes repeatedly.
 #[derive(Clone, Debug, Serialize)]
 pub struct ReadRate {
     /// The memory that contains them: "L2", "L3" or "DRAM".

@@ -11,7 +11,7 @@ pub struct KernelRow {
     pub nodes: usize,
     /// Its tetrahedra.
     pub tets: usize,
-    /// The machine: "template" in the name where rows are stored once.
+    /// The machine: "template" in the name if rows are stored once.
     pub kernel: String,
     /// "f64" or "f32".
     pub precision: &'static str,
@@ -42,7 +42,7 @@ pub struct KernelRow {
     pub intensity: f64,
     /// Bandwidth of a step over that at which one thread reads this many bytes, measured in the same run.
     pub share_of_bandwidth: f64,
-    /// Templates, where rows are stored once.
+    /// Templates, if rows are stored once.
     pub templates: Option<usize>,
     /// Allocations of the calling thread in a step; `None` if nothing counts them.
     pub allocations_per_step: Option<f64>,

@@ -20,7 +20,7 @@ pub(super) fn lines(missing: &[Missing]) -> String {
     lines.collect()
 }
 
-/// The section of the page; nothing where nothing is missing.
+/// The section of the page; empty if nothing is missing.
 pub(super) fn section(page: &mut Page, missing: &[Missing]) {
     if missing.is_empty() {
         return;

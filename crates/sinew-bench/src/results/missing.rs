@@ -1,15 +1,15 @@
-//! Things that a bench was asked for and cannot show.
+//! Requested results that a bench cannot show.
 
 use std::fmt;
 
 use serde::{Deserialize, Serialize};
 use sinew_measure::Gap;
 
-/// A scene, a run or a number that was asked for and is not there. `null` replaces it in JSON and `n/a` in tables;
+/// A scene, a run or a number that was requested and is not there. `null` replaces it in JSON and `n/a` in tables;
 /// everything else is as it would be without it.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Missing {
-    /// Id of the case or the map; the file where a scene could not be read.
+    /// Id of the case or the map; the file if a scene could not be read.
     pub scene: String,
     /// The run, or the value of a map's parameter; none if it concerns the scene as a whole.
     #[serde(default, skip_serializing_if = "Option::is_none")]

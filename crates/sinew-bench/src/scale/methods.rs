@@ -10,7 +10,7 @@ use super::cube::SHARE;
 enum StepRule {
     /// At most this share of the critical step.
     Share(f64),
-    /// This step (s), whatever the body.
+    /// This step (s), for any body.
     Fixed(f64),
 }
 

@@ -1,4 +1,4 @@
-//! Work against counts by hand.
+//! Work compared with counts by hand.
 
 use std::sync::Arc;
 

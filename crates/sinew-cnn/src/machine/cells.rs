@@ -137,7 +137,7 @@ impl Cells<'_> {
         }
     }
 
-    /// Makes updates on a range of degrees of freedom, two in a pass where the second allows it.
+    /// Makes updates on a range of degrees of freedom, two in a pass if the second allows it.
     fn update<'u>(
         &mut self,
         updates: impl Iterator<Item = &'u Update>,

@@ -9,7 +9,7 @@ impl Register {
     pub const U: Self = Self(0);
     /// Velocity (m/s) of the state.
     pub const V: Self = Self(1);
-    /// Acceleration (m/s^2) of the state, where a program keeps one.
+    /// Acceleration (m/s^2) of the state, if a program keeps one.
     pub const A: Self = Self(2);
 
     /// Its number.
@@ -247,7 +247,7 @@ pub enum Weight {
     },
 }
 
-/// A bound, counted where it is reached.
+/// A bound; values that reach it are counted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Clamp {
     /// Bounds each component separately to this size: the network's saturation.

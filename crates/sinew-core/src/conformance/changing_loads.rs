@@ -14,7 +14,7 @@ use crate::{
 
 const DAMPING: f64 = 2.0;
 
-/// Steps that a run takes where loads may be refused.
+/// Steps that a run takes if loads may be refused.
 enum Taken {
     /// All steps.
     All,

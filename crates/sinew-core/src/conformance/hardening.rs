@@ -400,7 +400,7 @@ fn linearised(mass_damping: f64, state: &State) -> LinearModel {
 }
 
 /// The stable step about a state of a nonlinear system is that of the system linearised there: a
-/// stretched hardening spring asks for shorter steps.
+/// stretched hardening spring needs shorter steps.
 pub fn stable_step_follows_the_state(make: &dyn Fn() -> Boxed) {
     if make().properties().needs == Needs::Matrices {
         return;

@@ -1,5 +1,5 @@
-//! Heun's method, which grows slowly wherever nothing damps: the suite tells right declarations of its stable step from
-//! wrong ones.
+//! Heun's method, which grows slowly without damping: the suite distinguishes right declarations of its stable step
+//! from wrong ones.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 

@@ -8,7 +8,7 @@ use crate::{
     System,
 };
 
-/// A frame (s), as a display asks for it.
+/// The period (s) of a display's frames.
 const FRAME: f64 = 0.016;
 const FRAMES: usize = 40;
 
@@ -65,7 +65,7 @@ fn known(
     frames(integrator, system, inputs, steps, |_, _, _| {})
 }
 
-/// True if the error says that the method cannot take such inputs.
+/// True for the error of a method that cannot take such inputs.
 fn is_lacking(error: &StepError) -> bool {
     matches!(error, StepError::Setup(SetupError::Lacks { .. }))
 }

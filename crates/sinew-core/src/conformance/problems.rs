@@ -264,7 +264,7 @@ pub(super) fn give(inputs: &mut Inputs, t: f64, forces: &[(u32, f64)]) {
     }
 }
 
-/// A step within the stable one: a quarter of it, or of 2/omega_max where there is no limit or
+/// A step within the stable one: a quarter of it, or of 2/omega_max if there is no limit or
 /// the method is never stable.
 pub(super) fn gentle_step(integrator: &dyn Integrator, system: &dyn System) -> f64 {
     match (integrator.stable_step(system), system.spectrum(None)) {

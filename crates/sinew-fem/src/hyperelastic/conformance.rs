@@ -576,7 +576,7 @@ pub fn single_precision_is_double_precision_rounded<L: HyperelasticLaw>(law: L) 
     }
 }
 
-/// A law that is not defined for inverted elements refuses them, flat ones, and what is not a number; another has
+/// A law that is not defined for inverted elements refuses them, flat ones, and NaN; another has
 /// finite stresses there. A law with a limit describes it, and single precision, whose range is smaller, has a limit
 /// wherever double precision has one.
 pub fn what_is_refused_is_where_the_law_is_not_defined<L: HyperelasticLaw>(law: L) {
@@ -625,7 +625,7 @@ pub fn what_is_refused_is_where_the_law_is_not_defined<L: HyperelasticLaw>(law: 
     }
 }
 
-/// A law that says nothing of a dilation of its own has `J - 1`, which is that of its viscosity.
+/// A law without a dilation of its own has `J - 1`, which is that of its viscosity.
 pub fn the_dilation_is_that_of_the_viscosity<L: HyperelasticLaw>(law: L) {
     if L::OWN_DILATION {
         return;

@@ -84,7 +84,7 @@ fn orthogonalise<N: Number, const P: usize, const Q: usize>(
     N::all_le(squared, negligible)
 }
 
-/// Exchanges columns P and Q where the second is the longer one, with a sign that keeps V proper.
+/// Exchanges columns P and Q if the second is the longer one, with a sign that keeps V proper.
 #[inline(always)]
 fn order<N: Number, const P: usize, const Q: usize>(a: &mut [[N; 3]; 3], v: &mut [[N; 3]; 3]) {
     let (p, q) = (dot(a[P], a[P]), dot(a[Q], a[Q]));
@@ -101,7 +101,7 @@ fn choose<N: Number>(a: N, b: N, then: [N; 3], otherwise: [N; 3]) -> [N; 3] {
     [entry(0), entry(1), entry(2)]
 }
 
-/// The direction of a vector, or `otherwise` where its square is not above `negligible`.
+/// The direction of a vector, or `otherwise` if its square is not above `negligible`.
 #[inline(always)]
 fn direction<N: Number>(vector: [N; 3], otherwise: [N; 3], negligible: N) -> [N; 3] {
     let squared = dot(vector, vector);
@@ -127,13 +127,14 @@ fn perpendicular<N: Number>(unit: [N; 3]) -> [N; 3] {
 
 /// Iterations of the polar decomposition before singular values are taken.
 const ITERATIONS: usize = 12;
-/// Volume ratio below which they are taken at once.
+/// Volume ratio below which singular values are used immediately.
 const FLAT: f64 = 0.05;
 
 /// The proper rotation R of F = R S, also where J < 0.
 ///
 /// Newton's iteration Q <- (Q + Q^-T)/2 (Higham, SIAM J. Sci. Stat. Comput. 7, 1986) until it moves no more; singular values
-/// where the element is nearly flat or inverted, and where 12 iterations do not do. It starts from F itself, so that the result is a function of F.
+/// if the element is nearly flat or inverted, and if 12 iterations do not suffice. It starts from F itself, so that
+/// the result is a function of F.
 #[inline(always)]
 #[must_use]
 pub(super) fn rotation<N: Number>(gradient: Tensor<N>, volume_ratio: N) -> Tensor<N> {

@@ -195,7 +195,7 @@ pub trait HyperelasticLaw: Copy + Debug + Send + Sync {
         None
     }
 
-    /// A number above 0 if the law is defined, elsewhere 0 or below, or not a number; that J is above 0 need not
+    /// A number above 0 if the law is defined, else 0, below, or NaN; that J is above 0 need not
     /// show in it. It goes with [`Self::limit`].
     #[inline(always)]
     fn margin<N: Number>(&self, _at: &Point<N, Self::Own<N>>) -> N {

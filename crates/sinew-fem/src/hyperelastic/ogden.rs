@@ -103,7 +103,7 @@ struct Term<N> {
 
 impl<N: Number> Term<N> {
     /// Its share in the shear of two axes: the difference of `2 mu/alpha l^alpha` over that of the squares of the
-    /// stretches, from that of their logarithms where both are near.
+    /// stretches, from that of their logarithms if both are near.
     #[inline(always)]
     fn shear<const A: usize, const B: usize>(&self, stretches: &Stretches<N>, of_logs: N) -> N {
         let one = N::of(1.0);
@@ -362,7 +362,8 @@ mod tests {
         }
     }
 
-    /// Divided differences are series where stretches are near and differences elsewhere: both agree where they meet.
+    /// Divided differences are series for nearly equal stretches and differences otherwise: both agree at the
+    /// transition.
     #[test]
     fn tangents_have_no_seam_where_series_end() {
         let law = of(&[1000.0, 1.3, 200.0, 5.0, 50.0, -2.0], 0.45);

@@ -1,4 +1,4 @@
-//! Exponentials and logarithms of all lanes at once.
+//! Exponentials and logarithms of all lanes together.
 
 use sinew_sparse::simd::Number;
 

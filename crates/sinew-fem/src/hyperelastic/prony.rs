@@ -34,7 +34,7 @@ pub struct TermStep {
 ///
 /// # Errors
 ///
-/// [`ParameterError`] if a share or a time is not above 0, or where nothing of the stress would stay.
+/// [`ParameterError`] if a share or a time is not above 0, or if no stress would remain.
 pub fn check(terms: &[Term]) -> Result<(), ParameterError> {
     for term in terms {
         let expected = "a finite number above 0";
@@ -152,7 +152,7 @@ pub fn first_piola<N: Number>(deformation: &Deformation<N>, second: Symmetric<N>
 }
 
 /// The deviatoric part `P - (P : F)/(3 J) c` of a first Piola-Kirchhoff stress, whose Cauchy stress has no pressure: that of the invariants without change of volume, for
-/// laws that have such a part. It relaxes alone where only the deviatoric part is viscous.
+/// laws that have such a part. It relaxes alone if only the deviatoric part is viscous.
 #[inline(always)]
 #[must_use]
 pub fn deviatoric<N: Number>(deformation: &Deformation<N>, stress: Tensor<N>) -> Tensor<N> {

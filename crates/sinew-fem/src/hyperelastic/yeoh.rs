@@ -167,7 +167,7 @@ mod tests {
         }
     }
 
-    /// Simple shear by g keeps the volume and has `I1 - 3 = g^2`: the shear stress is `2 g psi'`, whatever the bulk
+    /// Simple shear by g keeps the volume and has `I1 - 3 = g^2`: the shear stress is `2 g psi'`, for any bulk
     /// modulus.
     #[test]
     fn simple_shear_has_its_closed_form() {

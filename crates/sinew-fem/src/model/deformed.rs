@@ -18,7 +18,7 @@ pub struct DeformedTet {
     pub rotation: f64,
     /// True if its law is one of large deformation.
     pub is_hyperelastic: bool,
-    /// True if its volume is 0 or below, or not a number.
+    /// True if its volume is 0 or below, or NaN.
     pub is_inverted: bool,
 }
 

@@ -57,7 +57,7 @@ impl Model {
     /// of freedom then: zero at fixed nodes, the prescribed motion at moved ones.
     ///
     /// # Errors
-    /// Same as [`Model::to_nodes`], and [`FieldError::NoInput`] where a motion follows an input that the time does not
+    /// Same as [`Model::to_nodes`], and [`FieldError::NoInput`] if a motion follows an input that the time does not
     /// bring.
     pub fn displacements_at<'a>(
         &self,

@@ -22,7 +22,7 @@ impl Model {
     }
 
     /// Writes values at all nodes of the mesh, three components a node, into a vector over the degrees
-    /// of freedom. Fixed components are left out; where a node is fixed in some directions only, their
+    /// of freedom. Fixed components are left out; if a node is fixed in some directions only, their
     /// entries become zero. Allocates nothing.
     ///
     /// # Errors

@@ -38,7 +38,7 @@ impl Model {
     ///
     /// # Errors
     /// [`FieldError::Length`] unless `u` and `v` have one entry for each degree of freedom and `out` one
-    /// for each node of the mesh, and [`FieldError::NoInput`] where a motion, or a load on fixed components, follows
+    /// for each node of the mesh, and [`FieldError::NoInput`] if a motion, or a load on fixed components, follows
     /// an input that the time does not bring.
     pub fn reactions<'a>(
         &self,
@@ -228,9 +228,8 @@ impl Model {
         }
     }
 
-    /// The forces (N) of hyperelastic regions at all nodes, the part of their stiffness damping and of pressures that follow their surface
-    /// included; not numbers where a law has no
-    /// meaning, and `None` without such regions.
+    /// The forces (N) of hyperelastic regions at all nodes, with their stiffness damping and follower pressures; NaN
+    /// outside a law's domain, and `None` without such regions.
     fn large_forces(
         &self,
         (when, past): (LoadTime<'_>, Past<'_>),

@@ -20,7 +20,7 @@ impl Model {
     ///
     /// # Errors
     /// [`FieldError::Length`] unless `u` has one entry for each degree of freedom and `out` one for each
-    /// tetrahedron, and [`FieldError::NoInput`] where a motion follows an input that the time does not bring.
+    /// tetrahedron, and [`FieldError::NoInput`] if a motion follows an input that the time does not bring.
     pub fn strain<'a>(
         &self,
         when: impl Into<LoadTime<'a>>,

@@ -3,7 +3,7 @@
 use super::faces::FaceNeighbours;
 use crate::Element;
 
-/// Tetrahedra of a patch where nothing else is asked for: with fewer, pressures are noisy.
+/// Tetrahedra of a patch by default: with fewer, pressures are noisy.
 const USUAL: u32 = 12;
 
 /// Tetrahedra that make a hexahedron of a grid.

@@ -47,7 +47,7 @@ pub(super) struct CoupledContact {
     /// c, and f there.
     answer: Vec<f64>,
     left: Vec<f64>,
-    /// c and f that contact was asked for last.
+    /// c and f of the last evaluation of contact.
     asked: Vec<f64>,
     found: Vec<f64>,
     /// The motions of parts that are in contact.

@@ -33,7 +33,7 @@ pub struct SolvedSteps {
 /// Data for contact.
 struct Touched {
     blocks: Arc<CellBlocks>,
-    /// Present where parts that may move as rigid ones are touched.
+    /// Present if parts that may move as rigid bodies have contact.
     coupled: Option<CoupledParts>,
     pushed: Vec<u32>,
 }

@@ -49,7 +49,7 @@ pub struct Propagator {
 #[derive(Debug)]
 struct Made {
     matrices: Revision,
-    /// The loads, where the series depend on them.
+    /// The loads, if the series depend on them.
     loads: Option<Revision>,
     /// Step (s).
     dt: f64,

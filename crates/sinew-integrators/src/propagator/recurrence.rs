@@ -28,7 +28,7 @@ pub(super) struct KickRegisters<const N: usize> {
     pub(super) r: Register,
     /// Holds G r, up to a factor, after them.
     pub(super) sum: Register,
-    /// Registers asked for.
+    /// The requested registers.
     pub(super) own: [Register; N],
     pub(super) vectors: ChebyshevVectors,
 }

@@ -5,7 +5,7 @@ use sinew_core::SetupError;
 pub(super) const ID: &str = "propagator";
 /// Highest degree; above it shorter steps cost less memory and no more sweeps.
 pub(super) const HIGHEST_DEGREE: usize = 500;
-/// Error of a step with a degree chosen by hand above which it is refused: a polynomial of too low
+/// Error of a step with a degree given by the user above which it is refused: a polynomial of too low
 /// a degree is violently wrong.
 pub(super) const LOOSE: f64 = 1e-2;
 

@@ -23,7 +23,7 @@ impl Due {
         self.0.push_back((t, command));
     }
 
-    /// Takes the first command, where its time is not after `t` (s).
+    /// Takes the first command, if its time is not after `t` (s).
     pub(super) fn next_until(&mut self, t: f64) -> Option<Command> {
         let (due, _) = self.0.front()?;
         if *due > t {

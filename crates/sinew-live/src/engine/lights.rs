@@ -94,7 +94,7 @@ pub(crate) struct Settling {
 }
 
 impl Settling {
-    /// Notes a disturbance at a time (s).
+    /// Records a disturbance at a time (s).
     pub(crate) fn disturbed(&mut self, t: f64) {
         let largest = self.largest;
         *self = Self {
@@ -118,7 +118,7 @@ impl Settling {
         }
     }
 
-    /// Kinetic energy of the last span over that of the one before; not a number before there are two.
+    /// Kinetic energy of the last span over that of the one before; NaN before there are two.
     pub(crate) fn ratio(&self) -> f64 {
         match self.spans {
             0 | 1 => f64::NAN,

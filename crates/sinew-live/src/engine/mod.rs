@@ -42,7 +42,7 @@ const GLIDE: f64 = 0.004;
 /// Time for which it steps before it checks commands and pictures again.
 const LOOK: Duration = Duration::from_millis(10);
 
-/// Shortest time between two pictures, whatever pages ask for.
+/// Shortest time between two pictures, for any requests of pages.
 const BETWEEN_PICTURES: Duration = Duration::from_millis(2);
 
 /// Shortest time between two settings messages, so that one page's commands do not flood the others.

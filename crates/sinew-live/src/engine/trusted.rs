@@ -134,7 +134,7 @@ impl Trusted {
         self.commands.cuts()
     }
 
-    /// The panes have stepped to the end (s) of a span; a sentence where the trusted run cannot follow.
+    /// The panes have stepped to the end (s) of a span; a sentence if the trusted run cannot follow.
     pub(crate) fn span(
         &mut self,
         until: f64,

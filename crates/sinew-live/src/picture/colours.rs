@@ -14,7 +14,7 @@ const INSIDE_OUT: f32 = f32::NAN;
 /// Values of a field at the points of a surface.
 #[derive(Debug)]
 pub(crate) struct Colours {
-    /// The value of each point; not a number at tetrahedra that are inside out.
+    /// The value of each point; NaN at tetrahedra that are inside out.
     pub(crate) values: Vec<f32>,
     /// Number of tetrahedra that are inside out.
     pub(crate) inverted: u32,

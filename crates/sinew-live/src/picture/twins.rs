@@ -4,8 +4,8 @@ use sinew_scene::BodyModel;
 
 use crate::protocol::NONE;
 
-/// For each node of a body a node of another one of the same scene that is the same corner of the same tetrahedron, or [`NONE`] where the other has none of its
-/// tetrahedra. Where the other is split and this one is not, it is one of the copies.
+/// For each node of a body a node of another one of the same scene that is the same corner of the same tetrahedron,
+/// or [`NONE`] if the other has none of its tetrahedra. If only the other is split there, it is one of the copies.
 pub(crate) fn twins(own: &BodyModel, other: &BodyModel) -> Vec<u32> {
     let nodes = own.mesh.points.len();
     if own.cut.is_none() && other.cut.is_none() {

@@ -5,7 +5,7 @@ use serde::Deserialize;
 /// A command with the page's own number.
 #[derive(Clone, Debug, Deserialize, PartialEq)]
 pub(crate) struct Said {
-    /// The number, which rises from command to command; pictures say which was the last that they contain.
+    /// The number, which rises from command to command; pictures name the last one that they contain.
     pub(crate) id: u32,
     /// The command.
     #[serde(flatten)]

@@ -192,7 +192,7 @@ pub(crate) struct StepFacts {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Stability {
-    /// Nobody knows.
+    /// Unknown.
     #[default]
     Unknown,
     /// Every step.

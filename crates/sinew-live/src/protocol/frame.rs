@@ -107,13 +107,13 @@ pub(crate) struct PaneHead {
     pub(crate) load_work: f64,
     /// Time of a step (ms).
     pub(crate) ms_per_step: f64,
-    /// Relative distance from the trusted run; not a number without a trusted run.
+    /// Relative distance from the trusted run; NaN without a trusted run.
     pub(crate) error: f64,
     /// Time (s) by which the trusted run is behind.
     pub(crate) lag: f64,
     /// Share of velocities at their limit since the last picture.
     pub(crate) saturated: f64,
-    /// Kinetic energy of the last quarter of a second over that of the quarter before; not a number right after a
+    /// Kinetic energy of the last quarter of a second over that of the quarter before; NaN right after a
     /// disturbance, as while a tool is steered.
     pub(crate) settling: f64,
     /// Colours of the three lights, two bits each.
@@ -124,7 +124,7 @@ pub(crate) struct PaneHead {
     pub(crate) inverted: u32,
     /// Points at which tools press.
     pub(crate) contacts: u32,
-    /// Energy less that at the beginning and the work since (J); not a number where the energy is not known.
+    /// Energy less that at the beginning and the work since (J); NaN if the energy is unknown.
     pub(crate) balance: f64,
     /// Nodes and tetrahedra of the current body.
     pub(crate) nodes: u32,

@@ -1,4 +1,4 @@
-//! Connections to the server: not too many, and none that says nothing for long.
+//! Connections to the server: not too many, and none that is silent for long.
 
 use std::collections::VecDeque;
 use std::io::{self, ErrorKind};

@@ -50,7 +50,7 @@ pub enum AdviceError {
         "a tolerance of {tolerance:e} cannot be distinguished from the reference's own error, {reference:.1e}; ask for {least:e} or more"
     )]
     BeyondReference {
-        /// The tolerance that was asked for.
+        /// The requested tolerance.
         tolerance: f64,
         /// The reference's error (fraction).
         reference: f64,

@@ -31,7 +31,7 @@ pub(super) struct Horizon {
 }
 
 /// The longest part of a scene whose reference takes at most `seconds` of CPU time: all of it, in
-/// long steps where the full reference takes longer, or some of its intervals, or a whole fraction
+/// long steps if the full reference takes longer, or some of its intervals, or a whole fraction
 /// of the first.
 pub(super) fn horizon(simulation: &Simulation, seconds: f64) -> Result<Horizon, AdviceError> {
     let whole = Span::of(simulation);

@@ -33,13 +33,13 @@ const FOR_THE_REFERENCE: f64 = 0.5;
 /// cheapest run.
 const RUNNERS_UP_WITHIN: f64 = 4.0;
 
-/// Errors to which options of methods are set that trade error for cost, where only a cost is given.
+/// Errors for options of methods that trade error for cost, if only a cost is given.
 const TOLERANCES_OF_BUDGETS: [f64; 2] = [1e-3, 1e-6];
 
-/// Error below which runs are alike but for their cost where only a cost is given.
+/// Error below which runs differ only by cost, if only a cost is given.
 const ROUNDING: f64 = 1e-10;
 
-/// Smallest error that is sought where only a cost is given.
+/// Smallest error that is sought if only a cost is given.
 const LEAST_ERROR: f64 = 1e-12;
 
 /// Reasons why a method is no candidate.
@@ -127,8 +127,8 @@ pub struct Advice {
 pub enum Answer {
     /// At least one run keeps to tolerance and budget.
     Met {
-        /// The cheapest run of each integrator in total, the advised one first; where only a budget was given, the most accurate
-        /// within it.
+        /// The cheapest run of each integrator in total, the advised one first; if only a budget was given, the most
+        /// accurate within it.
         cheapest: Vec<Pilot>,
         /// The cheapest run with a tenth of the error, at any cost.
         tenfold: Option<Box<Pilot>>,

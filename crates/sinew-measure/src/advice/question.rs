@@ -10,7 +10,7 @@ pub const DEFAULT_PILOT_SECONDS: f64 = 10.0;
 /// A required error, a budget, or both.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Question {
-    /// Largest relative error (fraction); without one, the smallest within the budget is asked for.
+    /// Largest relative error (fraction); without one, the smallest within the budget is requested.
     pub tolerance: Option<f64>,
     /// Most CPU seconds per simulated second, set-up apart.
     pub budget: Option<f64>,

@@ -78,7 +78,7 @@ const FACTOR_OPERATIONS: f64 = 64.0;
 /// Predicts [`converge`](super::converge) on `levels` meshes, without building the refined ones.
 ///
 /// # Errors
-/// [`ConvergeError`] for an oscillator, and where the scene's method does not run.
+/// [`ConvergeError`] for an oscillator, and if the scene's method does not run.
 pub fn predict(simulation: &Simulation, levels: usize) -> Result<Prediction, ConvergeError> {
     let body = simulation.model().body();
     let body = body.ok_or(RefinementError::NoMesh)?;

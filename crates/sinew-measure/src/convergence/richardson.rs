@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// The order in the length of edges that linear elements have where the solution is smooth: of displacements in the mean
+/// The order, in the length of edges, of linear elements on smooth solutions: of displacements in the mean
 /// square, and of energies (Strang and Fix, An Analysis of the Finite Element Method, 1973, chapters 3 and 8). At the edges of
 /// supports and at corners that point inwards stresses are singular as `r^(a-1)`, `a` between 1/2 and 1, and both have order
 /// `2 a` on meshes that are refined everywhere alike (Szabo and Babuska, Finite Element Analysis, 1991, chapter 10).

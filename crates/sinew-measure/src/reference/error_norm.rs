@@ -26,7 +26,7 @@ impl ErrorNorm {
         norm.relative()
     }
 
-    /// The relative error; where the reference never moves, 0 or infinite.
+    /// The relative error; if the reference never moves, 0 or infinite.
     #[must_use]
     pub fn relative(self) -> f64 {
         let difference = self.difference.norm();

@@ -11,7 +11,7 @@ use crate::method_choice::{MethodChoice, MethodError};
 pub struct Candidate {
     /// The method.
     pub method: MethodChoice,
-    /// The largest step (s) at which it is stable; infinite if it always is or cannot say, 0
+    /// The largest step (s) at which it is stable; infinite if it always is or cannot compute it, 0
     /// if it never is.
     pub stable_step: f64,
     /// True if the method can compute that step.

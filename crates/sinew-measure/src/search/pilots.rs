@@ -41,7 +41,7 @@ pub enum PilotError {
     Measure(#[from] MeasureError),
 }
 
-/// A load of the scene changes where a method needs it not to.
+/// A load of the scene changes at a time when the method needs it constant.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("a load changes at t = {instant} s of the scene, and is not {} of {dt} s", .needed.describe())]
 pub struct UnfitLoads {

@@ -219,7 +219,7 @@ impl Trail {
     }
 }
 
-/// The step between a run that falls short and one that is accurate enough, where the errors of
+/// The step between a run that falls short and one that is accurate enough, if the errors of
 /// both put the goal; none if there is nothing to gain.
 fn between(short: (u32, &Row), enough: (u32, &Row), aim: &Aim) -> Option<Next> {
     let (low, high) = (short.0, enough.0);

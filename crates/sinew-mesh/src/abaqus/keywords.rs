@@ -9,7 +9,7 @@ use crate::reading::cursor::{Token, quoted};
 use crate::reading::fault::Fault;
 use crate::reading::remarks::Remarks;
 
-/// All that a file says of meshes.
+/// All contents of a file that concern meshes.
 #[derive(Default)]
 pub(super) struct Model {
     /// Nodes, elements and sets outside of parts.
@@ -20,7 +20,7 @@ pub(super) struct Model {
     pub(super) of_assembly: Part,
     /// A part without anything.
     pub(super) nothing: Part,
-    /// Keywords that say nothing of a mesh.
+    /// Keywords without contents of a mesh.
     pub(super) skipped: Vec<String>,
     /// True if the warning about nodes of the assembly has been given.
     has_told_nodes: bool,

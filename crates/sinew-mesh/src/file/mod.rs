@@ -70,7 +70,7 @@ pub fn read_mesh_of(path: impl AsRef<Path>, bytes: &[u8]) -> Result<Mesh, MeshFi
     read_as(path, bytes, format.unwrap_or(MeshFormat::Msh))
 }
 
-/// Reads a .msh file, whatever its name; see [`read_msh`].
+/// Reads a .msh file of any name; see [`read_msh`].
 ///
 /// # Errors
 ///

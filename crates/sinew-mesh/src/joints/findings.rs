@@ -11,7 +11,7 @@ pub enum JointFinding {
     Touching,
     /// Faces within a part lie on others without being the same.
     Mismatched,
-    /// Blocks of tetrahedra hang together by single nodes or edges.
+    /// Blocks of tetrahedra are joined by single nodes or edges only.
     Hinges,
     /// Tetrahedra that share a face overlap.
     Tangled,

@@ -40,7 +40,7 @@ pub struct Joints {
     pub mismatched: Places,
     /// Nodes inside a face or an edge of another face that lies on theirs, without being its corners: they move apart from it.
     pub hanging: Places,
-    /// Nodes by which blocks of tetrahedra hang together that have no face in common: hinges.
+    /// Nodes that join blocks of tetrahedra without a common face: hinges.
     pub hinges: Places,
     /// Blocks that hang by hinges alone.
     pub hinged_blocks: usize,

@@ -27,9 +27,9 @@ pub(super) enum Version {
     V20,
     /// `2.1` and `2.2`.
     V22,
-    /// `4.0`, and `4` where the data show it.
+    /// `4.0`, and `4` if the data show it.
     V40,
-    /// `4.1`, and `4` where the data show it.
+    /// `4.1`, and `4` if the data show it.
     V41,
 }
 

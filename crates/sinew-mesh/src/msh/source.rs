@@ -17,7 +17,7 @@ pub(super) trait Source {
     fn int(&mut self, what: &str) -> Result<i32, Fault>;
     /// The format's `size_t`.
     fn size(&mut self, what: &str) -> Result<u64, Fault>;
-    /// The format's `double`; may be infinite or not a number.
+    /// The format's `double`; may be infinite or NaN.
     fn double(&mut self, what: &str) -> Result<f64, Fault>;
     /// The least number of bytes that a record takes.
     fn least_bytes(&self, record: Record) -> u64;

@@ -36,7 +36,7 @@ pub(crate) fn signed_long(token: Token<'_>, what: &str) -> Result<i64, Fault> {
     number.ok_or_else(|| wrong(token, what, "a whole number of at most 64 bits"))
 }
 
-/// A floating-point number; may be infinite or not a number.
+/// A floating-point number; may be infinite or NaN.
 pub(crate) fn double(token: Token<'_>, what: &str) -> Result<f64, Fault> {
     text_of(token)
         .and_then(|text| text.parse().ok())

@@ -6,7 +6,7 @@ use super::data_values::DataValues;
 use super::error::SelectionError;
 use crate::TetMesh;
 
-/// The data of a name that a mesh has, of whichever holder is asked for first.
+/// Preference for data at nodes or of tetrahedra, if both have the name.
 #[derive(Clone, Copy)]
 pub(super) enum First {
     Nodes,

@@ -43,7 +43,7 @@ pub enum SelectionError {
         listed(known)
     )]
     UnknownData {
-        /// The name that was asked for.
+        /// The requested name.
         name: String,
         /// The names that there are.
         known: Vec<String>,
@@ -53,7 +53,7 @@ pub enum SelectionError {
         "{} data are named \"{name}\" (time steps {steps:?}): keep one of them, or give each a name of its own", steps.len()
     )]
     SeveralData {
-        /// The name that was asked for.
+        /// The requested name.
         name: String,
         /// The time step of each.
         steps: Vec<i32>,
@@ -75,7 +75,7 @@ pub enum SelectionError {
         holder: &'static str,
         /// Name of the data.
         name: String,
-        /// The values that were asked for.
+        /// The values that were requested.
         values: DataValues,
         /// Description of the values that exist.
         known: String,

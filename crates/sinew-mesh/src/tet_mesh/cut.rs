@@ -174,7 +174,7 @@ impl CutMesh {
         }
     }
 
-    /// Triangles or lines with the nodes that their tetrahedra have now, where these are left.
+    /// Triangles or lines with the current nodes of their tetrahedra, if these still exist.
     fn followed<const N: usize>(
         &self,
         uncut: &TetMesh,

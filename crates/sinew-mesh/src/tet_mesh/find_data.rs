@@ -4,14 +4,14 @@ use std::collections::BTreeMap;
 
 use super::{TetData, TetMesh};
 
-/// No data, or more than one, have the name that was asked for.
+/// No data, or several, have the requested name.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum TetDataError {
     /// No data have the name.
     #[error("no data of tetrahedra are named \"{name}\"; {}", listed(known))]
     Unknown {
-        /// The name that was asked for.
+        /// The requested name.
         name: String,
         /// Name and number of components of all data.
         known: Vec<(String, usize)>,
@@ -22,7 +22,7 @@ pub enum TetDataError {
         steps.len(), in_words(steps)
     )]
     Several {
-        /// The name that was asked for.
+        /// The requested name.
         name: String,
         /// The time step of each.
         steps: Vec<i32>,

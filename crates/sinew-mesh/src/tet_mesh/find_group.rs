@@ -6,19 +6,19 @@ use super::{Group, GroupMembers, TetMesh};
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum FindGroupError {
-    /// No group has the name that was asked for.
+    /// No group has the requested name.
     #[error("no group{} is named \"{name}\"{}; {}", of_dim(*dim), hint(nearest.as_deref()), listed(known))]
     Unknown {
-        /// The name that was asked for.
+        /// The requested name.
         name: String,
-        /// The dimension that was asked for, if one was.
+        /// The requested dimension, if one was.
         dim: Option<u8>,
         /// Name and dimension of each existing group.
         known: Vec<(String, u8)>,
         /// The most similar name, if one is similar enough for a suggestion.
         nearest: Option<String>,
     },
-    /// Groups of several dimensions have the name that was asked for.
+    /// Groups of several dimensions have the requested name.
     #[error(
         "groups of dimensions {} are named \"{name}\"; say which, by {{ name = \"{name}\", dim = {} }} in a scene or as {name}:{} elsewhere",
         dims.iter().map(u8::to_string).collect::<Vec<_>>().join(" and "),
@@ -26,7 +26,7 @@ pub enum FindGroupError {
         dims.first().copied().unwrap_or_default()
     )]
     Ambiguous {
-        /// The name that was asked for.
+        /// The requested name.
         name: String,
         /// The dimensions of the groups that have it, lowest first.
         dims: Vec<u8>,

@@ -13,7 +13,7 @@ impl Mesh {
     /// The tetrahedra of this mesh, the nodes they use and the physical groups.
     ///
     /// * Tetrahedra with the same four nodes become one that is in the groups of all of them: gmsh writes version 2.2 with a
-    ///   copy for each group. The same goes for the triangles, lines and nodes within one group.
+    ///   copy for each group. The same applies to the triangles, lines and nodes within one group.
     /// * Nodes in no tetrahedron are dropped, and with them the triangles, lines and vertices that use one.
     /// * Nodes at the same place stay separate: cuts and contact surfaces have them.
     /// * A group without a name is called `"dim:tag"`. Groups of one dimension with the same name become one.

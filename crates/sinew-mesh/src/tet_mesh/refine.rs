@@ -58,7 +58,7 @@ impl TetMesh {
     /// Old nodes come first and keep their tags; tetrahedra are renumbered, the eight of tetrahedron `t` being
     /// `8 t..8 t + 8`. The eight have the data of the one, and new nodes the mean of those at the ends of their edge,
     /// or none if these are different labels. All groups stay: tetrahedra become eight, triangles four, lines two.
-    /// Triangles and lines whose edges are none of the tetrahedra stay as they are, which [`TetMesh::notes`] tells.
+    /// Triangles and lines whose edges are none of the tetrahedra are unchanged, as [`TetMesh::notes`] reports.
     /// Curved surfaces stay as flat as they were.
     ///
     /// # Errors

@@ -24,7 +24,8 @@ impl TetData {
         self.values.iter().any(|value| !value.is_nan())
     }
 
-    /// Takes the values of data of the same name, step and width where it has none itself; what both have is refused.
+    /// Takes values from data of the same name, step and width for tetrahedra without a value. Returns false, and changes
+    /// nothing, for other data or if some tetrahedron has both values.
     pub(super) fn complete_with(&mut self, other: &TetData) -> bool {
         let names = (&self.name, self.step, self.components);
         let is_part = names == (&other.name, other.step, other.components);

@@ -26,7 +26,7 @@ pub(crate) fn vtk_cell_type(kind: CellType) -> Option<u8> {
     })
 }
 
-/// A type of cell that is read, and the order of its nodes in VTK's row where it is another than that of [`CellType`].
+/// A type of cell that is read, and the order of its nodes in VTK's row if it differs from that of [`CellType`].
 pub(super) struct ReadType {
     pub(super) kind: CellType,
     pub(super) order: Option<&'static [usize]>,

@@ -193,7 +193,7 @@ fn field(
     Ok(fields)
 }
 
-/// Moves past what a file says of the array before, up to an empty line.
+/// Moves past the metadata of the array before, up to an empty line.
 pub(super) fn skip_metadata(cursor: &mut Cursor<'_>) {
     let _ = cursor.line();
     while !cursor.is_at_end() && !cursor.line().is_empty() {}

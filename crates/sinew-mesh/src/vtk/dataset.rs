@@ -19,7 +19,7 @@ pub(super) struct Dataset {
     pub(super) cell_fields: Vec<Field>,
 }
 
-/// The nodes of all cells, and where those of each end.
+/// The nodes of all cells, and the end of those of each.
 struct Rows {
     connectivity: Vec<i64>,
     ends: Vec<i64>,

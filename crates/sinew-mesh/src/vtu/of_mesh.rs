@@ -14,7 +14,8 @@ use crate::mesh::{CellBlock, Mesh};
 /// Arrays keep the names of their fields; of several fields of one name, all but the first get their
 /// time step appended. Cells have their first group as `gmsh:physical`, their entity as `gmsh:geometrical` and their
 /// tag as `gmsh:element_tag`; points have `gmsh:node_tag`. Each named group is an array of its own, `group NAME`, 1 in its cells and
-/// 0 elsewhere, so that names stay and groups may overlap; where groups of several dimensions share a name, they share the array.
+/// 0 elsewhere, so that names stay and groups may overlap; if groups of several dimensions share a name, they share
+/// the array.
 /// Values at the nodes of elements are not written.
 ///
 /// # Errors
@@ -118,7 +119,7 @@ fn named_groups(mesh: &Mesh) -> Vec<(String, Vec<i64>)> {
     groups
 }
 
-/// The names, with the time step appended where a name has been used before.
+/// The names, with the time step appended if a name has been used before.
 fn distinct_names<'n>(fields: impl Iterator<Item = (&'n String, i32)>) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();
     for (name, step) in fields {

@@ -135,7 +135,7 @@ pub(super) struct Out<'a, W: Write> {
     appended_bytes: u64,
 }
 
-/// Bytes that are written at once.
+/// Size (bytes) of the buffer.
 const BUFFER: usize = 1 << 17;
 
 impl<'a, W: Write> Out<'a, W> {

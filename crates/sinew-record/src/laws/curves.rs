@@ -18,7 +18,7 @@ const USUAL: [f64; 2] = [0.7, 2.0];
 /// Room round measured points, as a share of their extent.
 const ROOM: f64 = 0.1;
 
-/// The curves that are asked for.
+/// The requested curves.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AskedCurves {
     /// The number (from 1 on) or the group of the only region that is shown; `None` shows all.

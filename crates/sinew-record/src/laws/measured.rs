@@ -13,7 +13,7 @@ const COLUMNS: [&[&str]; 3] = [
     &["stress", "stress_Pa", "nominal_stress_Pa"],
 ];
 
-/// The line of column names, as messages say it.
+/// The line of column names, for messages.
 const HEAD: &str = "load,stretch_or_shear,stress_Pa";
 
 /// Characters of a text in messages.

@@ -22,7 +22,7 @@ pub enum ModesError {
     NotConverged {
         /// Modes that were found.
         found: usize,
-        /// Modes that were asked for.
+        /// The requested modes.
         count: usize,
         /// Rounds of the iteration.
         rounds: usize,

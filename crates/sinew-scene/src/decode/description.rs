@@ -63,7 +63,7 @@ pub(crate) trait Described: Sync {
     /// The conditions under which it may be given.
     fn conditions(&self) -> &'static [Condition];
 
-    /// All that there is to say about it.
+    /// Its whole description.
     fn describe(&self) -> KeyDescription;
 
     /// The keys that it replaces; `None` for a key of its own.

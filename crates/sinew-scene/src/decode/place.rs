@@ -51,17 +51,17 @@ impl Place {
         self.error(self.header.clone(), fault)
     }
 
-    /// An error that points at a key; at the table where the key is not given.
+    /// An error that points at a key; at the table if the key is not given.
     pub(crate) fn key_fault(&self, key: &str, fault: Fault) -> SceneError {
         self.error(self.keys.get(key).map(|place| place.key.clone()), fault)
     }
 
-    /// An error that points at a key's value; at the table where the key is not given.
+    /// An error that points at a key's value; at the table if the key is not given.
     pub(crate) fn value_fault(&self, key: &str, fault: Fault) -> SceneError {
         self.error(self.keys.get(key).map(|place| place.value.clone()), fault)
     }
 
-    /// The key that says which part of the body the table is about.
+    /// The key that names the part of the body of the table.
     pub(crate) fn part_key(&self) -> &'static str {
         match self.keys.contains_key("where") {
             true => "where",
@@ -69,7 +69,7 @@ impl Place {
         }
     }
 
-    /// Line of a key, or of the table where the key is not given; counted from 1.
+    /// Line of a key, or of the table if the key is not given; counted from 1.
     pub(crate) fn line(&self, key: &str) -> Option<usize> {
         let span = self
             .keys

@@ -325,7 +325,7 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// The error for the word of another key on which a condition depends, where the word itself means nothing.
+    /// The error for the word of another key on which a condition depends, if the word itself means nothing.
     fn unknown_word(&self, condition: &Condition) -> Option<SceneError> {
         let (other, _) = condition.goes.words()?;
         let value = self.entries.get(other)?;

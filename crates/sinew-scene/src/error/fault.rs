@@ -167,7 +167,7 @@ pub enum Fault {
     /// A part chosen by position whose name is that of a group of the mesh file.
     #[error(transparent)]
     SelectedGroup(#[from] sinew_mesh::AddGroupError),
-    /// A region for the rest of the body where the others leave nothing.
+    /// A region for the rest of the body although the others leave nothing.
     #[error("the other regions have all {tets} tetrahedra and leave none")]
     NothingLeft {
         /// Tetrahedra of the mesh.
@@ -188,7 +188,7 @@ pub enum Fault {
     /// A method that cannot be set up for the scene.
     #[error(transparent)]
     SetUp(sinew_core::SetupError),
-    /// A step longer than the duration where steps continue beyond that.
+    /// A step longer than the duration of a run.
     #[error("dt = {dt} s is longer than the duration, {duration} s: expected a step within it")]
     LongStep {
         /// The step (s).

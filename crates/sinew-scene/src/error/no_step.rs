@@ -28,7 +28,7 @@ pub enum NoStableStep {
         /// Integrator id.
         integrator: String,
     },
-    /// The integrator is stable whatever the step.
+    /// The integrator is stable at any step.
     #[error("`{integrator}` is stable at any step")]
     Any {
         /// Integrator id.
@@ -40,7 +40,7 @@ pub enum NoStableStep {
         /// Integrator id.
         integrator: String,
     },
-    /// The integrator cannot say up to which step it is stable.
+    /// The integrator cannot compute its largest stable step.
     #[error(transparent)]
     NoAnswer(#[from] StableStepError),
 }

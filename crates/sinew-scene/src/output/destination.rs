@@ -125,7 +125,7 @@ impl Destination {
     /// Writes the whole output.
     ///
     /// # Errors
-    /// [`OutputError`]; a file that was there is then as it was.
+    /// [`OutputError`]; an existing file is then unchanged.
     pub fn write(self, content: &[u8]) -> Result<Delivery, OutputError> {
         let mut output = self.open()?;
         if let Err(source) = output.write_all(content) {
@@ -168,7 +168,7 @@ impl Output {
     /// Completes the output. A file gets its final name, if that may still be written.
     ///
     /// # Errors
-    /// [`OutputError`]; a file that was there is then as it was.
+    /// [`OutputError`]; an existing file is then unchanged.
     pub fn finish(mut self) -> Result<Delivery, OutputError> {
         let flushed = self.flush();
         let delivery = if self.reader_left() {

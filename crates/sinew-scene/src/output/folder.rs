@@ -88,7 +88,7 @@ impl OutputFolder {
     /// Writes a file of this name and returns its path.
     ///
     /// # Errors
-    /// [`OutputError`]; a file that was there is then as it was.
+    /// [`OutputError`]; an existing file is then unchanged.
     pub fn write(&self, name: &str, content: &[u8]) -> Result<PathBuf, OutputError> {
         let path = self.path.join(name);
         let folder = folder_of(&path);

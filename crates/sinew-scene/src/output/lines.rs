@@ -3,7 +3,7 @@
 /// The widest line (characters) of texts for a terminal.
 pub const WIDTH: usize = 100;
 
-/// A text in lines of at most [`WIDTH`] characters, where its words allow that: the first after `heading`, those of
+/// A text in lines of at most [`WIDTH`] characters, if its words allow that: the first after `heading`, those of
 /// further paragraphs beneath it, and those that continue a paragraph `hang` characters farther in.
 ///
 /// ```

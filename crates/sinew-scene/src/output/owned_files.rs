@@ -185,7 +185,7 @@ impl OwnedFolder {
         Ok(path)
     }
 
-    /// An error where the path names another folder than the one that was opened.
+    /// An error if the path names another folder than the one that was opened.
     pub(super) fn check_identity(&self) -> Result<(), OutputError> {
         match Identity::of(self.path()) == self.identity {
             true => Ok(()),

@@ -47,7 +47,7 @@ pub(super) struct OverlapSearch {
     size: f64,
     /// Tolerance for points in tetrahedra at cut faces; `None` if cut faces are treated as any other surface.
     lips: Option<Lips>,
-    /// Made where a point was found inside.
+    /// Made if a point was found inside.
     depths: Option<Depths>,
     boxes: Vec<Bounds>,
     grid: Grid,

@@ -20,8 +20,8 @@ use unit::Unit;
 /// by the groups' names or else by position, a force that moves the body by some 2 % of its length, and a unit
 /// guessed from the mesh's extent. Data with such a name are proposed as Young's modulus.
 ///
-/// `file` is the path of the mesh as the scene names it. Material and load are placeholders and say so. Cells of higher order
-/// are taken by their corners.
+/// `file` is the path of the mesh as the scene names it. Material and load are marked as placeholders. Cells of
+/// higher order are taken by their corners.
 ///
 /// # Errors
 /// [`TetMeshError`] for a mesh that is no body of tetrahedra.

@@ -49,7 +49,7 @@ impl Scene {
 
 impl SceneSource {
     /// A tree of values of a program as the text of a scene, of which messages name keys in the place of lines.
-    /// [`Scene::from_value`] reads one at once.
+    /// [`Scene::from_value`] reads one directly.
     ///
     /// # Errors
     /// [`SceneError`] for values that TOML does not have.

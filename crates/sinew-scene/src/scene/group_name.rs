@@ -1,4 +1,4 @@
-//! Names of groups, with a dimension where several have one name.
+//! Names of groups, with a dimension if several have one name.
 
 use toml::de::DeValue;
 

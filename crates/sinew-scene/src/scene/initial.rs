@@ -37,7 +37,7 @@ pub enum Initial {
     },
     /// The displacement of the whole body at rest under loads at their full value.
     Static {
-        /// Names of the loads; `gravity` is one where the scene has gravity.
+        /// Names of the loads; `gravity` is one if the scene has gravity.
         loads: Vec<String>,
     },
 }

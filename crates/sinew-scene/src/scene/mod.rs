@@ -155,7 +155,7 @@ impl Scene {
     /// Reads a scene file with other values; see [`SceneSource::with_values`].
     ///
     /// # Errors
-    /// As [`Scene::load`], and where a value cannot be set.
+    /// As [`Scene::load`], and if a value cannot be set.
     pub fn load_with<T: AsRef<str>>(
         path: impl AsRef<Path>,
         values: &[T],
@@ -210,7 +210,7 @@ impl Scene {
         &self.title
     }
 
-    /// The title; the path of the file where the scene has none.
+    /// The title; the path of the file if the scene has none.
     #[must_use]
     pub fn title_or_path(&self) -> Cow<'_, str> {
         match self.title.as_str() {

@@ -24,7 +24,7 @@ pub struct RunSettings {
     pub samples: usize,
     /// Id of the integrator.
     pub integrator: String,
-    /// The step as the scene asks for it.
+    /// The step that the scene states.
     pub dt: TimeStep,
     /// The most memory (MB) that factors may take; if none is given, the free memory of the computer.
     pub memory: Option<f64>,

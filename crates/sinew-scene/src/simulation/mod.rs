@@ -100,7 +100,7 @@ impl Simulation {
         &self.initial
     }
 
-    /// Duration, integrator and steps as the scene asks for them.
+    /// Duration, integrator and steps that the scene states.
     #[must_use]
     pub fn settings(&self) -> &RunSettings {
         self.scene().settings()

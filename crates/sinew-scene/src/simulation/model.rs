@@ -64,7 +64,7 @@ impl SceneModel {
         }
     }
 
-    /// Mesh and matrices, where a body moves.
+    /// Mesh and matrices, if a body moves.
     #[must_use]
     pub fn body(&self) -> Option<&Arc<BodyModel>> {
         match self {

@@ -328,7 +328,7 @@ fn by_volume(mesh: &TetMesh, is_in: impl Fn(u32) -> bool) -> Vec<(u32, f64)> {
     of_sum_one(tets.map(|tet| (tet, mesh.volume(tet as usize))).collect())
 }
 
-/// Weights divided by their sum; alike where sizes are beyond the numbers of a computer.
+/// Weights divided by their sum; alike if sizes are beyond the numbers of a computer.
 fn of_sum_one(mut weighted: Vec<(u32, f64)>) -> Vec<(u32, f64)> {
     let sum: f64 = weighted.iter().map(|(_, weight)| weight).sum();
     let alike = (weighted.len() as f64).recip();

@@ -96,7 +96,7 @@ impl SceneBody {
     /// included as a mean over the steps on both sides.
     ///
     /// # Errors
-    /// [`ReactionError`] when the state is that of another system, and where a load follows inputs that are not given.
+    /// [`ReactionError`] when the state is that of another system, and if a load follows inputs that are not given.
     pub fn reactions(
         &self,
         state: &State,

@@ -18,7 +18,7 @@ pub struct SceneBody {
     pub(super) scene: Arc<Scene>,
     pub(super) model: SceneModel,
     pub(super) probes: Arc<[Probe]>,
-    /// Its parts that are fixed or moved, once they were asked for.
+    /// Its parts that are fixed or moved, once they were requested.
     pub(super) held: OnceLock<Arc<[HeldPlace]>>,
 }
 

@@ -125,7 +125,7 @@ impl<'a> Pass<'a> {
         i64::from(self.graph.weight(vertex)) - self.beside[vertex as usize][1 - side]
     }
 
-    /// The best move that leaves the side small enough: to the lighter side where both are as good.
+    /// The best move that leaves the side small enough: to the lighter side if both are as good.
     fn next(&mut self) -> Option<(u32, usize)> {
         let weights = self.division.weights;
         let lighter = usize::from(weights[1] < weights[0]);

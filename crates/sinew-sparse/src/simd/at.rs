@@ -45,7 +45,7 @@ impl<T: Copy> At<T> {
         Self::new(values.as_ptr().cast_mut(), 0, values.len())
     }
 
-    /// The address `count` numbers further; it may lie outside, where nothing is used through it.
+    /// The address `count` numbers further; it may lie outside if nothing is used through it.
     #[inline(always)]
     #[must_use]
     pub(crate) fn add(self, count: usize) -> Self {

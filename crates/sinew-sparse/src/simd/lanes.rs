@@ -5,7 +5,7 @@ use super::real::Real;
 /// Lanes at most, for arrays.
 pub(crate) const MOST: usize = 16;
 
-/// A vector of `T::LANES` numbers: 64 bytes, whatever the instruction set, so that layouts in memory do
+/// A vector of `T::LANES` numbers: 64 bytes for every instruction set, so that layouts in memory do
 /// not depend on it.
 ///
 /// # Safety
@@ -29,15 +29,15 @@ pub(crate) trait Lanes<T: Real>: Copy {
     unsafe fn parts(self) -> [Self; 2];
     /// Prefetches the 64 bytes at an address, which need not be valid, into the first cache.
     unsafe fn prefetch(from: *const T);
-    /// `self factor + other`, rounded once where the instruction set can.
+    /// `self factor + other`, rounded once if the instruction set can.
     unsafe fn mul_add(self, factor: Self, other: Self) -> Self;
-    /// The number of the same sign whose size is `limit` at most; not a number stays so.
+    /// The number of the same sign whose size is `limit` at most; NaN stays NaN.
     unsafe fn clamp(self, limit: Self) -> Self;
     /// 0 if the size is below `tiny`.
     unsafe fn flush(self, tiny: Self) -> Self;
-    /// One bit for each lane that is at most `other`; none if one of them is not a number.
+    /// One bit for each lane that is at most `other`; none if one of them is NaN.
     unsafe fn at_most(self, other: Self) -> u32;
-    /// `then` in lanes where `a` is at most `b`, else `otherwise`, also if one of the two is not a number.
+    /// `then` in lanes with `a` at most `b`, else `otherwise`, also if one of the two is NaN.
     unsafe fn select_le(a: Self, b: Self, then: Self, otherwise: Self) -> Self;
     /// One bit for each lane whose size is at least `limit`.
     unsafe fn reaches(self, limit: Self) -> u32;
@@ -88,6 +88,6 @@ pub(crate) trait Lanes<T: Real>: Copy {
             unsafe { *to.add(lane * stride) = [x, y, z, T::default()] }
         }
     }
-    /// One bit for each lane whose size is not at most `limit`: larger, or not a number.
+    /// One bit for each lane whose size is not at most `limit`: larger, or NaN.
     unsafe fn exceeds(self, limit: Self) -> u32;
 }

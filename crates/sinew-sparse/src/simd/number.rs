@@ -58,7 +58,7 @@ pub trait Number:
     /// Writes three numbers and 0 to a row for each lane, `stride` rows apart from the first.
     fn store_rows(columns: [Self; 3], to: &mut [[Self::Real; 4]], stride: usize);
 
-    /// `self factor + other`, rounded once where the processor can.
+    /// `self factor + other`, rounded once if the processor can.
     #[must_use]
     fn mul_add(self, factor: Self, other: Self) -> Self;
 
@@ -74,11 +74,11 @@ pub trait Number:
     #[must_use]
     fn parts(self) -> [Self; 2];
 
-    /// `then` where `a <= b`, elsewhere, and where one of them is not a number, `otherwise`.
+    /// `then` if `a <= b`, else `otherwise`, also if one of them is NaN.
     #[must_use]
     fn select_le(a: Self, b: Self, then: Self, otherwise: Self) -> Self;
 
-    /// The lanes in which `a <= b`, one bit each, the lowest first; not those in which one of them is not a number.
+    /// The lanes in which `a <= b`, one bit each, the lowest first; not those with a NaN.
     fn lanes_le(a: Self, b: Self) -> u32;
 
     /// True if `a <= b` in every lane; false if one of the values is NaN.

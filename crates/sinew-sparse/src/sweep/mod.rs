@@ -3,7 +3,7 @@
 //!
 //! A [`Sweep`] is a [`CellMap`] with its matrices. [`Fields`] store the vectors of all cells as
 //! structures of arrays, in the order of a [`Numbering`]. Rows are taken in chunks, each by one
-//! thread and in the same order of operations whatever the number of threads, so that the bits do not
+//! thread and in the same order of operations for any number of threads, so that the bits do not
 //! depend on it.
 
 #![allow(

@@ -14,7 +14,7 @@ const FINE: f64 = 1e-12;
 const ROOM: f64 = 1.0 + 1e-4;
 
 /// The units of the cells of a matrix in few digits: powers of two of which numbers up to the largest entry of a cell's
-/// row are multiples. Empty where digits are fine.
+/// row are multiples. Empty if digits are fine.
 #[derive(Clone, Debug)]
 pub(super) struct Units(Vec<f64>);
 

@@ -25,7 +25,7 @@ pub struct Sell<T> {
     /// Entries of each block, entry by entry and lane by lane.
     values: Vec<T>,
     units: Units,
-    /// Blocks by which memory is asked for before it is needed: a product streams through it.
+    /// Number of blocks by which memory is prefetched: a product streams through it.
     ahead: usize,
 }
 

@@ -156,7 +156,7 @@ struct Template {
 }
 
 impl<T: Real> Lattice<T> {
-    /// The rows of a matrix on a lattice; `None` where too few repeat, or where a cell's neighbours are
+    /// The rows of a matrix on a lattice; `None` if too few repeat, or if a cell's neighbours are
     /// not next to it.
     #[must_use]
     pub fn new(matrix: &BlockMatrix, grid: &Grid) -> Option<Self> {

@@ -171,7 +171,8 @@ impl BodyStep {
         self.before.advanced(moved.along, moved.about)
     }
 
-    /// The velocity (m/s) at an arm (m) by which the work of contact is counted: where velocities are staggered the mean of this step's and the last one's.
+    /// The velocity (m/s) at an arm (m) for the work of contact: with staggered velocities the mean of this step's
+    /// and the last one's.
     pub(super) fn working_velocity(&self, arm: Vector) -> Vector {
         if self.is_staggered {
             self.last.plus(self.velocity()).times(0.5).at(arm)

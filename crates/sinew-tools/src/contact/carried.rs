@@ -113,7 +113,7 @@ impl Tools {
     }
 }
 
-/// Copies a row of `N` numbers, where both lists have it.
+/// Copies a row of `N` numbers, if both lists have it.
 fn copy<const N: usize>(source: &[f64], from: usize, target: &mut [f64], to: usize) {
     let source = source.get(N * from..N * (from + 1));
     let target = target.get_mut(N * to..N * (to + 1));

@@ -13,7 +13,8 @@ pub(super) const HELD: f64 = 1e-6;
 /// Most sweeps of an iteration for forces that act on each other.
 pub(super) const MOST_SWEEPS: usize = 500;
 
-/// Change of a displacement in a sweep, as a share of the largest that any force causes, below which an iteration has come to its end.
+/// Change of a displacement in a sweep, as a share of the largest that any force causes, below which an iteration has
+/// converged.
 pub(super) const CONVERGED: f64 = 1e-13;
 
 /// Residual above which an iteration has failed.

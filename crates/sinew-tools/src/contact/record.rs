@@ -200,7 +200,8 @@ impl<'a> Record<'a> {
         }
     }
 
-    /// Lists the cells that were near a tool in this step or linked to others, each once, with their velocities (m/s) after it where something rubs.
+    /// Lists the cells that were near a tool in this step or linked to others, each once, with their velocities (m/s)
+    /// after it if there is friction.
     pub(super) fn list(
         &mut self,
         listed: impl Iterator<Item = u32>,

@@ -104,7 +104,8 @@ impl Room {
         self.bound();
     }
 
-    /// The passes in which a step is taken where tools meet triangles: in each of them such a tool moves by a quarter of its smallest width at most. What needs more than are
+    /// The passes in which a step is taken if tools meet triangles: in each of them such a tool moves by a quarter of
+    /// its smallest width at most. What needs more than are
     /// made is noted.
     pub(super) fn passes_between_nodes(
         &self,

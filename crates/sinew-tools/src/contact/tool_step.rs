@@ -36,7 +36,7 @@ pub(super) struct ToolStep {
     pub(super) now: Pose,
     /// The pose before the step before, and the length (s) of that step.
     earlier: Option<(Pose, f64)>,
-    /// Steps over which contact works: 2 where velocities are staggered, else 1.
+    /// Steps over which contact works: 2 if velocities are staggered, else 1.
     steps_at_work: f64,
     /// The step of a tool that is a body of its own.
     pub(super) body: Option<BodyStep>,

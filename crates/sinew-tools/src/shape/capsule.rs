@@ -58,7 +58,7 @@ pub(super) fn first_contact(
 
 /// The contact of a point that comes into the cylinder past its round end without entering that.
 ///
-/// There is no such point but by rounding, where the line is nearly a tangent of the end.
+/// Such a point exists only by rounding, if the line is nearly a tangent of the end.
 fn through_the_seam(
     from: [f64; 3],
     motion: [f64; 3],

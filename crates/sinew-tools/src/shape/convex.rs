@@ -119,8 +119,8 @@ impl Convex {
 
     /// The first contact of a point that moves straight from `from` to `to` (m).
     ///
-    /// A point that begins inside is in contact at once, with the nearest point of the surface. One that begins
-    /// outside, or on the surface, is in contact where it enters, if it does: not where it only touches, slides or moves
+    /// A point that begins inside is in contact immediately, with the nearest point of the surface. One that begins
+    /// outside, or on the surface, is in contact when it enters, if it does: not if it only touches, slides or moves
     /// away. At an edge or corner of a cuboid the normal is that of a face which the motion opposes.
     #[must_use]
     pub fn first_contact(&self, from: [f64; 3], to: [f64; 3]) -> Option<Touch> {

@@ -287,7 +287,7 @@ impl World {
         Ok((driven, method))
     }
 
-    /// Goes on with another method, if a step can be taken with it; returns the one before.
+    /// Continues with another method, if a step can be taken with it; returns the one before.
     fn switch(&mut self, mut method: Method) -> Result<Method, CommandError> {
         let Self {
             body,

@@ -363,7 +363,7 @@ impl Failure {
         }
     }
 
-    /// An error where a run did not come to its end; `remedy` is said after an interruption.
+    /// An error if a run was not completed; `remedy` is added after an interruption.
     pub(crate) fn of_end(
         ended: Ended,
         simulation: &Simulation,

@@ -1,4 +1,4 @@
-//! A pulse moves the centre of mass of a free body as Newton says.
+//! A pulse moves the centre of mass of a free body by Newton's law.
 
 use sinew_core::{Ramp, System};
 use sinew_measure::{Case, MethodChoice};

@@ -1,4 +1,4 @@
-//! The place of rest: a damped body comes to rest where K u = F, whatever replaces the mass.
+//! The place of rest: a damped body comes to rest at `K u = F`, for any replacement of the mass.
 
 use sinew_core::{Outcome, Run, simulate};
 use sinew_measure::{Case, MethodChoice};

@@ -1,4 +1,4 @@
-//! A scene moves alike whatever its unit of length.
+//! Independence of a scene's motion from its unit of length.
 
 use std::path::PathBuf;
 

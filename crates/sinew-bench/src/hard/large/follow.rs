@@ -22,7 +22,7 @@ pub(crate) struct Planned {
 }
 
 impl Planned {
-    /// A run that has to come to its end.
+    /// A run that has to be completed.
     pub(crate) fn must(method: MethodChoice, dt: f64) -> Self {
         Self {
             method,
@@ -106,7 +106,7 @@ impl<'a> Ledger<'a> {
         }
     }
 
-    /// Kinetic and elastic energy (J); not a number where the law refuses the state.
+    /// Kinetic and elastic energy (J); NaN if the law refuses the state.
     fn energy(&mut self, moment: &Moment<'_>) -> f64 {
         let elastic = elastic(self.system, &moment.state.u, &mut self.force);
         match (elastic, moment.velocity(&mut self.velocity)) {

@@ -17,7 +17,7 @@ const LONGEST: f64 = 10.0;
 /// Halvings after which a direction is given up.
 pub(super) const MOST_HALVINGS: u32 = 60;
 
-/// Multiples of the rounding of forces within which a slope says nothing.
+/// Multiples of the rounding of forces within which a slope is meaningless.
 pub(super) const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
 /// A displacement over a step that is improved by nonlinear conjugate gradients with the cells' own blocks for a preconditioner.
@@ -53,7 +53,7 @@ pub(super) struct Descent {
     /// D times `moved`, and times the direction, without alpha M.
     damped: Vec<f64>,
     damped_direction: Vec<f64>,
-    /// Present where parts may move as rigid bodies.
+    /// Present if parts may move as rigid bodies.
     pub(super) rigid: Option<Rigid>,
 }
 

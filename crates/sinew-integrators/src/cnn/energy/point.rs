@@ -3,7 +3,7 @@
 use sinew_core::vectors::{dot, dot_of_difference};
 use sinew_core::{ElasticLaw, EvaluationError, LoadTime, Trial, Velocities};
 
-/// Multiples of the rounding of two energies within which their difference says nothing.
+/// Multiples of the rounding of two energies within which their difference is meaningless.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
 /// A displacement with the law's energy and force there.

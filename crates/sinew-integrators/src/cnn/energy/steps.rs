@@ -53,7 +53,7 @@ struct Attempt {
 }
 
 impl Attempt {
-    /// True if its displacement may be accepted; false if the remaining energy is not a number.
+    /// True if its displacement may be accepted; false if the remaining energy is NaN.
     fn has_room(&self) -> bool {
         self.room >= 0.0
     }

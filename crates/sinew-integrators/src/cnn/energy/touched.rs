@@ -12,7 +12,8 @@ use crate::cnn::coupled_contact::{Coupled, CoupledContact};
 /// Times each cell's own block, without inertia, by which the potential is bounded at first.
 const FIRST_BOUND: f64 = 2.0;
 
-/// The highest bound that leaves rigid motions their inertia: where the potential rises along such a motion, as that of a large turn may, no higher one helps.
+/// The highest bound that leaves rigid motions their inertia: if the potential rises along such a motion, as that of
+/// a large turn may, no higher one helps.
 const MOST_DEFLATED: f64 = 64.0;
 
 /// Displacement over a step from which sweeps set out.
@@ -30,7 +31,7 @@ pub(super) enum SetOut {
 /// and the cells' own blocks B of the rest, with beta large enough for a bound. Its minimum is the result of contact,
 /// in the metric `dt^2 (m M + beta B)`, for cells with the contact-free displacement `z - (m M + beta B)^-1 g`. So
 /// each sweep ends with forces of contact that fit its displacement, friction included. It is a proximal gradient
-/// method with a momentum that restarts where it leads uphill (Beck and Teboulle, SIAM J. Imaging Sci. 2, 2009;
+/// method with a momentum that restarts if it leads uphill (Beck and Teboulle, SIAM J. Imaging Sci. 2, 2009;
 /// O'Donoghue and Candes, Found. Comput. Math. 15, 2015).
 ///
 /// Sweeps start at `z = dt v`, where `y - z` is of the order of `dt^2`: the first one continues free motion.
@@ -59,7 +60,7 @@ pub(super) struct Touched {
     damped: Vec<f64>,
     /// Inverse blocks of the metric (1/kg).
     inverse: Vec<f64>,
-    /// Present where parts may move as rigid bodies.
+    /// Present if parts may move as rigid bodies.
     coupled: Option<CoupledContact>,
     /// True if the metric leaves rigid motions their inertia.
     is_deflated: bool,

@@ -23,7 +23,7 @@ struct Panel {
     below: usize,
 }
 
-/// Columns that are read at once.
+/// Columns that are read together.
 const COLUMNS: usize = 4;
 
 /// Partial sums of a dot product.

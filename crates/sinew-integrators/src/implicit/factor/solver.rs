@@ -7,8 +7,8 @@ use super::memory::Memory;
 use super::{Factor, bytes};
 use crate::implicit::factor_error::FactorError;
 
-/// A solver of equations with a [`Combination`] that is symmetric and positive definite: by its factor, or by conjugate gradients where a factor takes more memory
-/// than there is.
+/// A solver of equations with a [`Combination`] that is symmetric and positive definite: by its factor, or by
+/// conjugate gradients if a factor takes more memory than there is.
 #[derive(Debug)]
 pub struct Solver(Kind);
 
@@ -134,7 +134,7 @@ impl Solver {
         }
     }
 
-    /// A sentence about how equations are solved, where that is not by a factor.
+    /// A sentence about the solution of equations, if that is not by a factor.
     #[must_use]
     pub fn remark(&self) -> Option<String> {
         let Kind::Gradients {

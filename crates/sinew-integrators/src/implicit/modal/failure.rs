@@ -6,9 +6,9 @@ use crate::implicit::factor_error::FactorError;
 #[derive(Debug)]
 pub(super) enum Failure {
     Factorization(FactorError),
-    /// Vectors of the loads are asked for, and there are no loads.
+    /// Vectors of the loads are requested, but there are no loads.
     NoLoads,
-    /// Fewer vectors are asked for than there are static responses and rigid motions.
+    /// Fewer vectors are requested than there are static responses and rigid motions.
     TooFew {
         needed: usize,
     },

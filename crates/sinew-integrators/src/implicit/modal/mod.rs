@@ -160,7 +160,7 @@ impl Frame<Modal> {
         steps.basis.shapes.get(mode * n..(mode + 1) * n)
     }
 
-    /// The share of the response to the loads that is estimated to be lost, where a tolerance was
+    /// The share of the response to the loads that is estimated to be lost, if a tolerance was
     /// asked for and there are loads to estimate it from.
     #[must_use]
     pub fn estimated_error(&self) -> Option<f64> {

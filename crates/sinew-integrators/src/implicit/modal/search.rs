@@ -18,7 +18,7 @@ const SHARE: f64 = 0.5;
 /// and a run sees some of them.
 pub(super) const MARGIN: f64 = 0.8;
 
-/// Number of lowest modes that are taken where only the first state excites any.
+/// Number of lowest modes that are taken if only the first state excites any.
 const WITHOUT_LOADS: usize = 64;
 
 /// Size of the first Lanczos basis; each further one is larger by a third.

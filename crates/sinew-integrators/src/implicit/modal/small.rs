@@ -1,4 +1,4 @@
-//! All modes of a small system at once.
+//! All modes of a small system together.
 
 use sinew_core::LinearOperators;
 
@@ -7,7 +7,7 @@ use crate::implicit::factor::symmetric_eigen;
 use crate::implicit::factor_error::FactorError;
 use crate::load_case::LoadCase;
 
-/// Degrees of freedom up to which all modes are found at once: choosing would cost more than it
+/// Degrees of freedom up to which all modes are computed together: choosing would cost more than it
 /// saves.
 pub(super) const SMALL: usize = 256;
 

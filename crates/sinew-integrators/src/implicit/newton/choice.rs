@@ -42,7 +42,7 @@ impl Bound {
         }
     }
 
-    /// The least that it can be, whatever the mesh.
+    /// The least value for any mesh.
     pub(super) fn least(self) -> u64 {
         self.of((ITERATIONS * ASSEMBLY) as u64)
     }

@@ -7,7 +7,7 @@ use sinew_core::{ElasticLaw, LoadTime, State, Step, StepReport, Trial};
 const TOLD: f64 = 0.05;
 
 /// Sums up the energy that a motion may have: its initial energy, and the work of loads and supports. Damping, which
-/// takes energy away, is left out, so that growth is found late where there is much of it. It restarts with each
+/// takes energy away, is left out, so that growth is found late with much damping. It restarts with each
 /// motion: results depend on it by a remark only.
 pub(super) struct EnergyWatch {
     integrator: &'static str,

@@ -135,7 +135,7 @@ impl Linear {
         }
     }
 
-    /// Goes on in this step with a factor, if there is a choice and memory for one; true if it did not before.
+    /// Continues this step with a factor, if there is a choice and memory for one; returns true if it did not before.
     pub(super) fn take_factor(&mut self, reason: Reason) -> bool {
         if self.way == Way::Factor || self.factor_use == FactorUse::Never || self.lacks_memory {
             return false;

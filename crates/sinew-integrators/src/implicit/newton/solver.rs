@@ -31,11 +31,12 @@ const ARMIJO: f64 = 1e-4;
 /// 2005): in a body strained by 1e-6 the rounding of positions spoils ten digits of the energy, and four of the forces.
 const DOUBTFUL: f64 = 1e-6;
 
-/// The share of a slope that may be left, upwards, where slopes decide.
+/// The share of a slope that may be left, upwards, if slopes decide.
 const OVERSHOT: f64 = 0.5;
 
 /// Change of the potential from one point to another, a share of `along` apart, and the size of its parts. The forces that have
-/// no energy count with the mean of both ends, which is exact where they are linear, as inertia, loads and viscous damping are.
+/// no energy count with the mean of both ends, which is exact if they are linear, as inertia, loads and viscous
+/// damping are.
 fn change(from: &Point, to: &Point, along: &[f64], share: f64) -> (f64, f64) {
     let [before, after] = [from, to].map(|point| share * point.other_slope(along));
     let others = 0.5 * (before + after);
@@ -51,7 +52,7 @@ enum Iterated {
     Stuck,
 }
 
-/// Newton's method with a line search, and projection where the exact tangent leads nowhere (Longva et al.,
+/// Newton's method with a line search, and projection if the exact tangent gives no descent (Longva et al.,
 /// arXiv 2311.14526, 2023).
 pub(super) struct Newton {
     settings: NewtonSettings,

@@ -29,7 +29,7 @@ impl Unsymmetric {
 
     /// Turns the solution `x` of `K x = b` into that of `(K + S) x = b`, by the generalised minimal residual method with the factor of K as
     /// the preconditioner (Saad and Schultz, SIAM J. Sci. Stat. Comput. 7, 1986); the number of solutions with the factor. `skew` writes
-    /// S times a vector, or says that there is no S.
+    /// S times a vector; returns false if there is no S.
     pub(super) fn solve(
         &mut self,
         factor: &mut Factor,

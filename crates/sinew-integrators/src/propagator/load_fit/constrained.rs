@@ -119,7 +119,7 @@ impl Fit<'_> {
         angles.into_iter().map(x_of).collect()
     }
 
-    /// Mixes in as much of a constant G, which is in the middle, as bounds ask for.
+    /// Mixes in as much of a constant G, which is in the middle, as bounds require.
     fn drawn_in(&self, mut g: Vec<f64>, asked: Bounds) -> Vec<f64> {
         let found = self.bounds(&g);
         let middle = self.middle();

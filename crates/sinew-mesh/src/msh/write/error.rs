@@ -9,7 +9,7 @@ pub enum WriteMshError {
     /// The destination refused.
     #[error("the mesh cannot be written: {0}")]
     Io(#[from] io::Error),
-    /// A coordinate is infinite or not a number.
+    /// A coordinate is infinite or NaN.
     #[error(
         "the node with tag {node_tag} has coordinates {point:?}; only finite numbers can be written"
     )]

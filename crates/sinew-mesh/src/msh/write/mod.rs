@@ -32,7 +32,7 @@ pub enum MshVersion {
 /// changed:
 ///
 /// * **4.1** attaches groups to geometrical entities. A block whose cells differ in entity or groups is written as several
-///   blocks, and where one entity would have to be in different groups, or a cell has none, new entity numbers are given.
+///   blocks, and if one entity would have to be in different groups, or a cell has none, new entity numbers are given.
 /// * **2.2** has one group per cell. A cell in several groups is written once for each, as gmsh does; the copies
 ///   get new tags. Signs of group tags, entities of nodes and the boundaries between blocks of one cell type are lost. Tags
 ///   beyond 31 bits are replaced by counting from 1 (and links between nodes with such tags left out).
@@ -41,7 +41,7 @@ pub enum MshVersion {
 /// # Errors
 ///
 /// If the mesh contradicts itself, a coordinate is not finite, a name has a line break, a tag does not fit into a binary
-/// file's 31 bits where there is data, or the destination fails.
+/// file's 31 bits and there are data, or the destination fails.
 ///
 /// ```
 /// use sinew_mesh::{MshEncoding, MshVersion, read_msh, structured, write_msh};

@@ -3,7 +3,7 @@
 /// Base64 of RFC 4648 that follows one another: what is encoded in pieces, each filled up with `=`, reads as one.
 pub(super) struct Base64<'a> {
     text: &'a [u8],
-    /// Decoded bytes that were not asked for yet, the next one last.
+    /// Decoded bytes that were not requested yet, the next one last.
     waiting: Vec<u8>,
 }
 

@@ -14,7 +14,7 @@ pub(super) struct Encoding {
     pub(super) is_compressed: bool,
 }
 
-/// A compressor whose numbers cannot be read. Files name it also where all their numbers are text.
+/// A compressor whose numbers cannot be read. Files name it even if all their numbers are text.
 pub(super) struct UnreadCompressor {
     pub(super) name: String,
     /// The place of its name.

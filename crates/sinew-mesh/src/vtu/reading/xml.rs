@@ -28,7 +28,7 @@ impl Tag<'_> {
         given.map(|(_, value)| unescaped(value).replace(char::is_control, " "))
     }
 
-    /// The value of an attribute that is a count; `otherwise` where it is not given.
+    /// The value of an attribute that is a count; `otherwise` if it is absent.
     pub(super) fn count(&self, name: &str, otherwise: Option<usize>) -> Result<usize, Fault> {
         let wrong = |found: String| {
             let problem = format!("{name} of <{}> is {found}", self.name);

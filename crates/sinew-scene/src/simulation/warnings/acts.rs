@@ -20,7 +20,7 @@ pub(super) fn warnings(body: &Body, built: &BodyModel) -> Vec<Warning> {
     warnings
 }
 
-/// A warning where nothing moves the body.
+/// A warning if nothing moves the body.
 fn idle(body: &Body) -> Option<Warning> {
     let problem = &body.problem;
     let has_weight = problem.gravity.is_some_and(|gravity| norm(&gravity) > 0.0);
@@ -42,7 +42,7 @@ fn idle(body: &Body) -> Option<Warning> {
     })
 }
 
-/// A warning where the body may be cut and nothing does.
+/// A warning if the body may be cut and nothing does.
 fn uncut(body: &Body) -> Option<Warning> {
     let cutting = body.cutting.as_ref()?;
     let is_uncut = cutting.blade == Blade::None && cutting.remove.is_none();

@@ -1,4 +1,4 @@
-//! Elements that seem to hang together and do not.
+//! Warnings of elements that seem to be joined and are not.
 
 use sinew_mesh::JointFinding;
 

@@ -59,7 +59,7 @@ fn outside_run(simulation: &Simulation) -> Vec<Warning> {
     outside.collect()
 }
 
-/// The first and the last instant (s) at which a pulse or a table changes; `None` for other ramps, and where nothing
+/// The first and the last instant (s) at which a pulse or a table changes; `None` for other ramps, and if nothing
 /// changes.
 fn span(ramp: &Ramp) -> Option<(f64, f64)> {
     match ramp {

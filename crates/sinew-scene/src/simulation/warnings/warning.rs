@@ -77,7 +77,7 @@ pub enum WarningKind {
     TouchingParts,
     /// Faces of elements that lie on others without being the same.
     MismatchedFaces,
-    /// Blocks of elements that hang together by single nodes or edges.
+    /// Blocks of elements that are joined by single nodes or edges only.
     Hinge,
     /// Elements that overlap.
     TangledMesh,
@@ -95,7 +95,7 @@ pub enum WarningKind {
     Locking,
     /// A law that fails in motions that tissue undergoes.
     WeakLaw,
-    /// An initial displacement of fixed components, which stay where they are.
+    /// An initial displacement of fixed components, which do not move.
     HeldInitial,
     /// A prescribed position that jumps.
     MotionJumps,
