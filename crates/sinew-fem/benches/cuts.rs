@@ -11,6 +11,7 @@
     reason = "a benchmark ends in a panic and prints"
 )]
 
+use std::cell::Cell;
 use std::collections::BTreeSet;
 use std::hint::black_box;
 use std::sync::Arc;
@@ -59,7 +60,9 @@ fn anew(mesh: &Arc<TetMesh>) {
     let problem = problem();
     let cut = CutModel::new(Arc::clone(mesh), problem.clone(), 0.0).expect("it can be cut");
     let model = cut.model();
-    let state = State::at_rest(model.dofs());
+    let [rest, mut moved] = [0, 1].map(|_| State::at_rest(model.dofs()));
+    moved.u[0] = 1e-6;
+    let states = Cell::new([&rest, &moved]);
     let least = |work: &dyn Fn()| {
         let times = (0..7).map(|_| {
             let begin = Instant::now();
@@ -79,6 +82,9 @@ fn anew(mesh: &Arc<TetMesh>) {
         least(&|| drop(black_box(problem.after_cuts(mesh, cut.mesh())))),
         least(&|| drop(black_box(Model::build(&cut.mesh().mesh, &problem)))),
         least(&|| {
+            // In turn, since an evaluation at the last displacement is known.
+            let [state, next] = states.get();
+            states.set([next, state]);
             black_box(model.energy(&state.u, &state.v));
         }),
     );

@@ -1,9 +1,9 @@
 //! The files that documents link to exist.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use super::breach::{Breach, RuleError};
-use super::files::source;
+use super::files::{entries, shown, source};
 
 /// Folders with documents, and those without folders in them.
 const FOLDERS: [&str; 3] = ["docs", "docs/book/src", "docs/decisions"];
@@ -14,7 +14,7 @@ pub(super) fn check(root: &Path) -> Result<Vec<Breach>, RuleError> {
     folders.extend(FOLDERS.map(|folder| root.join(folder)));
     folders.extend(entries(&root.join("crates"))?);
     let mut breaches = Vec::new();
-    for folder in folders {
+    for folder in folders.into_iter().filter(|folder| folder.is_dir()) {
         for path in entries(&folder)? {
             if path.extension().is_some_and(|extension| extension == "md") {
                 let text = source(&path)?;
@@ -37,27 +37,6 @@ fn links(text: &str) -> impl Iterator<Item = &str> {
     targets
         .filter(|target| !target.contains(':') && !target.starts_with('#'))
         .filter_map(|target| target.split('#').next())
-}
-
-/// Paths in a folder, in order; none if it is absent.
-fn entries(folder: &Path) -> Result<Vec<PathBuf>, RuleError> {
-    if !folder.is_dir() {
-        return Ok(Vec::new());
-    }
-    let failed = |source| RuleError::File {
-        path: folder.to_owned(),
-        source,
-    };
-    let entries = std::fs::read_dir(folder).map_err(failed)?;
-    let paths = entries.map(|entry| Ok(entry.map_err(failed)?.path()));
-    let mut paths = paths.collect::<Result<Vec<_>, _>>()?;
-    paths.sort();
-    Ok(paths)
-}
-
-fn shown(root: &Path, path: &Path) -> String {
-    let path = path.strip_prefix(root).unwrap_or(path);
-    path.display().to_string()
 }
 
 #[cfg(test)]

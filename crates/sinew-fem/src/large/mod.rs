@@ -374,6 +374,7 @@ mod tests {
     use crate::hyperelastic::prony::Term;
     use crate::shares::Shares;
     use crate::{Element, FibreFamily, Law, Memory, Moduli, Problem, Region, Tissue, ViscousPart};
+    use sinew_core::TangentKind;
     use sinew_mesh::structured::{Split, cube};
     use sinew_sparse::simd::SharedSlice;
 
@@ -472,6 +473,7 @@ mod tests {
             .collect();
         large.with_scratch(|scratch| {
             fill(&mut scratch.displacement, field);
+            scratch.last.forget();
             large.remember(scratch, 0.02, &mut internal)?;
             let past = Past {
                 internal: &internal,
@@ -495,6 +497,43 @@ mod tests {
             0.005 * (31.0 * x + 8.0 * y).cos() - 0.3 * z,
             -0.25 * z + 0.15 * y + 3.0 * x * x + 5.0 * x * y * z,
         ]
+    }
+
+    /// Forces, products and energies in any order have the bits of first evaluations.
+    #[test]
+    fn evaluations_after_others_have_the_bits_of_first_ones() {
+        let mesh = cube(3, 0.1, Split::Kuhn).unwrap();
+        let element = ELEMENTS[ELEMENTS.len() - 1];
+        let large = region(&mesh, "neo-hookean", element, &Tissue::default(), false);
+        let forces = |scratch: &Scratch| {
+            let mut forces = vec![[0.0; 3]; large.nodes];
+            large.at_nodes(scratch, |node, force| forces[node as usize] = force);
+            forces
+        };
+        let scaled = |factor: f64| {
+            let mesh = &mesh;
+            move |node| displacement(mesh, false, node).map(|u| factor * u)
+        };
+        let [first, other] = [1.0, 0.7].map(|factor| evaluated(&large, scaled(factor)).unwrap());
+        large.with_scratch(|scratch| {
+            scratch.last.forget();
+            for (factor, (found, expected)) in [(1.0, &first), (0.7, &other), (1.0, &first)] {
+                fill(&mut scratch.displacement, scaled(factor));
+                for with_energy in [false, true, false, true] {
+                    let now = large.evaluate(scratch, Past::RELAXED, with_energy).unwrap();
+                    assert_eq!(&forces(scratch), expected, "{factor}, {with_energy}");
+                    if with_energy {
+                        assert_eq!(&now, found);
+                    }
+                }
+                fill(&mut scratch.change, scaled(0.1));
+                let wanted = Wanted::Kind(TangentKind::Exact);
+                large.product(scratch, Past::RELAXED, wanted).unwrap();
+                assert_ne!(&forces(scratch), expected);
+                large.evaluate(scratch, Past::RELAXED, false).unwrap();
+                assert_eq!(&forces(scratch), expected, "after a product");
+            }
+        });
     }
 
     /// Sizes that leave padding at the end of vectors, chunks and edges.

@@ -90,3 +90,35 @@ fn compressed_tissue_gets_no_energy_from_steps_that_are_cut_by_its_stiffness() {
         assert!(made < 0.005, "{cells:?} {law:?} {motion:?}: {made}");
     }
 }
+
+/// A motion that needed many parts once does not cost them for ever.
+#[test]
+fn steps_are_cut_into_fewer_parts_again_once_a_while_has_needed_fewer() {
+    let law = ("neo-hookean", 0.45, EDGE);
+    let model = block([2, 2, 4], law, ([0.0, 0.0, -0.005], 0.1));
+    let rest = build("central-difference", &plain()).stable_step(&model);
+    let Ok(StableStep::UpTo(rest)) = rest else {
+        panic!("{rest:?}");
+    };
+    let dt = Substeps::longest_part(1.0, 2.0 * rest);
+    let after = |disturbed: Option<u32>, steps: usize| {
+        let mut integrator = build("central-difference", &plain().with_text("substeps", "auto"));
+        let mut state = State::at_rest(model.dofs());
+        for step in 0..steps {
+            integrator.step(&model, &mut state, dt).unwrap();
+            let cut = state.cut.as_mut().unwrap();
+            if let Some(parts) = disturbed.filter(|_| step == 9) {
+                cut.parts = parts;
+            }
+        }
+        state
+    };
+    let parts = |state: &State| state.cut.unwrap().parts;
+    let (usual, soon, later) = (after(None, 80), after(Some(12), 20), after(Some(12), 80));
+    assert_eq!(parts(&soon), 12);
+    assert_eq!(parts(&later), parts(&usual));
+    assert!(parts(&usual) <= 3, "{}", parts(&usual));
+    let off = |(a, b): (&f64, &f64)| (a - b).abs();
+    let off = later.u.iter().zip(&usual.u).map(off).fold(0.0, f64::max);
+    assert!(off < 2e-5, "{off} m");
+}
