@@ -12,7 +12,7 @@ pub struct Frame {
     pub(crate) surface: Arc<Surface>,
     /// Displacement (m) of each point.
     pub(crate) displacements: Vec<[f32; 3]>,
-    /// The value that colours each point; empty where none does.
+    /// The value that colours each point; empty without a field.
     pub(crate) values: Vec<f32>,
 }
 

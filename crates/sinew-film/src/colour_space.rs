@@ -19,7 +19,7 @@ pub(crate) fn linear(colour: [u8; 3]) -> V3 {
     colour.map(|component| light(f32::from(component) / 255.0))
 }
 
-/// A table by which amounts of light become colours: the power of each would cost more than all else about a pixel.
+/// A table from amounts of light to colours. A power for each would cost more than all the rest of a pixel.
 pub(crate) struct Screen {
     table: Vec<u8>,
 }

@@ -1,8 +1,8 @@
-//! What keeps a film from being made.
+//! Errors of films.
 
 use std::io;
 
-/// A run, or a wish, of which no picture can be made.
+/// A run or a request of which no picture can be made.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum FilmError {
@@ -26,54 +26,54 @@ pub enum FilmError {
     /// A clip without frames.
     #[error("no frames to show")]
     NothingToShow,
-    /// A film that was not to be finished.
+    /// A film that was stopped before its end.
     #[error("stopped before the film was finished")]
     Stopped,
     /// A file that cannot be read.
     #[error("cannot read {name}: {source}")]
     Read {
-        /// Its name.
+        /// The name of the file.
         name: String,
         /// The reason.
         source: io::Error,
     },
-    /// A file that holds something else.
+    /// A file with unexpected content.
     #[error("{name}: {reason}; `sinew run SCENE --out DIR` writes it anew")]
     Damaged {
-        /// Its name.
+        /// The name of the file.
         name: String,
-        /// What is wrong.
+        /// The error in the file.
         reason: String,
     },
     /// A colour that the run has no field for.
     #[error("--colour {asked}: the run has no such field; it has {known}")]
     Colour {
-        /// What was asked for.
+        /// The requested colour.
         asked: String,
-        /// What there is, in words.
+        /// List of the available colours.
         known: String,
     },
-    /// A view that is none.
+    /// A view that is not valid.
     #[error(
         "--view {asked}: expected front, back, left, right, top, iso, or an azimuth and an elevation in degrees such as 30,25, the elevation between -90 and 90"
     )]
     View {
-        /// What was asked for.
+        /// The requested view.
         asked: String,
     },
-    /// A size that is none.
+    /// A size that is not valid.
     #[error(
         "--size {asked}: expected WIDTHxHEIGHT in pixels such as 1280x720, each between {least} and {most}"
     )]
     Size {
-        /// What was asked for.
+        /// The requested size.
         asked: String,
         /// The smallest width and height.
         least: usize,
         /// The largest width and height.
         most: usize,
     },
-    /// A range that is none.
+    /// A range that is not valid.
     #[error(
         "--range {from} {to}: expected a number and a larger one, in the unit {unit} of the field"
     )]
@@ -88,20 +88,20 @@ pub enum FilmError {
     /// A range for tissue, which shows no field.
     #[error("--range goes with the colour of a field; --colour displacement is one")]
     RangeOfTissue,
-    /// A rate of pictures that is none.
+    /// A rate of pictures that is not valid.
     #[error("--fps {asked}: expected a number of pictures a second between {least} and {most}")]
     Rate {
-        /// What was asked for.
+        /// The requested rate (1/s).
         asked: f64,
         /// The lowest rate.
         least: f64,
         /// The highest rate.
         most: f64,
     },
-    /// A length that is none.
+    /// A length that is not valid.
     #[error("--seconds {asked}: expected the length of the film in s, above 0")]
     Length {
-        /// What was asked for.
+        /// The requested length (s).
         asked: f64,
     },
     /// More pictures than a film may have.
@@ -113,20 +113,20 @@ pub enum FilmError {
         seconds: f64,
         /// Pictures a second.
         fps: f64,
-        /// The most pictures.
+        /// The largest number of pictures.
         most: usize,
     },
     /// An instant at which there is no frame.
     #[error("--at {asked}: the frames lie between t = {first} s and t = {last} s")]
     Instant {
-        /// What was asked for (s).
+        /// The requested time (s).
         asked: f64,
         /// Time (s) of the first frame.
         first: f64,
         /// Time (s) of the last frame.
         last: f64,
     },
-    /// A picture that could not be put into a file's form.
+    /// A picture that could not be written in the format of the file.
     #[error("the picture could not be written as PNG: {0}")]
     Png(#[from] png::EncodingError),
 }

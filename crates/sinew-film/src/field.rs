@@ -1,8 +1,8 @@
-//! Fields of a run, and what of them a colour stands for.
+//! Fields of a run, and the quantities of them that a colour shows.
 
 use crate::FilmError;
 
-/// The colouring of bodies by what they are.
+/// The name of the colouring without a field.
 const TISSUE: &str = "tissue";
 
 /// Components of vectors.
@@ -11,7 +11,7 @@ const OF_VECTORS: [&str; 3] = ["x", "y", "z"];
 /// Components of symmetric tensors, in the order of a run's arrays.
 const OF_TENSORS: [&str; 6] = ["xx", "yy", "zz", "xy", "yz", "zx"];
 
-/// Arrays that are no quantity: others show them.
+/// Arrays that are no quantity. Their content is shown in other ways.
 const NO_FIELDS: [&str; 1] = ["region"];
 
 /// Units of arrays, and their names on bars; others are plain numbers with their own names.
@@ -39,7 +39,7 @@ pub struct Field {
     pub of_cells: bool,
 }
 
-/// The one number that is made of a field's components.
+/// The scalar that is computed from a field's components.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Measure {
     Component(usize),
@@ -48,14 +48,14 @@ enum Measure {
     LargestPrincipal,
 }
 
-/// A field and the number that is shown of it.
+/// A field and the scalar that is shown of it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Shown {
     pub(crate) field: Field,
     measure: Measure,
 }
 
-/// What the colour of a body stands for.
+/// The meaning of a body's colour: tissue, or a quantity.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Colouring {
     shown: Option<Shown>,
@@ -74,7 +74,7 @@ impl Colouring {
         }
     }
 
-    /// A quantity of one's own: the values of frames, with what the bar says of them.
+    /// A quantity of the caller: the values of frames, with title and unit for the bar.
     #[must_use]
     pub fn of_values(title: &str, unit: &'static str) -> Self {
         let name = title.to_owned();
@@ -136,7 +136,7 @@ impl Colouring {
         self.shown.as_ref()
     }
 
-    /// True if single values may be far beyond all others, as those of cells at a corner.
+    /// True if single values may be far beyond all others, for example those of cells at a corner.
     pub(crate) fn has_peaks(&self) -> bool {
         self.shown
             .as_ref()
@@ -157,7 +157,7 @@ impl Colouring {
 }
 
 impl Shown {
-    /// The number that is shown of a row of components.
+    /// The scalar that is shown of a row of components.
     pub(crate) fn of(&self, row: &[f64]) -> f64 {
         match (self.measure, row) {
             (Measure::Component(index), row) => row.get(index).copied().unwrap_or(0.0),
@@ -174,7 +174,7 @@ impl Shown {
     }
 }
 
-/// The largest eigenvalue of a symmetric matrix with this diagonal and xy, yz, zx beside it (O. K. Smith, 1961).
+/// The largest eigenvalue of a symmetric matrix with this diagonal and the other entries xy, yz, zx (O. K. Smith, 1961).
 fn largest_principal(diagonal: [f64; 3], [xy, yz, zx]: [f64; 3]) -> f64 {
     let mean = diagonal.iter().sum::<f64>() / 3.0;
     let [x, y, z] = diagonal.map(|entry| entry - mean);
@@ -188,7 +188,7 @@ fn largest_principal(diagonal: [f64; 3], [xy, yz, zx]: [f64; 3]) -> f64 {
     mean + 2.0 * size * (half.acos() / 3.0).cos()
 }
 
-/// What of a field is shown where its name alone is given, or one of its components; `None` where it has none such.
+/// The scalar of a field that its name alone shows, or its name with a component. `None` if the field has none such.
 fn measure(field: &Field, component: Option<&str>) -> Option<Measure> {
     let place = |names: &[&str], asked: &str| names.iter().position(|name| *name == asked);
     match (field.components, component) {
@@ -206,7 +206,7 @@ fn is_shown(field: &Field) -> bool {
     !NO_FIELDS.contains(&field.name.as_str())
 }
 
-/// The colourings of a run, as an error lists them.
+/// List of the colourings of a run, for an error message.
 fn in_words(fields: &[Field]) -> String {
     let mut words = vec![TISSUE.to_owned()];
     for field in fields.iter().filter(|field| is_shown(field)) {

@@ -9,27 +9,27 @@ use crate::tool::{Part, Solid, placed, solid};
 use crate::vector::{V3, add, cross, scaled, sub, turned, unit};
 use crate::{Clip, Colouring, FilmError, Frame, Picture, Size, Timing, Tool, View};
 
-/// Instants at which it is looked where a body and its instruments go.
+/// Number of instants at which the places of a body and its instruments are sampled.
 const LOOKS: usize = 24;
 
-/// Pictures from which the colours of a film are chosen.
+/// Number of pictures from which the colours of a film are chosen.
 const SAMPLES: usize = 12;
 
-/// How far beyond the body an instrument is kept in the picture, in radii of the body.
+/// The distance from the body up to which an instrument is kept in the picture, in radii of the body.
 const BEYOND: f32 = 0.42;
 
-/// What is seen, and how.
+/// Size, view, colours and title of the pictures.
 #[derive(Debug, Clone)]
 pub struct Look {
     /// Width and height of pictures.
     pub size: Size,
     /// The direction of view.
     pub view: View,
-    /// What the body's colour stands for.
+    /// The meaning of the body's colour.
     pub colouring: Colouring,
     /// The values at the ends of a field's colours; `None` for those that fit.
     pub range: Option<[f64; 2]>,
-    /// What is written at the top.
+    /// The text at the top.
     pub title: String,
 }
 
@@ -48,7 +48,7 @@ pub struct Film {
     span: [f64; 2],
 }
 
-/// From places (m) to those of the stage, where the body's middle is the origin and its radius 1.
+/// The map from places (m) to those of the stage. On the stage the body's middle is the origin and its radius 1.
 #[derive(Debug, Clone, Copy)]
 struct Scale {
     middle: [f64; 3],
@@ -56,7 +56,7 @@ struct Scale {
 }
 
 impl Scale {
-    /// The scale of a clip, by a box about all its places.
+    /// The scale of a clip, by the bounding box of all its places.
     fn of(clip: &Clip) -> Self {
         let (mut low, mut high) = ([f64::MAX; 3], [f64::MIN; 3]);
         for frame in &clip.frames {
@@ -93,7 +93,7 @@ impl Film {
     /// A film of a clip with instruments.
     ///
     /// # Errors
-    /// [`FilmError`] for a clip without frames and for a range that is none.
+    /// [`FilmError`] for a clip without frames and for a range that is not valid.
     pub fn new(clip: Clip, tools: Vec<Tool>, look: &Look) -> Result<Self, FilmError> {
         let span = clip.span().ok_or(FilmError::NothingToShow)?;
         let field = look.colouring.field();
@@ -147,13 +147,13 @@ impl Film {
         self.span
     }
 
-    /// Pixels for a length of 1 m, at the middle of what is seen where the view is in perspective.
+    /// Pixels for a length of 1 m; in perspective, at the middle of the view.
     #[must_use]
     pub fn pixels_per_metre(&self) -> f64 {
         self.overlay.pixels_per_metre
     }
 
-    /// What is written beside the lower end, the middle and the upper end of the colours; `None` without a field.
+    /// The texts next to the lower end, the middle and the upper end of the colours; `None` without a field.
     #[must_use]
     pub fn marks(&self) -> Option<&[String; 3]> {
         Some(&self.overlay.bar.as_ref()?.marks)
@@ -185,10 +185,10 @@ impl Film {
         picture
     }
 
-    /// The film as an animated PNG. `go_on` is asked after each picture, with how many are done, whether to go on.
+    /// The film as an animated PNG. After each picture `go_on` gets the number of finished ones; `false` stops the film.
     ///
     /// # Errors
-    /// [`FilmError`]: [`FilmError::Stopped`] where it was not to go on.
+    /// [`FilmError`]: [`FilmError::Stopped`] if `go_on` returned `false`.
     pub fn animation(
         &self,
         timing: Timing,
@@ -214,7 +214,7 @@ impl Film {
         Ok(file)
     }
 
-    /// What is seen at a time (s).
+    /// The visible triangles at a time (s).
     fn model(&self, t: f64) -> Model {
         let mut model = Model::default();
         if let Some(frame) = self.clip.at(t) {

@@ -29,7 +29,7 @@ impl Picture {
         &self.pixels
     }
 
-    /// The colour at a column and a row; `None` beside the picture.
+    /// The colour at a column and a row; `None` outside the picture.
     #[must_use]
     pub fn at(&self, x: usize, y: usize) -> Option<[u8; 3]> {
         let is_inside = x < self.size.width();
@@ -37,7 +37,7 @@ impl Picture {
         self.pixels.get(place).copied().filter(|_| is_inside)
     }
 
-    /// Lays a colour over a pixel, as much as `cover` says; beside the picture nothing happens.
+    /// Lays a colour over the share `cover` of a pixel. Outside the picture nothing happens.
     pub(crate) fn lay(&mut self, (x, y): (i64, i64), colour: [u8; 3], cover: f32) {
         let (width, height) = (self.size.width() as i64, self.size.height() as i64);
         if x < 0 || y < 0 || x >= width || y >= height || cover <= 0.0 {

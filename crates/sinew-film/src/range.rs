@@ -2,20 +2,20 @@
 
 use crate::{Clip, Colouring, FilmError};
 
-/// Share of all values that lie beyond an end that is chosen where there are peaks.
+/// Share of all values beyond an end of the range, if the field has peaks.
 const BEYOND: f64 = 0.002;
 
 /// The ends of a field's colours.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Range {
     pub(crate) ends: [f64; 2],
-    /// Whether there are values below the lower and above the upper one.
+    /// Flag of each end: true if there are values beyond it.
     pub(crate) beyond: [bool; 2],
 }
 
 impl Range {
-    /// The range that is asked for, or one that fits the values of a clip: from 0 where none is below it, and without the peaks
-    /// that single cells have at corners.
+    /// The requested range, or one that fits the values of a clip. A fitting range begins at 0 if no value is below 0, and
+    /// leaves out the peaks that single cells have at corners.
     pub(crate) fn of(
         clip: &Clip,
         asked: Option<[f64; 2]>,

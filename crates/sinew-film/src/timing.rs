@@ -1,14 +1,14 @@
-//! How long a film is, and how many pictures it has.
+//! Length of a film and number of its pictures.
 
 use crate::FilmError;
 
 /// The lowest and the highest rate of pictures (1/s).
 const RATES: [f64; 2] = [0.1, 120.0];
 
-/// The shortest and the longest film (s) that is made unless another length is asked for.
+/// The shortest and the longest film (s) unless another length is requested.
 const LENGTHS: [f64; 2] = [4.0, 12.0];
 
-/// The most pictures of a film.
+/// The largest number of pictures of a film.
 const MOST: usize = 5000;
 
 /// Pictures a second, and the length of a film.
@@ -19,11 +19,11 @@ pub struct Timing {
 }
 
 impl Timing {
-    /// Pictures of the times `span` (s) at a rate (1/s), over so many seconds: as long as the motion was, but at least 4
-    /// and at most 12, where none are asked for.
+    /// Pictures of the times `span` (s) at a rate (1/s), in a film of the length `seconds`. Without a length the film is as
+    /// long as the motion, but at least 4 s and at most 12 s.
     ///
     /// # Errors
-    /// [`FilmError`] for a rate or a length that is none, and for too many pictures.
+    /// [`FilmError`] for a rate or a length that is not valid, and for too many pictures.
     pub fn new(span: [f64; 2], fps: f64, seconds: Option<f64>) -> Result<Self, FilmError> {
         let [least, most] = RATES;
         if !(fps >= least && fps <= most) {

@@ -1,4 +1,4 @@
-//! The direction from which a body is looked at.
+//! The direction of view.
 
 use std::str::FromStr;
 
@@ -11,11 +11,11 @@ pub struct View {
     pub azimuth: f64,
     /// Height (degrees) above the plane of x and y: 90 looks down.
     pub elevation: f64,
-    /// True if what is farther away is smaller. Without it a length is the same everywhere.
+    /// True if farther things are smaller. Without it a length is the same everywhere.
     pub is_perspective: bool,
 }
 
-/// Views with a name: azimuth, elevation, and whether they are in perspective.
+/// Views with a name: azimuth, elevation, and true for a perspective view.
 const NAMED: [(&str, f64, f64, bool); 6] = [
     ("front", 0.0, 0.0, false),
     ("right", 90.0, 0.0, false),

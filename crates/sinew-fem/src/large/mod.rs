@@ -79,7 +79,7 @@ pub(crate) struct LargeDeformation {
     pool: Mutex<Vec<Scratch>>,
 }
 
-/// What stresses share, by region.
+/// Values that the stresses of several tetrahedra share, for each region.
 #[derive(Debug)]
 pub(crate) struct SharedStresses(Vec<Option<SharedStress>>);
 

@@ -3,10 +3,10 @@
 use super::kind::Kind;
 use crate::vector::{V3, cross, dot, sub, unit};
 
-/// Cosine of the largest angle between the normals of triangles whose edge is drawn round: 40 degrees.
+/// Cosine of the largest angle between the normals of triangles whose edge is drawn smooth: 40 degrees.
 const ROUND: f32 = 0.766;
 
-/// Corners of triangles: those about a point share one where the surface is smooth there, so that its edges stay sharp.
+/// Corners of triangles. Triangles about a point share one if the surface is smooth between them; sharp edges stay sharp.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Corners {
     /// The point of each.

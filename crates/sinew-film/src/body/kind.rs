@@ -1,9 +1,9 @@
-//! What triangles of a surface are part of.
+//! Kinds of triangles on a surface.
 
-/// What lies behind a triangle.
+/// Kind of a triangle: original surface or cut face.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Kind {
-    /// The surface that the body had from the beginning; the number of its region, from 1 on.
+    /// The surface that the body had from the beginning, with the number of its region, from 1 on.
     Tissue(u8),
     /// A face that was cut.
     Cut,

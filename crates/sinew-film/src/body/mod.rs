@@ -20,8 +20,8 @@ pub struct Surface {
 }
 
 impl Surface {
-    /// A surface of triangles, counter-clockwise as seen from outside. A corner that is no point, and a triangle
-    /// without a kind, make the triangle be left out.
+    /// A surface of triangles, counter-clockwise as seen from outside. A triangle is left out if one of its corners is no
+    /// point, or if it has no kind.
     #[must_use]
     pub fn new(rest: Vec<[f64; 3]>, triangles: &[[u32; 3]], kinds: &[Kind]) -> Self {
         let is_there =

@@ -1,4 +1,4 @@
-//! Films as animated PNG: one table of colours for all pictures, and of each picture what differs from the one before.
+//! Films as animated PNG: one table of colours for all pictures, and of each picture the difference from the one before.
 
 use png::{BitDepth, BlendOp, ColorType, Compression, DisposeOp, Encoder, Filter, Writer};
 
@@ -6,16 +6,16 @@ use super::colours::Colours;
 use super::software::SOFTWARE;
 use crate::{FilmError, Picture, Size};
 
-/// The number that stands for pixels that stay as they were, after those of all colours.
+/// The number of a pixel that does not change. It follows the numbers of all colours.
 const STAYS: u8 = 255;
 
-/// Steps of a component by which a pixel may be off before it is shown anew.
+/// Largest error of a component, in steps, for which a pixel is not written again.
 const SAME: u8 = 2;
 
 /// The least time (s) for which the last picture stays before the film begins again.
 const LAST: f64 = 0.7;
 
-/// Delays are given in this part of a second.
+/// Parts of a second in which delays are given.
 const PARTS: u16 = 1000;
 
 /// A film that is written picture by picture.
@@ -40,7 +40,7 @@ struct Patch {
 }
 
 impl<'a> Animation<'a> {
-    /// A film of so many pictures, at a rate (1/s), which begins again at its end.
+    /// A film with a number of pictures and a rate (1/s). It begins again at its end.
     pub(crate) fn new(
         file: &'a mut Vec<u8>,
         (size, colours): (Size, Colours),
@@ -116,7 +116,8 @@ impl<'a> Animation<'a> {
         }
     }
 
-    /// What differs from the picture that is shown: with the number for what stays, or without, whichever is shorter.
+    /// The smallest rectangle with all differences from the picture that is shown. Pixels that do not change are written
+    /// as [`STAYS`] or with their colours, whichever gives fewer bytes.
     fn difference(&mut self, picture: &Picture) -> Result<Patch, FilmError> {
         let width = self.size.width();
         let table = self.colours.table();
@@ -160,7 +161,7 @@ impl<'a> Animation<'a> {
     }
 }
 
-/// Bytes of a picture of its own with these numbers.
+/// Number of bytes of a separate picture with these numbers.
 fn deflated(numbers: &[u8], [width, height]: [u32; 2]) -> Result<usize, FilmError> {
     let mut file = Vec::new();
     let mut encoder = Encoder::new(&mut file, width, height);

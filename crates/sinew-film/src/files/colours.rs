@@ -8,10 +8,10 @@ use crate::render::BACKGROUND;
 /// Bits of a component by which colours are told apart.
 const BITS: u32 = 6;
 
-/// The most colours: one of 256 stands for pixels that stay as they were.
+/// The largest number of colours: one number of 256 is for pixels that do not change.
 const MOST: usize = 255;
 
-/// Rounds in which colours move to the middle of what is nearest to them.
+/// Rounds in which each colour moves to the mean of the samples nearest to it.
 const ROUNDS: usize = 5;
 
 /// Steps by which colours are made brighter or darker before they are rounded: B. Bayer's matrix of 1973.
@@ -22,7 +22,7 @@ const THRESHOLDS: [[i8; 4]; 4] = [
     [4, -1, 3, -2],
 ];
 
-/// How far components are apart in what counts as grey: the floor and its shadows, and steel.
+/// Largest difference between the components of a grey colour: the floor and its shadows, and steel.
 const GREY: u8 = 24;
 
 /// Colours, and the nearest of them to any other.
@@ -39,8 +39,8 @@ struct Sample {
 }
 
 impl Colours {
-    /// Colours for pictures such as these: boxes of colours are halved where they differ most (P. Heckbert's median cut
-    /// of 1982, with the mean in the median's place), then Lloyd's rounds.
+    /// Colours for pictures such as these. Boxes of colours are halved along the component in which they differ most
+    /// (P. Heckbert's median cut of 1982, with the mean in place of the median). Lloyd's rounds follow.
     pub(crate) fn of<'a>(pictures: impl Iterator<Item = &'a Picture>) -> Self {
         let samples = samples(pictures);
         let mut table = halved(samples.clone());
@@ -76,8 +76,8 @@ impl Colours {
         &self.table
     }
 
-    /// The number of the colour that stands for one at a column and a row: the nearest to it; of a grey one, after it was
-    /// made somewhat brighter or darker there, so that shadows of few colours look smooth from afar.
+    /// The number of the colour in the table that is nearest to a colour at a column and a row. A grey is first made
+    /// somewhat brighter or darker there, so that shadows of few colours look smooth from afar.
     pub(crate) fn number(&self, colour: [u8; 3], (column, row): (usize, usize)) -> u8 {
         if colour == BACKGROUND {
             return 0;
@@ -104,8 +104,8 @@ fn middle(bin: usize) -> [f32; 3] {
     [2, 1, 0].map(|place| (((bin >> (place * BITS)) & mask) << (8 - BITS)) as f32 + half - 0.5)
 }
 
-/// The colours of pictures. What covers a hundred times as much counts ten times as much, so that small things keep
-/// theirs.
+/// The colours of pictures. A colour that covers a hundred times as much counts ten times as much, so that small things
+/// keep their colours.
 fn samples<'a>(pictures: impl Iterator<Item = &'a Picture>) -> Vec<Sample> {
     let mut sums = vec![([0_u64; 3], 0_u64); 1 << (3 * BITS)];
     for pixel in pictures.flat_map(Picture::pixels) {
@@ -151,7 +151,7 @@ fn halved(samples: Vec<Sample>) -> Vec<[f32; 3]> {
         .collect()
 }
 
-/// How much samples differ, along which component most, and their mean there.
+/// The spread of samples, the component in which they differ most, and their mean there.
 fn spread(samples: &[Sample]) -> (f32, usize, f32) {
     let weight: f32 = samples.iter().map(|sample| sample.weight).sum();
     let along = [0, 1, 2].map(|axis| {
@@ -202,7 +202,7 @@ fn moved(table: &[[f32; 3]], samples: &[Sample]) -> Vec<[f32; 3]> {
         .collect()
 }
 
-/// The place of the colour nearest to one; green counts more, blue less, as for the eye.
+/// The place of the colour nearest to one. Green counts more and blue less, as for the eye.
 fn nearest(table: &[[f32; 3]], colour: [f32; 3]) -> usize {
     let distance = |other: &[f32; 3]| {
         let [r, g, b] = [0, 1, 2].map(|axis| (other[axis] - colour[axis]).powi(2));

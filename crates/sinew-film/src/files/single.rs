@@ -5,7 +5,7 @@ use png::{BitDepth, ColorType, Compression, Encoder};
 use super::software::SOFTWARE;
 use crate::{FilmError, Picture};
 
-/// Bytes within which a file of our own says so.
+/// Bytes at the beginning of a file that are searched for the mark of this crate.
 const HEAD: usize = 4096;
 
 /// The first bytes of PNG files.

@@ -1,4 +1,4 @@
-//! Who wrote a file.
+//! The program that wrote a file.
 
-/// What the files say of who wrote them: a keyword of the PNG standard, and the program.
+/// The mark of the writing program in files: a keyword of the PNG standard, and the program.
 pub(super) const SOFTWARE: [&str; 2] = ["Software", "sinew film"];

@@ -1,4 +1,4 @@
-//! The bar that says what colours stand for.
+//! The bar that shows the values of colours.
 
 use sinew_draw::short;
 
@@ -13,21 +13,21 @@ const FROM_RIGHT: f32 = 0.145;
 const ROWS: [f32; 2] = [0.24, 0.76];
 const WIDTH: f32 = 1.3;
 
-/// The share of the width that a title takes at most.
+/// The largest share of the width that a title takes.
 const LONGEST: f32 = 0.5;
 
-/// What a field's colours stand for.
+/// The title, unit and values of a field's colours.
 #[derive(Debug, Clone)]
 pub(crate) struct Bar {
     title: String,
     /// The unit with its prefix.
     unit: String,
-    /// What is written at the lower end, in the middle and at the upper end.
+    /// The texts at the lower end, in the middle and at the upper end.
     pub(crate) marks: [String; 3],
 }
 
 impl Bar {
-    /// The bar of a quantity between two values. `beyond` says whether there are values below and above them.
+    /// The bar of a quantity between two values. `beyond`: for each end, true if values lie beyond it.
     pub(crate) fn new(title: &str, unit: &str, [from, to]: [f64; 2], beyond: [bool; 2]) -> Self {
         let (factor, unit) = prefixed(from.abs().max(to.abs()), unit);
         let number = |value: f64| short(value / factor).replace('-', "−");

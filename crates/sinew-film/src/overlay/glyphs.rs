@@ -1,8 +1,8 @@
 //! Letters as strokes of a pen.
 //!
-//! Capitals are 10 high, small letters 7, from the line of writing upwards. A stroke begins with `M x y` and goes on
-//! with `L x y` to a point and with `A x y rx ry from to` along an ellipse about a point, the angles in degrees from the
-//! right, counter-clockwise where they grow.
+//! Capitals are 10 high, small letters 7, from the baseline upwards. A stroke begins with `M x y` and continues with
+//! `L x y` to a point and with `A x y rx ry from to` along an ellipse about a point. The angles are in degrees from the
+//! right, and increase counter-clockwise.
 
 /// Each letter, its width and its strokes.
 const GLYPHS: &[(char, f32, &str)] = &[
@@ -184,7 +184,7 @@ pub(super) struct Glyph {
     pub(super) lines: Vec<[[f32; 2]; 2]>,
 }
 
-/// The strokes of a letter; another one has those of a question mark, and one with an accent those of its letter.
+/// The strokes of a letter. An unknown one has those of a question mark, one with an accent those of its base letter.
 pub(super) fn glyph(letter: char) -> Glyph {
     let found = |letter: char| GLYPHS.iter().find(|glyph| glyph.0 == letter);
     let plain = match letter {

@@ -1,8 +1,8 @@
-//! Numbers in words: round ones, and units with prefixes.
+//! Numbers as text: round ones, and units with prefixes.
 
 use sinew_draw::short;
 
-/// Prefixes of units and what they stand for.
+/// Prefixes of units and their factors.
 const PREFIXES: [(f64, &str); 7] = [
     (1e-9, "n"),
     (1e-6, "µ"),
@@ -13,7 +13,7 @@ const PREFIXES: [(f64, &str); 7] = [
     (1e9, "G"),
 ];
 
-/// The factor of a prefix and the unit with it, by which a number has one to three digits before the point.
+/// The factor of a prefix and the unit with it. With them a number has one to three digits before the point.
 pub(super) fn prefixed(largest: f64, unit: &str) -> (f64, String) {
     // Plain numbers have no prefix, and powers of units would take it with them.
     let takes_none = unit.is_empty() || unit.contains(['²', '³']);
@@ -33,7 +33,7 @@ pub(super) fn in_prefixed(value: f64, unit: &str) -> String {
         .to_owned()
 }
 
-/// The largest of 1, 2 and 5 times a power of ten that is not above a number; `None` where there is none.
+/// The largest of 1, 2 and 5 times a power of ten that is not above a number; `None` if absent.
 pub(super) fn round_below(most: f64) -> Option<f64> {
     if !(most.is_finite() && most > 0.0) {
         return None;

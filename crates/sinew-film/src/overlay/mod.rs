@@ -1,4 +1,4 @@
-//! What is written on pictures: title, time, a length, and what colours stand for.
+//! Texts on pictures: title, time, a length, and the values of colours.
 
 mod bar;
 mod glyphs;
@@ -12,31 +12,31 @@ use crate::render::Room;
 use measure::{in_prefixed, round_below};
 use text::{Anchor, Ink};
 
-/// The colour of writing.
+/// The colour of text.
 const DARK: [u8; 3] = [44, 52, 64];
 
-/// The colour of what is said beside.
+/// The colour of secondary text: the length and the bar's title and unit.
 const PALE: [u8; 3] = [104, 114, 128];
 
 /// Height of capitals as a share of the picture's height, and in pixels at least.
 const HEIGHT: f32 = 0.0215;
 const LEAST: f32 = 7.0;
 
-/// The share of the width that the length on the scale has at most.
+/// The largest share of the width for the length on the scale.
 const LONGEST: f32 = 0.2;
 
-/// What is written on all pictures of a film.
+/// The texts on all pictures of a film.
 #[derive(Debug, Clone)]
 pub(crate) struct Overlay {
     pub(crate) title: String,
-    /// Times (s) of the first and the last frame, by which digits of the time are chosen.
+    /// Times (s) of the first and the last frame. They give the unit and the digits of the time.
     pub(crate) span: [f64; 2],
     /// Pixels for a length of 1 m.
     pub(crate) pixels_per_metre: f64,
     pub(crate) bar: Option<Bar>,
 }
 
-/// Room for what is written, as shares of the picture.
+/// Margins for texts, as shares of the picture.
 pub(crate) fn room(has_bar: bool) -> Room {
     Room {
         left: 0.045,
@@ -47,7 +47,7 @@ pub(crate) fn room(has_bar: bool) -> Room {
 }
 
 impl Overlay {
-    /// Writes on the picture of the time `t` (s).
+    /// Writes the texts on the picture of the time `t` (s).
     pub(crate) fn draw(&self, picture: &mut Picture, t: f64) {
         let size = picture.size();
         let [width, height] = [size.width() as f32, size.height() as f32];
@@ -71,7 +71,7 @@ impl Overlay {
         }
     }
 
-    /// The time in words, with as many digits at every instant.
+    /// The time as text, with the same number of digits at every instant.
     fn time(&self, t: f64) -> String {
         let span = (self.span[1] - self.span[0]).max(f64::MIN_POSITIVE);
         let (factor, unit) = match span {

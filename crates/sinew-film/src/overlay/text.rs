@@ -1,4 +1,4 @@
-//! Lines of writing on pictures.
+//! Lines of text on pictures.
 
 use super::glyphs::glyph;
 use crate::Picture;
@@ -13,7 +13,7 @@ const APART: f32 = 2.3;
 const PEN: f32 = 1.15;
 const THINNEST: f32 = 1.05;
 
-/// How a line of writing looks.
+/// Style of a line of text.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Ink {
     /// Height of capitals (pixels).
@@ -21,7 +21,7 @@ pub(super) struct Ink {
     pub(super) colour: [u8; 3],
 }
 
-/// Which point of a line is at its place.
+/// The point of a line of text that is at its place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Anchor {
     Left,
@@ -29,14 +29,14 @@ pub(super) enum Anchor {
     Right,
 }
 
-/// The width (pixels) of a line of writing.
+/// The width (pixels) of a line of text.
 pub(super) fn width(text: &str, ink: Ink) -> f32 {
     let widths = text.chars().map(|letter| glyph(letter).width + APART);
     let all: f32 = widths.sum();
     (all - APART).max(0.0) * ink.height / CAPITAL
 }
 
-/// As many of a line's first letters as fit into a width (pixels), with dots for the others.
+/// The longest beginning of a line that fits into a width (pixels), with dots in place of the rest.
 pub(super) fn shortened(text: &str, most: f32, ink: Ink) -> String {
     if width(text, ink) <= most {
         return text.to_owned();
@@ -52,7 +52,7 @@ pub(super) fn shortened(text: &str, most: f32, ink: Ink) -> String {
     String::new()
 }
 
-/// Writes a line whose line of writing is at a row.
+/// Writes a line of text. `y` is the row of its baseline.
 pub(super) fn write(
     picture: &mut Picture,
     text: &str,

@@ -1,4 +1,4 @@
-//! From places to pixels.
+//! Projection of places to pixels.
 
 use crate::View;
 use crate::vector::{V3, add, cross, dot, scaled, sub, unit};
@@ -6,7 +6,7 @@ use crate::vector::{V3, add, cross, dot, scaled, sub, unit};
 /// Distance of the eye in perspective, in units of the body's radius.
 const DISTANCE: f32 = 5.2;
 
-/// The nearest that anything in perspective is drawn.
+/// The smallest distance at which anything is drawn in perspective.
 const NEAREST: f32 = 0.3;
 
 /// A view of the stage.
@@ -25,16 +25,16 @@ pub(crate) struct Camera {
     pub(crate) is_perspective: bool,
 }
 
-/// A place as it is seen.
+/// A projected place.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Seen {
     /// Column, to the right.
     pub(crate) x: f32,
     /// Row, downwards.
     pub(crate) y: f32,
-    /// Larger for what is nearer; straight over the picture.
+    /// Nearness: larger for nearer places, linear over the picture.
     pub(crate) near: f32,
-    /// One over the distance by which lengths shrink; 1 without perspective.
+    /// Reciprocal of the distance, by which lengths shrink; 1 without perspective.
     pub(crate) shrink: f32,
 }
 
@@ -57,7 +57,7 @@ impl Camera {
         }
     }
 
-    /// How far before the eye a place is; 1 without perspective.
+    /// The distance of a place before the eye; 1 without perspective.
     pub(crate) fn distance(&self, place: V3) -> f32 {
         match self.is_perspective {
             true => DISTANCE - dot(sub(place, self.target), self.back),
@@ -70,13 +70,13 @@ impl Camera {
         self.distance(place) >= NEAREST
     }
 
-    /// The share of the way from a place before the eye to one that is not at which the drawn part ends.
+    /// The end of the drawn part, as a share of the way from a place before the eye to one that is not.
     pub(crate) fn end_of(&self, before: V3, behind: V3) -> f32 {
         let [from, to] = [before, behind].map(|place| self.distance(place));
         ((from - NEAREST) / (from - to)).clamp(0.0, 1.0)
     }
 
-    /// A place as it is seen.
+    /// The projection of a place.
     pub(crate) fn seen(&self, place: V3) -> Seen {
         let offset = sub(place, self.target);
         let shrink = match self.is_perspective {

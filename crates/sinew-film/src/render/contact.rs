@@ -1,4 +1,4 @@
-//! The dark beneath what stands on the floor: less of the sky is seen from there.
+//! The dark beneath things on the floor: less of the sky is seen from there.
 
 use super::model::Model;
 use super::shadow::spread_over;
@@ -6,16 +6,16 @@ use super::shadow::spread_over;
 /// Cells along an edge of the map.
 const EDGE: usize = 128;
 
-/// The half of what the map covers, in units of the body's radius.
+/// Half the width of the map, in units of the body's radius.
 const REACH: f32 = 2.2;
 
 /// Cells by which the dark is spread to either side, twice.
 const SPREAD: usize = 4;
 
-/// The height at which what is above the floor darkens it by a third.
+/// The height above the floor at which a thing darkens it by a third.
 const HEIGHT: f32 = 0.22;
 
-/// How much of the sky each part of the floor does not see.
+/// The hidden share of the sky, for each part of the floor.
 pub(super) struct Contact {
     hidden: Vec<f32>,
 }

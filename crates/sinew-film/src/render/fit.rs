@@ -1,13 +1,13 @@
-//! Where a camera stands, so that all is in the picture.
+//! Position of a camera that has everything in the picture.
 
 use super::camera::Camera;
 use crate::vector::{V3, add, scaled};
 use crate::{Size, View};
 
-/// Rounds in which a camera in perspective comes to rest: what is near grows as it comes closer.
+/// Rounds in which a camera in perspective converges: near things grow as the camera comes closer.
 const ROUNDS: usize = 6;
 
-/// Room beside the body for what is written over it, as shares of the width or the height.
+/// Margins about the body for texts, as shares of the width or the height.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Room {
     pub(crate) left: f32,
@@ -16,7 +16,7 @@ pub(crate) struct Room {
     pub(crate) bottom: f32,
 }
 
-/// A camera that sees these points in the middle of the room, as large as they fit.
+/// A camera that shows these points between the margins, as large as they fit.
 pub(crate) fn fitted(view: View, size: Size, room: Room, points: &[V3]) -> Camera {
     let mut camera = Camera::new(view);
     let [width, height] = [size.width() as f32, size.height() as f32];

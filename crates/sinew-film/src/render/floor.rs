@@ -1,4 +1,4 @@
-//! The floor, of which only what is dark on it is seen.
+//! The floor. Only the dark on it is visible.
 
 use super::contact::Contact;
 use super::shadow::Shadow;
@@ -7,7 +7,7 @@ use crate::vector::{V3, add, scaled};
 /// The colour behind everything.
 pub(crate) const BACKGROUND: [u8; 3] = [232, 236, 241];
 
-/// How much of the light a shadow takes, and how much the nearness of what stands there.
+/// The share of the light that a shadow takes, and the share that a thing close above the floor takes.
 const SHADED: f32 = 0.34;
 const HIDDEN: f32 = 0.42;
 
@@ -21,7 +21,7 @@ pub(super) const SLANTED: f32 = 0.05;
 /// Cells along an edge of the map.
 const EDGE: usize = 256;
 
-/// How dark the floor is about the middle.
+/// The darkness of the floor about the middle.
 pub(super) struct Floor {
     height: f32,
     /// The share of light that is missing, on a square of cells.
@@ -50,7 +50,7 @@ impl Floor {
         }
     }
 
-    /// The share of light of each colour that comes from the floor along a ray from a point; `None` where it is all.
+    /// The share of light of each colour that comes from the floor along a ray from a point; `None` for all of it.
     pub(super) fn left(&self, (from, along): (V3, V3)) -> Option<V3> {
         if along[2] >= 0.0 {
             return None;

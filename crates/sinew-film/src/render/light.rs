@@ -1,9 +1,9 @@
-//! Where the light comes from.
+//! Sources of light.
 
 use super::camera::Camera;
 use crate::vector::{V3, add, scaled, unit};
 
-/// How far the light stands above what is seen, to the left of it, and towards the eye.
+/// The direction of the lamp from the body: components upwards, to the left, and towards the eye.
 const KEY: [f32; 3] = [1.0, 0.5, 0.35];
 
 /// Light of the sky and of the floor, from all sides.
@@ -18,12 +18,12 @@ const FILL: f32 = 0.16;
 pub(crate) struct Light {
     /// The direction of the lamp.
     pub(crate) key: V3,
-    /// The direction of the weak one.
+    /// The direction of the weak lamp.
     fill: V3,
 }
 
 impl Light {
-    /// Light that falls over the left shoulder of whoever looks, from above.
+    /// Light that falls over the left shoulder of the viewer, from above.
     pub(crate) fn of(camera: &Camera) -> Self {
         let [above, aside, towards] = KEY;
         // Seen from above, what points up in the picture stands for what points away from the eye.
@@ -45,7 +45,7 @@ impl Light {
         }
     }
 
-    /// What reaches a surface with this normal from all sides.
+    /// The light that reaches a surface with this normal from all sides.
     pub(crate) fn around(&self, normal: V3) -> V3 {
         let share = 0.5 + 0.5 * normal[2];
         let fill = FILL * crate::vector::dot(normal, self.fill).max(0.0);

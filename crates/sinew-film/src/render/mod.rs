@@ -1,4 +1,4 @@
-//! From triangles to pixels.
+//! Rendering of triangles to pixels.
 
 mod camera;
 mod contact;

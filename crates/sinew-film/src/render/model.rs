@@ -1,8 +1,8 @@
-//! What is drawn: triangles, and what they are made of.
+//! The model that is drawn: triangles and their materials.
 
 use crate::vector::V3;
 
-/// What a triangle is made of.
+/// Material of a triangle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Paint {
     /// Tissue of a region, by its number from 1 on.
@@ -20,13 +20,13 @@ pub(crate) enum Paint {
 pub(crate) struct Vertex {
     pub(crate) place: V3,
     pub(crate) normal: V3,
-    /// Its place at rest, to which the tissue's grain keeps.
+    /// Its place at rest, to which the tissue's grain is fixed.
     pub(crate) rest: V3,
     /// Its value, as a share of the range.
     pub(crate) value: f32,
 }
 
-/// What is drawn.
+/// The triangles that are drawn.
 #[derive(Debug, Default)]
 pub(crate) struct Model {
     pub(crate) vertices: Vec<Vertex>,

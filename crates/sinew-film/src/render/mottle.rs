@@ -1,14 +1,14 @@
-//! The grain of tissue: smooth noise that keeps to places at rest.
+//! The grain of tissue: smooth noise that is fixed to places at rest.
 
 use crate::vector::V3;
 
 /// Values along an edge of the table, a power of two.
 const EDGE: usize = 32;
 
-/// Added to places so that none of them is below 0: many edges of the table.
+/// Offset of places, so that none of them is below 0: many edges of the table.
 const FAR: f32 = 4096.0;
 
-/// Values of noise between 0 and 1 at the points of a lattice that repeats itself.
+/// Values of noise between 0 and 1 at the points of a periodic lattice.
 pub(super) struct Mottle {
     values: Vec<f32>,
 }

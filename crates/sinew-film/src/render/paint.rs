@@ -1,4 +1,4 @@
-//! What light does on tissue, cut faces, fields and steel.
+//! Shading of tissue, cut faces, fields and steel.
 
 use sinew_draw::colour_map::viridis;
 
@@ -21,14 +21,14 @@ const TISSUES: [[u8; 3]; 6] = [
 /// The colour of faces that were cut.
 const CUT: [u8; 3] = [138, 24, 28];
 
-/// How far light of each colour goes round a tissue's edge into the shade: red farthest.
+/// The reach of light of each colour round a tissue's edge into the shade: red reaches farthest.
 const WRAP: V3 = [0.42, 0.18, 0.14];
 
 /// Cells of the grain in a length of 1: blotches, and vessels.
 const BLOTCHES: f32 = 6.0;
 const VESSELS: f32 = 4.3;
 
-/// How uneven the film of liquid on tissue is.
+/// Unevenness of the film of liquid on tissue.
 const BUMPS: f32 = 0.16;
 
 /// The strength of the lamp.
@@ -37,7 +37,7 @@ const KEY: V3 = [1.02, 1.0, 0.96];
 /// Steps of the colours of fields.
 const STEPS: usize = 256;
 
-/// A point of a surface that is seen.
+/// A visible point of a surface.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Point {
     pub(super) normal: V3,
@@ -46,7 +46,7 @@ pub(super) struct Point {
     pub(super) paint: Paint,
     /// The direction to the eye.
     pub(super) to_eye: V3,
-    /// The share of the lamp's light that reaches it.
+    /// The share of the lamp's light that reaches the point.
     pub(super) lit: f32,
 }
 
@@ -96,7 +96,7 @@ impl Palette {
         }
     }
 
-    /// Blotches of three sizes and fine vessels that come and go; and by how much the film of liquid is uneven.
+    /// The colour of blotches of three sizes and of fine, interrupted vessels; and the unevenness of the film of liquid.
     fn grain(&self, rest: V3) -> (V3, V3) {
         let noise = |cells: f32| self.mottle.at(scaled(rest, cells)) - 0.5;
         let (large, small) = (noise(BLOTCHES), noise(2.7 * BLOTCHES));
@@ -142,7 +142,7 @@ fn wet(light: &Light, point: &Point, colour: V3, gloss: f32, bumps: V3) -> V3 {
     add(body, [sheen; 3])
 }
 
-/// A surface whose colour is to be read.
+/// A matt surface, whose colour shows a value.
 fn matt(light: &Light, point: &Point, colour: V3) -> V3 {
     let facing = (0.75 * dot(point.normal, light.key) + 0.25).max(0.0);
     let amount = 0.34 + 0.46 * facing * (0.45 + 0.55 * point.lit);
@@ -151,7 +151,7 @@ fn matt(light: &Light, point: &Point, colour: V3) -> V3 {
     times(colour, light)
 }
 
-/// Brushed metal: what it mirrors is a bright room with a dark floor and a window on the lamp's side.
+/// Brushed metal. It mirrors a bright room with a dark floor and a window on the lamp's side.
 fn steel(light: &Light, point: &Point) -> V3 {
     let (normal, to_eye) = (point.normal, point.to_eye);
     let across = dot(normal, to_eye);
@@ -167,7 +167,7 @@ fn steel(light: &Light, point: &Point) -> V3 {
     scaled([0.93, 0.96, 1.0], amount)
 }
 
-/// From 0 to 1 as light begins to graze a surface.
+/// A smooth step from 0 to 1 as light begins to graze a surface.
 fn step(facing: f32) -> f32 {
     smooth(0.0, 0.15, facing)
 }

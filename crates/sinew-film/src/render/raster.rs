@@ -1,4 +1,4 @@
-//! Which triangle is seen at each of four points of a pixel.
+//! The visible triangle at each of four points of a pixel.
 
 use super::camera::{Camera, Seen};
 use super::model::{Model, Vertex};
@@ -18,7 +18,7 @@ pub(super) const SAMPLES: [[f32; 2]; 4] = [
 /// No triangle.
 pub(super) const NOTHING: u32 = u32::MAX;
 
-/// Triangles as a camera sees them.
+/// Triangles in the projection of a camera.
 pub(super) struct Projected {
     pub(super) vertices: Vec<Vertex>,
     pub(super) seen: Vec<Seen>,
@@ -28,7 +28,7 @@ pub(super) struct Projected {
 }
 
 impl Projected {
-    /// The triangles of a model, without what is behind the eye.
+    /// The triangles of a model, without the parts behind the eye.
     pub(super) fn of(model: &Model, camera: &Camera) -> Self {
         let mut projected = Self {
             vertices: model.vertices.clone(),
@@ -83,7 +83,7 @@ impl Projected {
         }
     }
 
-    /// The triangles that touch each band of a picture of so many rows, in their order.
+    /// The triangles that touch each band of a picture with a number of rows, in their order.
     pub(super) fn bands(&self, rows: usize) -> Vec<Vec<u32>> {
         let mut bands = vec![Vec::new(); rows.div_ceil(BAND)];
         for (index, corners) in self.triangles.iter().enumerate() {
@@ -103,7 +103,7 @@ impl Projected {
     }
 }
 
-/// The samples of a band: the nearest triangle at each, and how near it is.
+/// The samples of a band: the nearest triangle at each, and its nearness.
 #[derive(Debug, Default)]
 pub(super) struct Samples {
     near: Vec<[f32; 4]>,
@@ -111,7 +111,7 @@ pub(super) struct Samples {
 }
 
 impl Samples {
-    /// Empties the samples of so many pixels.
+    /// Empties the samples of a number of pixels.
     pub(super) fn clear(&mut self, pixels: usize) {
         self.near.clear();
         self.near.resize(pixels, [f32::MIN; 4]);
@@ -119,7 +119,7 @@ impl Samples {
         self.triangles.resize(pixels, [NOTHING; 4]);
     }
 
-    /// Fills in a triangle within a band whose first row is `top`. Where two are equally near, the first stays.
+    /// Fills in a triangle within a band whose first row is `top`. If two are equally near, the first stays.
     pub(super) fn fill(&mut self, index: u32, corners: [Seen; 3], width: usize, top: usize) {
         let rows = self.near.len() / width;
         let [a, mut b, mut c] = corners;

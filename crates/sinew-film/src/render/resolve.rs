@@ -1,4 +1,4 @@
-//! Pixels from what is seen at their points.
+//! Colours of pixels from the visible triangles at their points.
 
 use rayon::prelude::*;
 
@@ -14,10 +14,10 @@ use crate::colour_space::{Screen, linear};
 use crate::vector::{V3, add, dot, scaled, times, unit};
 use crate::{Picture, Size};
 
-/// The share of the lamp's light that finds its way round to sides that are turned away from it.
+/// The share of the lamp's light that reaches sides that are turned away from it.
 const AWAY: f32 = 0.35;
 
-/// What stays the same from picture to picture.
+/// The part of a scene that is the same in all pictures.
 pub(crate) struct Stage {
     camera: Camera,
     light: Light,
@@ -28,7 +28,7 @@ pub(crate) struct Stage {
 }
 
 impl Stage {
-    /// A stage as a camera sees it, with a floor at this height.
+    /// A stage in the view of a camera, with a floor at this height.
     pub(crate) fn new(camera: Camera, floor: f32) -> Self {
         Self {
             light: Light::of(&camera),
@@ -92,7 +92,7 @@ struct Drawing<'a> {
 }
 
 impl Drawing<'_> {
-    /// The light of a pixel: of each triangle that is seen in it once, as much as it covers. `None` for the background.
+    /// The light of a pixel: of each visible triangle once, weighted by the share it covers. `None` for the background.
     fn pixel(&self, middle: [f32; 2], seen: &[u32; 4]) -> Option<V3> {
         if *seen == [NOTHING; 4] {
             return self.floor(middle);
@@ -122,7 +122,7 @@ impl Drawing<'_> {
         Some(light)
     }
 
-    /// The light of the floor; `None` where it is that of the background.
+    /// The light of the floor; `None` if it is that of the background.
     fn floor(&self, [x, y]: [f32; 2]) -> Option<V3> {
         let left = self.floor.as_ref()?.left(self.stage.camera.ray(x, y))?;
         Some(times(self.background, left))

@@ -1,4 +1,4 @@
-//! Shadows: what the light does not reach, soft at their edges.
+//! Shadows with soft edges.
 
 use super::model::Model;
 use crate::vector::{V3, add, cross, dot, scaled, unit};
@@ -6,16 +6,16 @@ use crate::vector::{V3, add, cross, dot, scaled, unit};
 /// Pixels along an edge of the map.
 const EDGE: usize = 448;
 
-/// The half of what the map covers, in units of the body's radius.
+/// Half the width of the map, in units of the body's radius.
 const REACH: f32 = 1.9;
 
 /// Pixels by which a shadow's edge is spread to either side, twice.
 const SPREAD: usize = 4;
 
-/// How far off its surface a point is looked up, so that no surface shades itself.
+/// The distance from its surface at which a point is looked up, so that no surface shades itself.
 const OFF: f32 = 0.025;
 
-/// The share of light that is taken for none, since the mean of several depths lets some through everywhere.
+/// The share of light that counts as none, since the mean of several depths lets some through everywhere.
 const DARK: f32 = 0.25;
 
 /// Depths as the light sees them, and their squares: W. Donnelly and A. Lauritzen, Variance Shadow Maps (2006).

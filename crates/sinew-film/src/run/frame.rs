@@ -1,4 +1,4 @@
-//! What a frame's file holds.
+//! Content of a frame's file.
 
 use sinew_mesh::{CellType, Mesh};
 
@@ -11,7 +11,7 @@ const DISPLACEMENT: &str = "displacement";
 /// The array of regions, by their numbers from 1 on.
 const REGION: &str = "region";
 
-/// The cells of a frame, by which frames of the same body are told.
+/// The cells of a frame. Frames with the same cells show the same body.
 #[derive(Debug, Default)]
 pub(super) struct Cells {
     /// Places (m) of the nodes at rest.
@@ -93,7 +93,7 @@ impl Cells {
         )
     }
 
-    /// The surface that a boundary is, and from now on its nodes.
+    /// The surface of a boundary. Keeps the nodes on it.
     pub(super) fn surface(&mut self, boundary: &Boundary) -> Surface {
         let mut nodes = boundary.triangles.as_flattened().to_vec();
         nodes.sort_unstable();

@@ -1,4 +1,4 @@
-//! Frames of a run, as its folder holds them.
+//! Frames of a run, read from its folder.
 
 mod frame;
 mod series;
@@ -66,7 +66,7 @@ impl<'a> Run<'a> {
     /// The colouring of this name: `tissue`, or a field, or one of its components as in `displacement.z`.
     ///
     /// # Errors
-    /// [`FilmError::Colour`], which lists what there is.
+    /// [`FilmError::Colour`], which lists the available ones.
     pub fn colouring(&self, name: &str) -> Result<Colouring, FilmError> {
         Colouring::find(name, &self.fields)
     }

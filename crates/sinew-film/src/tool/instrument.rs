@@ -6,17 +6,17 @@ use super::part::Part;
 /// A rigid instrument.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tool {
-    /// What it is made of, in its own frame.
+    /// Parts of the instrument, in its own frame.
     pub parts: Vec<Part>,
-    /// Where it is over time, in the order of time; between two of them it moves straight, before the first and after the
-    /// last it stays.
+    /// Poses in the order of time. Between two of them the instrument moves straight; before the first and after the last
+    /// it does not move.
     pub poses: Vec<PoseAt>,
-    /// The times (s) between which it is seen.
+    /// The times (s) between which the instrument is visible.
     pub seen: [f64; 2],
 }
 
 impl Tool {
-    /// An instrument that is always seen.
+    /// An instrument that is always visible.
     #[must_use]
     pub fn new(parts: Vec<Part>, poses: Vec<PoseAt>) -> Self {
         Self {
@@ -26,7 +26,7 @@ impl Tool {
         }
     }
 
-    /// Where it is seen at a time (s); `None` where it is not, or has no poses.
+    /// The pose at a time (s); `None` if the instrument is not visible or has no poses.
     pub(crate) fn pose(&self, t: f64) -> Option<PoseAt> {
         let [from, to] = self.seen;
         let is_seen = t >= from && t <= to;

@@ -1,4 +1,4 @@
-//! Where an instrument is over time.
+//! Poses of an instrument over time.
 
 /// A place and a rotation at a time.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -11,7 +11,7 @@ pub struct PoseAt {
     pub rotation: [f64; 3],
 }
 
-/// The pose at a time (s), straight between two of them.
+/// The pose at a time (s), by linear interpolation between two of them.
 pub(super) fn at(poses: &[PoseAt], t: f64) -> Option<PoseAt> {
     let after = poses.partition_point(|pose| pose.t <= t);
     let before = *poses.get(after.saturating_sub(1))?;
@@ -31,8 +31,8 @@ pub(super) fn at(poses: &[PoseAt], t: f64) -> Option<PoseAt> {
     })
 }
 
-/// The poses of an instrument of this name in the text of `tools.csv`; without columns of its rotation it has always
-/// the one that is given. `None` where the table has not its columns, or a row without their numbers.
+/// The poses of an instrument of this name in the text of `tools.csv`. Without columns of its rotation, all poses have
+/// the given one. `None` if the table lacks its columns, or a row lacks their numbers.
 #[must_use]
 pub fn poses_of_table(text: &str, name: &str, rotation: [f64; 3]) -> Option<Vec<PoseAt>> {
     let mut lines = text.lines().filter(|line| !line.starts_with('#'));

@@ -1,4 +1,4 @@
-//! What instruments are made of.
+//! Parts of instruments.
 
 use crate::vector::{V3, add, turned};
 
@@ -33,7 +33,7 @@ pub enum Shape {
         /// Lengths (m) of its edges.
         size: [f64; 3],
     },
-    /// All below a plane with the normal +z, shown as a plate somewhat larger than the body.
+    /// The half-space below a plane with the normal +z, shown as a plate somewhat larger than the body.
     Plane,
     /// A blade whose edge lies along z; its back is in the direction `back`, at right angles to z.
     Blade {

@@ -25,7 +25,7 @@ pub(crate) struct Solid {
     pub(crate) triangles: Vec<[u32; 3]>,
 }
 
-/// The surface of a shape (m); `radius` (m) is that of the body, by which plates are measured.
+/// The surface of a shape (m). `radius` (m) is that of the body, which gives the size of plates.
 pub(crate) fn solid(shape: &Shape, radius: f32) -> Solid {
     match *shape {
         Shape::Sphere { radius } => rounded([0.0; 3], radius as f32),

@@ -19,8 +19,8 @@ struct Row {
     ends: [[f64; 3]; 2],
 }
 
-/// The blades of a table of strokes, one for each: it waits where its stroke begins until that of the one before has
-/// ended, and is gone when its own has. `None` for another table.
+/// The blades of a table of strokes, one for each. A blade is visible from the end of the previous stroke, waits at the
+/// beginning of its own, and disappears at the end of its own. `None` for another table.
 #[must_use]
 pub fn blades_of_strokes(text: &str) -> Option<Vec<Tool>> {
     let mut lines = text.lines().map(str::trim);
@@ -57,7 +57,7 @@ fn row(line: &str) -> Option<Row> {
     }
 }
 
-/// The blade of a stroke, which is seen from a time on.
+/// The blade of a stroke, visible from a time on.
 fn blade(rows: &[Row], from: f64) -> Tool {
     let along = |row: &Row| {
         let [a, b] = row.ends;

@@ -284,7 +284,7 @@ impl Host<'_> {
 }
 
 impl Team {
-    /// Makes a sweep with the workers. Goes on with a worker's panic.
+    /// Makes a sweep with the workers. Resumes the panic of a worker on this thread.
     fn share(&self, workers: &[Thread], chunks: usize) -> Outcome {
         self.saturated.store(0, Ordering::Relaxed);
         self.exceeded.store(false, Ordering::Relaxed);

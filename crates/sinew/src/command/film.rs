@@ -22,11 +22,11 @@ use super::results::{Results, names_scene};
 
 pub(crate) use self::arguments::Arguments;
 
-/// Sizes of films as PNG, whose bytes count, and of all else.
+/// Sizes of films as PNG, which should have few bytes, and of all others.
 const SMALL: &str = "720x405";
 const LARGE: &str = "1280x720";
 
-/// Files of a run folder that nothing is written over.
+/// Files of a run folder that are never overwritten.
 const READ: [&str; 4] = ["fields.pvd", "tools.csv", "scene.toml", "run.json"];
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
@@ -71,7 +71,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     maker.make(goal, &inputs)
 }
 
-/// Files that are read, and that nothing is written over.
+/// Files that are read and never overwritten.
 fn inputs(run: &Path) -> Vec<PathBuf> {
     match names_scene(run) {
         true => Scene::input_files_of(run),
@@ -79,7 +79,7 @@ fn inputs(run: &Path) -> Vec<PathBuf> {
     }
 }
 
-/// The size that is asked for, or one that fits the goal.
+/// The requested size, or the default of the goal.
 fn size(arguments: &Arguments, goal: &Goal) -> Result<Size, FilmError> {
     let usual = match goal {
         Goal::Film(_) => SMALL,
@@ -92,7 +92,7 @@ fn size(arguments: &Arguments, goal: &Goal) -> Result<Size, FilmError> {
     })
 }
 
-/// All that pictures are made of.
+/// Arguments and film from which pictures are made.
 struct Maker<'a> {
     arguments: &'a Arguments,
     film: &'a Film,
@@ -151,7 +151,7 @@ impl Maker<'_> {
         }
     }
 
-    /// Draws each picture and gives it away.
+    /// Draws each picture and passes it on.
     fn each(
         &self,
         timing: Timing,
@@ -176,7 +176,7 @@ impl Maker<'_> {
         timing.map_err(|error| self.refused(error))
     }
 
-    /// Writes a file and says what is in it.
+    /// Writes a file and reports its content.
     fn write(&self, file: Destination, content: &[u8], what: &str) -> Result<(), Failure> {
         let voice = Voice::apart_from(&file);
         let path = file.path().display().to_string();
@@ -195,7 +195,7 @@ impl Maker<'_> {
         Failure::Film { run, source }
     }
 
-    /// The end by the user after so many pictures.
+    /// The failure for an interrupt by the user after `done` pictures.
     fn interrupted(&self, timing: Timing, done: usize) -> Failure {
         let instants = timing.instants(self.film.span());
         Failure::Interrupted {

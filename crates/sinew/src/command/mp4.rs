@@ -10,13 +10,13 @@ use tempfile::TempDir;
 /// The program.
 const FFMPEG: &str = "ffmpeg";
 
-/// Its file in a folder that passes.
+/// The name of the film in a temporary folder.
 const NAME: &str = "film.mp4";
 
 /// A film that ffmpeg does not make.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum Mp4Error {
-    /// A program that is not there.
+    /// A program that is not installed.
     #[error(
         "no mp4 without ffmpeg ({0}); install it, or name a file that ends in .png, which needs nothing and which browsers play"
     )]
@@ -29,14 +29,14 @@ pub(crate) enum Mp4Error {
     Io(io::Error),
 }
 
-/// ffmpeg at work.
+/// A running ffmpeg.
 pub(super) struct Mp4 {
     child: Child,
     folder: TempDir,
 }
 
 impl Mp4 {
-    /// Starts it for pictures of a size, so many a second.
+    /// Starts ffmpeg for pictures of a size, `fps` a second.
     pub(super) fn begin(size: Size, fps: f64) -> Result<Self, Mp4Error> {
         let folder = tempfile::Builder::new().prefix("sinew-film-").tempdir();
         let folder = folder.map_err(Mp4Error::Io)?;
@@ -63,7 +63,7 @@ impl Mp4 {
         Ok(Self { child, folder })
     }
 
-    /// Gives it the next picture.
+    /// Passes the next picture to ffmpeg.
     pub(super) fn add(&mut self, picture: &Picture) -> Result<(), Mp4Error> {
         let written = match &mut self.child.stdin {
             Some(pipe) => pipe.write_all(picture.pixels().as_flattened()),
@@ -76,7 +76,7 @@ impl Mp4 {
         })
     }
 
-    /// The film, when it has all pictures.
+    /// The film, after its last picture.
     pub(super) fn finish(mut self) -> Result<Vec<u8>, Mp4Error> {
         drop(self.child.stdin.take());
         let said = self.said();
@@ -88,7 +88,7 @@ impl Mp4 {
         }
     }
 
-    /// What it says of its failure, once it has ended.
+    /// The error message of ffmpeg, after its end.
     fn said(&mut self) -> String {
         let mut said = Vec::new();
         if let Some(mut pipe) = self.child.stderr.take() {

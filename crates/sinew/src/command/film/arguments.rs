@@ -13,7 +13,7 @@ pub(crate) struct Arguments {
     /// The instant of a single picture, in s; without it the film goes from the first frame to the last
     #[arg(long, value_name = "T", allow_negative_numbers = true)]
     pub(super) at: Option<f64>,
-    /// Where it is seen from: front, back, left, right (or side), top, iso, or an azimuth and an elevation in degrees such as
+    /// Direction of view: front, back, left, right (or side), top, iso, or an azimuth and an elevation in degrees such as
     /// 30,25
     #[arg(
         long,
@@ -22,7 +22,7 @@ pub(crate) struct Arguments {
         allow_hyphen_values = true
     )]
     pub(super) view: String,
-    /// What the colour stands for: tissue, or a field of the run such as displacement, von_mises, stress or
+    /// Meaning of the colour: tissue, or a field of the run such as displacement, von_mises, stress or
     /// contact_pressure; a component follows a dot, as in displacement.z
     #[arg(long, value_name = "FIELD", default_value = "tissue", alias = "color")]
     pub(super) colour: String,
@@ -48,8 +48,8 @@ pub(crate) struct Arguments {
         conflicts_with = "at"
     )]
     pub(super) seconds: Option<f64>,
-    /// A file that ends in .png: a picture, or a film that browsers play where they show pictures; one that ends in .mp4: a
-    /// film, where ffmpeg is found; or a folder for all pictures, a new one or that of earlier pictures, which is replaced
+    /// A file that ends in .png: a picture, or a film that browsers play wherever they show pictures; one that ends in .mp4: a
+    /// film, if ffmpeg is found; or a folder for all pictures, a new one or that of earlier pictures, which is replaced
     /// [default: the name of the run with .png, in the current folder]
     #[arg(long, value_name = "FILE.png|FILE.mp4|DIR")]
     pub(super) out: Option<PathBuf>,

@@ -1,4 +1,4 @@
-//! Where pictures and films go.
+//! Destinations of pictures and films.
 
 use std::ffi::OsStr;
 use std::fs::File;
@@ -14,10 +14,10 @@ use crate::command::Failure;
 /// The kind of result, in manifests and messages.
 pub(super) const KIND: &str = "pictures of a run";
 
-/// Bytes of a file by which it is known as one of ours.
+/// Bytes at the beginning of a file that are searched for the mark of this command.
 const HEAD: u64 = 4096;
 
-/// What is to be written.
+/// The result to write.
 pub(super) enum Goal {
     /// A picture of an instant.
     Picture(Destination),
@@ -30,7 +30,7 @@ pub(super) enum Goal {
 }
 
 impl Goal {
-    /// What the arguments ask for, checked before anything is drawn; a run reads `inputs`.
+    /// The goal that the arguments request, checked before anything is drawn; a run reads `inputs`.
     pub(super) fn of(arguments: &Arguments, inputs: &[PathBuf]) -> Result<Self, Failure> {
         let out = match &arguments.out {
             Some(out) => out.clone(),
@@ -58,7 +58,7 @@ impl Goal {
         Ok(goal)
     }
 
-    /// Refuses what may not be written over.
+    /// Refuses files that must not be overwritten.
     fn check(&self, arguments: &Arguments, inputs: &[PathBuf]) -> Result<(), Failure> {
         match self {
             Self::Folder(path) => {
@@ -73,7 +73,7 @@ impl Goal {
     }
 }
 
-/// A file in the current folder that is called like a run and ends in .png.
+/// A file in the current folder with the name of a run and the ending .png.
 fn named_after(run: &Path) -> PathBuf {
     let real = run.canonicalize();
     let path = real.as_deref().unwrap_or(run);

@@ -1,4 +1,4 @@
-//! The tools of a run, as its scene describes and its table places them.
+//! The tools of a run: parts from its scene, poses from its table.
 
 use std::path::{Path, PathBuf};
 
@@ -12,11 +12,11 @@ use super::run_files::read_within;
 pub(super) struct Known {
     pub(super) title: Option<String>,
     pub(super) tools: Vec<Tool>,
-    /// What is missing from the picture, and why.
+    /// Things missing from the picture, each with the reason.
     pub(super) missing: Vec<String>,
 }
 
-/// What the scene of a run folder says of its tools.
+/// The title and the tools that the scene of a run folder describes.
 pub(super) fn known_of(folder: &Path) -> Known {
     let scene = match scene_of(folder) {
         Ok(scene) => scene,
@@ -100,7 +100,7 @@ impl Known {
     }
 }
 
-/// The scene of a run folder, whose files may be gone: only its text is needed.
+/// The scene of a run folder. Its files may be absent: only its text is needed.
 fn scene_of(folder: &Path) -> Result<Scene, String> {
     let read = |name: &str| {
         let bytes = read_within(folder, name).map_err(|reason| format!("{name}: {reason}"))?;
