@@ -1,5 +1,5 @@
 //! Repository chores:
-//! `cargo xtask bench | verify | native | memory | reproduce | meshes | compare | laws | wheel | python-test | live-test | docs | book | reference | readme | to-a-scene | dist | rules | ci`.
+//! `cargo xtask bench | verify | native | memory | reproduce | meshes | compare | laws | wheel | python-test | live-test | docs | gallery | book | reference | readme | to-a-scene | dist | rules | ci`.
 
 mod bench;
 mod beside;
@@ -10,6 +10,7 @@ mod dist;
 mod docs;
 mod environment;
 mod failure;
+mod gallery;
 mod generated;
 mod laws;
 mod live_test;
@@ -76,6 +77,8 @@ enum Chore {
     PowerLoss(power_loss::Arguments),
     /// Bring the table and the pictures of the book's chapter on the bench up to the last bench and the last hard bench.
     Docs,
+    /// Draw the pictures of the ready scenes in the book, and the film of the README, by runs of them.
+    Gallery,
     /// Build the book into target/book by mdBook; part of `ci` where there is one.
     Book(book::Arguments),
     /// Write the reference and the JSON schema of scenes into docs.
@@ -108,6 +111,7 @@ fn main() -> ExitCode {
         Chore::LiveTest(arguments) => live_test::run(&arguments),
         Chore::PowerLoss(arguments) => power_loss::run(&arguments),
         Chore::Docs => docs::run(),
+        Chore::Gallery => gallery::run(),
         Chore::Book(arguments) => book::run(&arguments),
         Chore::Reference => reference::run(),
         Chore::Readme => readme::run(),
