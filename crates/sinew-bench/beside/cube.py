@@ -4,8 +4,8 @@ A program is a class with
 
     versions()              names and versions, as a dict
     METHODS                 its methods, each a Method
-    cases: run(method, forces, dt, steps)   CPU seconds of the steps, and displacements (m, nodes x 3) at the end, or None
-                                            where the run has failed
+    run(method, forces, dt, steps)   from rest: CPU seconds of all steps, and displacements (m, instants x nodes x 3), or
+                                     None where the run has failed
 
 `main` reads the file that `cargo xtask bench --beside ..` writes and prints one JSON object a line:
 
@@ -13,8 +13,9 @@ A program is a class with
     {"check": {"method": .., "off": ..}}          with --check, and then nothing else
     {"case": .., "method": .., "law": .., "dt_s": .., "is_limit": .., "steps": .., "cpu_s": .., "file": ..}
 
-"cpu_s" is the CPU time of this process for the steps alone, the least of the laps; "file" has the displacements as raw
-little-endian f64, nodes x 3, in the folder of the cube.
+"cpu_s" is the CPU time of this process for the steps of a run, without building and compiling, the least of the laps;
+"file" has the displacements at equally spaced instants, the last at the end, as raw little-endian f64, instants x nodes x 3,
+in the folder of the cube.
 """
 
 import argparse
@@ -32,12 +33,12 @@ OUT, sys.stdout = sys.stdout, sys.stderr
 # A stable run of half the step is at most this far away (relative); beyond it, motion is noise that grows.
 STABLE = 0.5
 
-# The largest stable step is found to this share.
-CLOSE = 0.03
+# The step (s) at which the search for the largest stable one begins.
+LARGEST = 0.01
 
-# The check: share of the load of the first case, time (s), share of the stable step, and how far the displacements may be
-# from those of linear elasticity (relative L2).
-CHECK_LOAD, CHECK_TIME, CHECK_STEP, CHECK_OFF = 2e-3, 0.1, 0.125, 0.03
+# The check: share of the load of the first case, time (s), step (s), and how far the displacements may be from those of
+# linear elasticity (relative L2).
+CHECK_LOAD, CHECK_TIME, CHECK_STEP, CHECK_OFF = 2e-3, 0.1, 1e-4, 0.03
 
 
 @dataclasses.dataclass(frozen=True)
@@ -64,6 +65,7 @@ class Cube:
         self.youngs_modulus = data["youngs_modulus_pa"]
         self.poissons_ratio = data["poissons_ratio"]
         self.duration = data["duration_s"]
+        self.instants = data["instants"]
         self.laps = data["laps"]
         self.cases = {case["name"]: numpy.array(case["forces_n"], dtype=float) for case in data["cases"]}
         corners = self.points[self.tets]
@@ -77,48 +79,50 @@ class Cube:
         e, nu = self.youngs_modulus, self.poissons_ratio
         return e * nu / ((1 + nu) * (1 - 2 * nu)), e / (2 * (1 + nu))
 
+    def steps_of(self, duration, dt):
+        """The number of steps of at most `dt` that meet the instants."""
+        return self.instants * max(1, math.ceil(duration / (self.instants * dt) - 1e-9))
+
 
 def apart(found, expected):
     """Relative L2 difference."""
     return numpy.linalg.norm(found - expected) / numpy.linalg.norm(expected)
 
 
-def steps_of(duration, dt):
-    return max(1, math.ceil(duration / dt - 1e-9))
-
-
 class Stable:
     """Looks for the largest stable step by halving."""
 
-    def __init__(self, program, method, forces, duration):
-        self.program, self.method, self.forces, self.duration = program, method, forces, duration
-        self.ends = {}
+    def __init__(self, cube, program, method, forces):
+        self.cube, self.program, self.method, self.forces = cube, program, method, forces
+        self.known = {}
 
-    def end(self, steps):
-        """Displacements after so many steps over the duration, None where the run has failed."""
-        if steps not in self.ends:
-            _, self.ends[steps] = self.program.run(self.method, self.forces, self.duration / steps, steps)
-        return self.ends[steps]
+    def motion(self, steps):
+        """Displacements of a run of so many steps, None where it has failed."""
+        if steps not in self.known:
+            dt = self.cube.duration / steps
+            _, self.known[steps] = self.program.run(self.method, self.forces, dt, steps)
+        return self.known[steps]
 
     def is_stable(self, steps):
-        coarse, fine = self.end(steps), self.end(2 * steps)
+        coarse, fine = self.motion(steps), self.motion(2 * steps)
         return coarse is not None and fine is not None and apart(coarse, fine) <= STABLE
 
-    def steps(self, dt=0.02):
-        """The least number of steps that are stable."""
-        steps = steps_of(self.duration, dt)
-        while not self.is_stable(steps):
-            if steps > 1_000_000:
+    def steps(self):
+        """The least number of steps that are stable and meet the instants."""
+        unit = self.cube.instants
+        stable = max(1, self.cube.steps_of(self.cube.duration, LARGEST) // unit)
+        while not self.is_stable(unit * stable):
+            if stable > 100_000:
                 sys.exit(f"{self.method.name}: no stable step")
-            steps *= 2
-        unstable = steps // 2
-        while steps - unstable > max(1, CLOSE * steps):
-            middle = (steps + unstable) // 2
-            if self.is_stable(middle):
-                steps = middle
+            stable *= 2
+        unstable = stable // 2
+        while stable - unstable > 1:
+            middle = (stable + unstable) // 2
+            if self.is_stable(unit * middle):
+                stable = middle
             else:
                 unstable = middle
-        return steps
+        return unit * stable
 
 
 def stiffness(cube):
@@ -143,8 +147,8 @@ def stiffness(cube):
     return coo_matrix((blocks.ravel(), (rows.ravel(), columns.ravel())), shape=(size, size)).tocsr()
 
 
-def linear_end(cube, forces, duration):
-    """Displacements (m) of linear elasticity after a sudden load, by central difference at a twentieth of the stable step."""
+def linear_motion(cube, forces, duration):
+    """Displacements (m) of linear elasticity under a sudden load, by central difference at a twentieth of the stable step."""
     from scipy.sparse import diags
     from scipy.sparse.linalg import eigsh
 
@@ -153,28 +157,30 @@ def linear_end(cube, forces, duration):
     mass = numpy.repeat(cube.mass, 3)[free]
     scaled = diags(mass**-0.5) @ matrix @ diags(mass**-0.5)
     largest = eigsh(scaled, k=1, which="LA", tol=1e-3, return_eigenvectors=False)[0]
-    steps = steps_of(duration, 0.05 * 2 / math.sqrt(largest))
+    steps = cube.steps_of(duration, 0.05 * 2 / math.sqrt(largest))
     dt = duration / steps
     load = forces.ravel()[free] / mass
     u, w = numpy.zeros(len(free)), -0.5 * dt * load
-    for _ in range(steps):
-        w += dt * (load - matrix @ u / mass)
-        u += dt * w
-    end = numpy.zeros(3 * len(cube.points))
-    end[free] = u
-    return end.reshape(-1, 3)
+    motion = numpy.zeros((cube.instants, 3 * len(cube.points)))
+    for instant in motion:
+        for _ in range(steps // cube.instants):
+            w += dt * (load - matrix @ u / mass)
+            u += dt * w
+        instant[free] = u
+    return motion.reshape(cube.instants, -1, 3)
 
 
 def check(cube, program):
     """Compares each method under a small load with linear elasticity on the same mesh."""
     forces = CHECK_LOAD * next(iter(cube.cases.values()))
-    expected = linear_end(cube, forces, CHECK_TIME)
+    expected = linear_motion(cube, forces, CHECK_TIME)
+    steps = cube.steps_of(CHECK_TIME, CHECK_STEP)
     worst = 0.0
     for method in program.METHODS:
-        largest = Stable(program, dataclasses.replace(method, dt=None), forces, CHECK_TIME).steps(method.dt or 0.02)
-        steps = round(largest / CHECK_STEP)
-        _, end = program.run(method, forces, CHECK_TIME / steps, steps)
-        off = math.inf if end is None else apart(end, expected)
+        _, motion = program.run(method, forces, CHECK_TIME / steps, steps)
+        if motion is None:
+            sys.exit(f"{method.name}: the run under a small load has failed")
+        off = apart(motion, expected)
         say({"check": {"method": method.name, "off": off}})
         worst = max(worst, off)
     if worst > CHECK_OFF:
@@ -185,17 +191,17 @@ def measure(cube, program):
     for name, forces in cube.cases.items():
         for method in program.METHODS:
             if method.dt is None:
-                steps = Stable(program, method, forces, cube.duration).steps()
+                steps = Stable(cube, program, method, forces).steps()
             else:
-                steps = steps_of(cube.duration, method.dt)
+                steps = cube.steps_of(cube.duration, method.dt)
             dt = cube.duration / steps
             # The first lap brings memory and clocks up to speed and counts for nothing.
             laps = [program.run(method, forces, dt, steps) for _ in range(cube.laps + 1)][1:]
-            end = laps[-1][1]
-            if end is None:
-                sys.exit(f"{method.name}: {name}: a run that was stable has failed")
+            motion = laps[-1][1]
+            if motion is None:
+                sys.exit(f"{method.name}: {name}: the run has failed")
             file = cube.folder / f"{program.NAME}-{name}-{method.name}.f64"
-            numpy.asarray(end, dtype="<f8").tofile(file)
+            numpy.asarray(motion, dtype="<f8").tofile(file)
             say(
                 {
                     "case": name,

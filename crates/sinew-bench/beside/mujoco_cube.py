@@ -102,16 +102,17 @@ class Program:
         model.opt.timestep = dt
         mujoco.mj_resetData(model, data)
         data.qfrc_applied[slides] = forces[free]
-        before = time.process_time()
-        mujoco.mj_step(model, data, nstep=steps)
-        spent = time.process_time() - before
+        instants = self.cube.instants
+        motion = numpy.zeros((instants, *self.cube.points.shape))
+        spent = 0.0
+        for instant in motion:
+            before = time.process_time()
+            mujoco.mj_step(model, data, nstep=steps // instants)
+            spent += time.process_time() - before
+            # A slide's place in qpos is that of its velocity: no other joint is there.
+            instant[free] = data.qpos[slides]
         failed = any(data.warning[failure].number for failure in FAILURES)
-        if failed or not numpy.isfinite(data.qpos).all():
-            return spent, None
-        # A slide's place in qpos is that of its velocity: no other joint is there.
-        end = numpy.zeros_like(self.cube.points)
-        end[free] = data.qpos[slides]
-        return spent, end
+        return spent, None if failed or not numpy.isfinite(motion).all() else motion
 
 
 if __name__ == "__main__":

@@ -63,14 +63,19 @@ class Program:
             state.particle_qd.assign(self.rest.particle_qd)
         load = warp.array(forces.astype(numpy.float32), dtype=warp.vec3, device="cpu")
         step, control, copy = self.solver.step, self.control, warp.copy
-        before = time.process_time()
-        for _ in range(steps):
-            copy(now.particle_f, load)
-            step(now, after, control, None, dt)
-            now, after = after, now
-        spent = time.process_time() - before
-        end = now.particle_q.numpy().astype(float) - self.rest.particle_q.numpy()
-        return spent, end if numpy.isfinite(end).all() else None
+        instants = self.cube.instants
+        motion = numpy.zeros((instants, *self.cube.points.shape))
+        rest = self.rest.particle_q.numpy().astype(float)
+        spent = 0.0
+        for instant in motion:
+            before = time.process_time()
+            for _ in range(steps // instants):
+                copy(now.particle_f, load)
+                step(now, after, control, None, dt)
+                now, after = after, now
+            spent += time.process_time() - before
+            instant[:] = now.particle_q.numpy() - rest
+        return spent, motion if numpy.isfinite(motion).all() else None
 
 
 if __name__ == "__main__":
