@@ -76,8 +76,7 @@ pub(super) fn run(wanted: &[&Simulator], quick: bool) -> Result<(), Failure> {
     }
     let cube = SharedCube::new(quick).map_err(Failure::chore)?;
     let exchange = target.join("beside").join("cube");
-    std::fs::create_dir_all(&exchange).map_err(Failure::chore)?;
-    std::fs::write(exchange.join(CUBE), cube.json()).map_err(Failure::chore)?;
+    OutputFolder::new(exchange.clone(), &[]).write(CUBE, &cube.json())?;
     let (mut said, mut missing) = (Vec::new(), Vec::new());
     for (simulator, python) in &ready {
         say(&format!("{} ...", simulator.name))?;

@@ -4,17 +4,11 @@ use sinew_core::{Options, Run, StableStep, State, System};
 use sinew_integrators::Stepper;
 use sinew_verify::LabError;
 
-use super::SimulatorRow;
 use super::cube::{CubeBody, DURATION, INSTANTS};
+use super::row::{PROGRAM, SimulatorRow};
 use crate::timed::time_run;
 
-/// Our name in tables.
-pub(super) const PROGRAM: &str = "sinew";
-
 const METHOD: &str = "central-difference";
-
-/// The run that others are compared with.
-pub(super) const OWN: &str = "central-difference f32";
 
 /// Share of the stable step at rest that fixed steps are: stretched tissue is faster.
 const SHARE: f64 = 0.7;
@@ -137,5 +131,27 @@ fn stable_step(body: &CubeBody) -> Result<f64, LabError> {
         StableStep::Any | StableStep::Unknown => Err(LabError::new(format!(
             "no stable step of {METHOD} is known"
         ))),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::cube::SharedCube;
+    use super::super::row::OWN;
+    use super::*;
+    use sinew_measure::reference::ErrorNorm;
+
+    #[test]
+    fn fixed_and_automatic_steps_come_near_the_fine_run_and_one_is_compared_with() {
+        let cube = SharedCube::new(true).unwrap();
+        let body = &cube.bodies[0];
+        let fine = OwnRun::fine(body).unwrap();
+        let runs = OwnRun::all(body, 1).unwrap();
+        assert!(runs.iter().any(|run| run.name == OWN));
+        for run in &runs {
+            let error = ErrorNorm::between(&run.motion, &fine.motion);
+            assert!(error > 1e-5 && error < 0.05, "{}: {error}", run.name);
+            assert!(run.cpu_s > 0.0 && run.steps >= INSTANTS && run.steps < fine.steps);
+        }
     }
 }

@@ -3,7 +3,7 @@
 use sinew_draw::Page;
 use sinew_draw::page::{Cell, Column, Table, TableRow};
 
-use super::SimulatorResults;
+use super::results::SimulatorResults;
 use super::table::{HEAD, MEANING, cells};
 
 impl SimulatorResults {

@@ -7,8 +7,8 @@ use serde::Deserialize;
 use serde_json::Value;
 use sinew_verify::LabError;
 
-use super::SimulatorRow;
 use super::cube::{CubeBody, DURATION, INSTANTS};
+use super::row::SimulatorRow;
 
 /// A line that a script should not have printed.
 #[derive(Debug, PartialEq, thiserror::Error)]
@@ -175,6 +175,11 @@ impl Said {
 }
 
 impl SaidRun {
+    /// True for the case and the law of a body.
+    pub(super) fn is_of(&self, body: &CubeBody) -> bool {
+        self.case == body.case && self.law == body.law
+    }
+
     fn check(&self) -> Result<(), &'static str> {
         let is_positive = |number: f64| number.is_finite() && number > 0.0;
         if !is_positive(self.dt_s) || !is_positive(self.cpu_s) || self.steps == 0 {
@@ -252,7 +257,7 @@ mod tests {
 
     #[test]
     fn displacements_of_another_size_are_refused() {
-        let cube = super::super::SharedCube::new(true).unwrap();
+        let cube = super::super::cube::SharedCube::new(true).unwrap();
         let body = &cube.bodies[0];
         let said = read(&[VERSIONS, RUN]).unwrap();
         let folder = tempfile::tempdir().unwrap();

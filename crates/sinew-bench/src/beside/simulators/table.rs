@@ -4,7 +4,8 @@ use std::fmt;
 
 use sinew_verify::ruled;
 
-use super::{SimulatorResults, SimulatorRow};
+use super::results::SimulatorResults;
+use super::row::SimulatorRow;
 use crate::report::{milliseconds, percent, three};
 
 pub(super) const HEAD: [&str; 8] = [
@@ -69,7 +70,7 @@ pub(super) fn cells(row: &SimulatorRow) -> [String; 8] {
 
 #[cfg(test)]
 mod tests {
-    use super::super::own_runs::OWN;
+    use super::super::row::OWN;
     use super::*;
     use sinew_verify::Machine;
 
