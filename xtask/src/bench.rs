@@ -69,11 +69,12 @@ pub(crate) struct Arguments {
     /// the largest scene in real time; about 15 minutes
     #[arg(long, conflicts_with_all = ["scenes", "integrators", "steps", "hard", "kernels", "nonlinear", "hands", "beside"])]
     scale: bool,
-    /// Run another program in turn with ours and print the ratios of CPU time, nothing else: scipy (installed by pip into
-    /// target/) with our cheapest methods on the peers' cube, or CHOLMOD (skipped where it is not installed) with our
-    /// sparse factors
-    #[arg(long, value_enum, value_name = "PROGRAM", conflicts_with_all = ["scenes", "steps", "out", "all"])]
-    beside: Option<Program>,
+    /// Run other programs next to ours, nothing else: scipy (installed by pip into target/) in turn with our cheapest methods on the
+    /// peers' cube, CHOLMOD (skipped where it is not installed) in turn with our sparse factors: ratios of CPU time; mujoco and
+    /// newton (installed by pip into target/, each skipped where pip cannot have it) on a cube of large deformation, each
+    /// by its own methods at its own stable step: errors against fine runs, CPU time and ratios, also in target/bench-beside
+    #[arg(long, value_enum, value_name = "PROGRAM,..", value_delimiter = ',', conflicts_with_all = ["scenes", "steps", "out", "all"])]
+    beside: Vec<Program>,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
@@ -104,8 +105,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         steps: arguments.steps.clone(),
         quick: arguments.quick,
     };
-    if let Some(program) = arguments.beside {
-        return beside::run(program, &bench);
+    if !arguments.beside.is_empty() {
+        return beside::run(&arguments.beside, &bench);
     }
     bench.check().map_err(Failure::input)?;
     let files = (bench.input_files(), bench.output_files());

@@ -15,7 +15,7 @@ const BOOK: &str = "docs/book/src";
 
 /// Commands that take too long, or need what not every computer has, with the reason. With `--help` behind it, which reads
 /// all options before it and then ends, each still fails where an option is gone.
-const NOT_RUN: [(&str, &str); 19] = [
+const NOT_RUN: [(&str, &str); 20] = [
     (
         "cargo run --release -p sinew -- live ball.toml",
         "serves until it is interrupted",
@@ -62,6 +62,10 @@ const NOT_RUN: [(&str, &str); 19] = [
         "needs Python and a network",
     ),
     ("cargo xtask bench --beside cholmod", "needs CHOLMOD"),
+    (
+        "cargo xtask bench --beside mujoco,newton",
+        "needs Python and a network",
+    ),
     ("cargo xtask verify", "a step of `ci`"),
     ("cargo xtask verify --long", "a step of `ci`"),
     (

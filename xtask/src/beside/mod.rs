@@ -3,6 +3,7 @@
 mod cholmod;
 mod conversation;
 mod scipy;
+mod simulators;
 
 use sinew_bench::beside::factor::{EffectiveMatrix, FactorTable, run_factor_laps};
 use sinew_bench::beside::{ExportError, Exported, Rounds, export, run_beside};
@@ -16,6 +17,7 @@ use crate::python::{Packages, Python};
 use crate::repository::root;
 use cholmod::Driver;
 use scipy::Scipy;
+use simulators::Simulator;
 
 /// The packages that `xtask/python/central_difference.py` imports.
 const PACKAGES: Packages = Packages {
@@ -32,13 +34,30 @@ pub(crate) enum Program {
     Scipy,
     /// CHOLMOD's sparse Cholesky factors, on Newmark's matrices at 20 ms.
     Cholmod,
+    /// MuJoCo's flex, by its own methods.
+    Mujoco,
+    /// Newton's SolverSemiImplicit on the CPU.
+    Newton,
 }
 
-/// Runs the program in turn with ours and prints ratios of CPU time.
-pub(crate) fn run(program: Program, bench: &Bench) -> Result<(), Failure> {
-    match program {
-        Program::Scipy => beside_scipy(bench),
-        Program::Cholmod => beside_cholmod(bench),
+/// Runs programs in turn with ours and prints ratios of CPU time; simulators share a table.
+pub(crate) fn run(programs: &[Program], bench: &Bench) -> Result<(), Failure> {
+    if programs.contains(&Program::Scipy) {
+        beside_scipy(bench)?;
+    }
+    if programs.contains(&Program::Cholmod) {
+        beside_cholmod(bench)?;
+    }
+    let simulators = [
+        (Program::Mujoco, &simulators::MUJOCO),
+        (Program::Newton, &simulators::NEWTON),
+    ];
+    let wanted = simulators.into_iter();
+    let wanted = wanted.filter(|(program, _)| programs.contains(program));
+    let wanted: Vec<&Simulator> = wanted.map(|(_, simulator)| simulator).collect();
+    match wanted.is_empty() {
+        true => Ok(()),
+        false => simulators::run(&wanted, bench.quick),
     }
 }
 

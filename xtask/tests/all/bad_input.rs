@@ -327,6 +327,23 @@ fn another_program_needs_python_and_takes_no_scene() {
 }
 
 #[test]
+fn simulators_are_skipped_each_by_itself_where_there_is_no_python() {
+    let nothing = tempfile::tempdir().unwrap();
+    let mut command = Command::cargo_bin("xtask").unwrap();
+    command.args(["bench", "--quick", "--beside", "mujoco,newton"]);
+    let output = command.env("PATH", nothing.path()).output().unwrap();
+    let said = String::from_utf8(output.stdout).unwrap();
+    assert_eq!(output.status.code(), Some(0), "{said}");
+    let lines: Vec<&str> = said.lines().collect();
+    assert_eq!(lines.len(), 2, "{said}");
+    for (line, name) in lines.into_iter().zip(["MuJoCo", "Newton"]) {
+        let option = format!("--beside {} needs Python 3", name.to_lowercase());
+        assert!(line.starts_with(&format!("skipped: {name}: ")), "{line}");
+        assert!(line.contains(&option), "{line}");
+    }
+}
+
+#[test]
 fn a_comparison_needs_python() {
     let nothing = tempfile::tempdir().unwrap();
     let mut command = Command::cargo_bin("xtask").unwrap();
