@@ -44,7 +44,10 @@ pub(crate) fn run() -> Result<(), Failure> {
             &[&film[..], &[&picture, "--at", &at, "--size", SIZE]].concat(),
         )?;
         if name == FILM.0 {
-            call(&sinew, &[&film[..], &[&shown(&root().join(FILM.1))]].concat())?;
+            call(
+                &sinew,
+                &[&film[..], &[&shown(&root().join(FILM.1))]].concat(),
+            )?;
         }
     }
     Ok(())
@@ -55,7 +58,10 @@ fn scenes() -> Result<Vec<PathBuf>, Failure> {
     let entries = fs::read_dir(root().join(SCENES)).map_err(Failure::chore)?;
     let paths = entries.map(|entry| Ok(entry.map_err(Failure::chore)?.path()));
     let mut paths = paths.collect::<Result<Vec<_>, Failure>>()?;
-    paths.retain(|path| path.extension().is_some_and(|extension| extension == "toml"));
+    paths.retain(|path| {
+        path.extension()
+            .is_some_and(|extension| extension == "toml")
+    });
     paths.sort();
     Ok(paths)
 }

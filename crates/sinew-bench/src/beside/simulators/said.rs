@@ -23,7 +23,7 @@ pub enum SaidError {
         line: usize,
         /// Its beginning.
         text: String,
-        /// What is wrong with it.
+        /// Reason for which it is refused.
         reason: String,
     },
     /// Output that ends too early.
@@ -31,7 +31,7 @@ pub enum SaidError {
     Without {
         /// The script.
         script: String,
-        /// What it did not print.
+        /// Kind of line that it did not print.
         what: &'static str,
     },
 }

@@ -19,7 +19,7 @@ pub(super) const HEAD: [&str; 8] = [
     "error at\nthe end [%]",
 ];
 
-/// What rows mean.
+/// Meaning of the rows.
 pub(super) const MEANING: &str = "Each error is taken against a fine run of ours under the same law on the same mesh, so that programs with \
      different laws are not compared by their motion. Steps with a * are the longest stable ones of their method, found by halving; `dt auto` shows the \
      mean step. CPU is that of the steps for a simulated second, least of the laps, without building and compiling.";
