@@ -16,6 +16,18 @@ const SCENES: &str = "scenes/ready";
 const PICTURES: &str = "docs/book/src/gallery";
 /// Size of a picture (pixels).
 const SIZE: &str = "720x405";
+/// Scenes whose motion is seen without colours; the others are coloured by their displacement.
+const TISSUE: [&str; 9] = [
+    "artery",
+    "handle",
+    "incision",
+    "layers",
+    "muscle",
+    "needle-push",
+    "press",
+    "retract",
+    "slit",
+];
 /// Scene of the README's film, and the film.
 const FILM: (&str, &str) = ("retract", "docs/film.png");
 
@@ -39,10 +51,12 @@ pub(crate) fn run() -> Result<(), Failure> {
         let at = instant(&folder)?;
         let picture = shown(&root().join(PICTURES).join(format!("{name}.png")));
         let film = ["film", &shown(&folder), "--force", "--out"];
-        call(
-            &sinew,
-            &[&film[..], &[&picture, "--at", &at, "--size", SIZE]].concat(),
-        )?;
+        let colour = match TISSUE.contains(&&*name) {
+            true => "tissue",
+            false => "displacement",
+        };
+        let options = [&picture, "--at", &at, "--size", SIZE, "--colour", colour];
+        call(&sinew, &[&film[..], &options].concat())?;
         if name == FILM.0 {
             call(
                 &sinew,
