@@ -4,7 +4,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Lists of runs, which are about certain methods.
-const LISTS: [&str; 16] = [
+const LISTS: [&str; 17] = [
+    "sinew-bench/src/beside/simulators/own_runs.rs",
     "sinew-bench/src/verify/pressed.rs",
     "sinew-bench/src/kernels/laps.rs",
     "sinew-bench/src/kernels/pulled.rs",
