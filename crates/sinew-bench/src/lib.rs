@@ -11,6 +11,7 @@ pub mod kernels;
 mod median;
 pub mod nonlinear;
 pub mod peers;
+mod plain_table;
 mod planned;
 mod pressed;
 pub mod report;

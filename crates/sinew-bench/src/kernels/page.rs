@@ -5,7 +5,8 @@ use super::row::KernelRow;
 use super::table::{
     HEAD, HEAD_OF_ELEMENTS, HEAD_OF_PULLED, OF_PULLED, cells, cells_of_element, cells_of_pulled,
 };
-use sinew_draw::page::{Cell, Column, Table, TableRow};
+use crate::plain_table::{groups, rows, table};
+use sinew_draw::page::Table;
 use sinew_draw::{Family, Page, Roofline};
 
 impl KernelResults {
@@ -55,62 +56,21 @@ impl KernelResults {
     }
 
     fn rows_on_page(&self) -> Table {
-        let columns = HEAD.iter().enumerate().map(|(index, head)| match index {
-            0..=2 => Column::text(*head),
-            _ => Column::number(*head, ""),
-        });
-        let mut body = "";
-        let rows = self.rows.iter().map(|row| {
-            let begins_group = row.mesh != body;
-            body = &row.mesh;
-            TableRow {
-                begins_group,
-                ..TableRow::new(cells(row).map(Cell::text))
-            }
-        });
-        Table {
-            rows: rows.collect(),
-            columns: columns.collect(),
-            ..Table::default()
-        }
+        let rows = self.rows.iter().map(|row| (&row.mesh, cells(row)));
+        table(&HEAD, 3, groups(rows))
     }
 
     fn elements_on_page(&self) -> Table {
-        let columns = HEAD_OF_ELEMENTS.iter().enumerate();
-        let columns = columns.map(|(index, head)| match index {
-            0..=4 => Column::text(*head),
-            _ => Column::number(*head, ""),
-        });
-        let mut last = ("", "", "");
         let rows = self.elements.iter().map(|row| {
-            let of_row = (row.mesh.as_str(), row.law, row.element);
-            let begins_group = std::mem::replace(&mut last, of_row) != of_row;
-            TableRow {
-                begins_group,
-                ..TableRow::new(cells_of_element(row).map(Cell::text))
-            }
+            let group = (&row.mesh, row.law, row.element);
+            (group, cells_of_element(row))
         });
-        Table {
-            rows: rows.collect(),
-            columns: columns.collect(),
-            ..Table::default()
-        }
+        table(&HEAD_OF_ELEMENTS, 5, groups(rows))
     }
 
     fn pulled_on_page(&self) -> Table {
-        let columns = HEAD_OF_PULLED.iter().enumerate();
-        let columns = columns.map(|(index, head)| match index {
-            0..=2 => Column::text(*head),
-            _ => Column::number(*head, ""),
-        });
-        let rows = self.pulled.iter();
-        Table {
-            rows: rows
-                .map(|row| TableRow::new(cells_of_pulled(row).map(Cell::text)))
-                .collect(),
-            columns: columns.collect(),
-            ..Table::default()
-        }
+        let pulled = self.pulled.iter().map(cells_of_pulled);
+        table(&HEAD_OF_PULLED, 3, rows(pulled))
     }
 
     fn roofline(&self) -> Roofline {

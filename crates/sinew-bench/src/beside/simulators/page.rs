@@ -1,7 +1,9 @@
 //! Runs of simulators as a page.
 
 use sinew_draw::Page;
-use sinew_draw::page::{Cell, Column, Table, TableRow};
+use sinew_draw::page::Table;
+
+use crate::plain_table::{groups, table};
 
 use super::results::SimulatorResults;
 use super::table::{HEAD, MEANING, cells};
@@ -30,23 +32,10 @@ impl SimulatorResults {
     }
 
     fn rows_on_page(&self) -> Table {
-        let columns = HEAD.iter().enumerate().map(|(index, head)| match index {
-            0..=3 => Column::text(*head),
-            _ => Column::number(*head, ""),
-        });
-        let mut last = ("", "");
-        let rows = self.rows.iter().map(|row| {
-            let group = (row.case.as_str(), row.law.as_str());
-            let begins_group = std::mem::replace(&mut last, group) != group;
-            TableRow {
-                begins_group,
-                ..TableRow::new(cells(row).map(Cell::text))
-            }
-        });
-        Table {
-            rows: rows.collect(),
-            columns: columns.collect(),
-            ..Table::default()
-        }
+        let rows = self
+            .rows
+            .iter()
+            .map(|row| ((&row.case, &row.law), cells(row)));
+        table(&HEAD, 4, groups(rows))
     }
 }
