@@ -74,15 +74,23 @@ const STEPS: &[Step] = &[
     cargo("live page in Chromium", "xtask live-test"),
     cargo("loss of power", "xtask power-loss"),
     cargo("commands of the documents", "xtask readme"),
-    own("book", book_if_possible),
+    own("book", || {
+        if_possible(book::program(), |found| book::run_with(found))
+    }),
     cargo(
         "installation",
         "install --path crates/sinew --root target/ci-install --locked --force --no-track --quiet",
     ),
     cargo("archive, tried elsewhere", "xtask dist"),
-    own("Python package", python_test_if_possible),
-    own("comparison with meshio and pyvista", compare_if_possible),
-    own("files of others become scenes", to_a_scene_if_possible),
+    own("Python package", || {
+        if_possible(python_test::environment(), python_test::run_with)
+    }),
+    own("comparison with meshio and pyvista", || {
+        if_possible(compare::python(), compare::run_with)
+    }),
+    own("files of others become scenes", || {
+        if_possible(to_a_scene::python(), to_a_scene::run_with)
+    }),
 ];
 
 const fn cargo(name: &'static str, arguments: &'static str) -> Step {
@@ -190,34 +198,13 @@ fn watch_memory_if_possible() -> Result<(), Failure> {
     }
 }
 
-/// Compares with programs that pip installs, if there are Python and pip.
-fn compare_if_possible() -> Result<(), Failure> {
-    match unless_missing(compare::python())? {
-        Ok(python) => compare::run_with(&python),
-        Err(reason) => Ok(say(&format!("== SKIPPED: {reason}"))?),
-    }
-}
-
-/// Tests the Python package, if there are Python and pip.
-fn python_test_if_possible() -> Result<(), Failure> {
-    match unless_missing(python_test::environment())? {
-        Ok(environment) => python_test::run_with(&environment),
-        Err(reason) => Ok(say(&format!("== SKIPPED: {reason}"))?),
-    }
-}
-
-/// Builds the book, where there is mdBook.
-fn book_if_possible() -> Result<(), Failure> {
-    match unless_missing(book::program())? {
-        Ok(program) => book::run_with(&program),
-        Err(reason) => Ok(say(&format!("== SKIPPED: {reason}"))?),
-    }
-}
-
-/// Tries the way from surfaces, images and meshes of others to scenes, where there are Python and pip.
-fn to_a_scene_if_possible() -> Result<(), Failure> {
-    match unless_missing(to_a_scene::python())? {
-        Ok(python) => to_a_scene::run_with(&python),
+/// Runs a check with programs of this machine, or says in a line why they are missing.
+fn if_possible<P>(
+    found: Result<P, Failure>,
+    check: impl FnOnce(&P) -> Result<(), Failure>,
+) -> Result<(), Failure> {
+    match unless_missing(found)? {
+        Ok(found) => check(&found),
         Err(reason) => Ok(say(&format!("== SKIPPED: {reason}"))?),
     }
 }
