@@ -209,7 +209,7 @@ pub fn small_strain_is_linear_elasticity<L: HyperelasticLaw>(law: L) {
         let change = unit(entry / 3, entry % 3);
         let local = change.symmetric().scaled(2.0 * mu);
         let whole = local + Tensor::diagonal(lambda * change.trace());
-        let tolerance = 1e-10 * scale_of(law);
+        let tolerance = 1e-12 * scale_of(law);
         let said = |what: &'static str| move || format!("{}: {what} at rest", L::ID);
         near(
             Part::Whole.tangent(law, &at, change),
@@ -242,7 +242,7 @@ pub fn small_strain_has_the_bulk_modulus_and_the_mean_shear_modulus<L: Hyperelas
     let at = law.at(Tensor::<f64>::zero());
     let (lambda, mu) = law.lame();
     let bulk = lambda + 2.0 / 3.0 * mu;
-    let tolerance = 1e-10 * scale_of(law);
+    let tolerance = 1e-12 * scale_of(law);
     let said = || format!("{}: tangent at rest for a change of volume", L::ID);
     let found = Part::Whole.tangent(law, &at, Tensor::identity());
     near(found, Tensor::diagonal(3.0 * bulk), tolerance, said);
@@ -282,11 +282,11 @@ pub fn stress_is_the_slope_of_the_energy<L: HyperelasticLaw>(law: L) {
             for entry in 0..9 {
                 let (i, j) = (entry / 3, entry % 3);
                 let energy = |x| part.energy(law, &law.at(h.plus(x, unit(i, j))));
-                found.0[i][j] = slope(energy, 5e-5, |points, weights| {
+                found.0[i][j] = slope(energy, 2e-5, |points, weights| {
                     points.into_iter().zip(weights).map(|(p, w)| p * w).sum()
                 });
             }
-            let tolerance = 1e-8 * (stress.largest() + scale_of(law));
+            let tolerance = 1e-9 * (stress.largest() + scale_of(law));
             let said = || format!("{}: slope of the {part:?} energy at H = {h:?}", L::ID);
             near(stress, found, tolerance, said);
         }
