@@ -39,7 +39,7 @@ impl std::error::Error for EvaluationError {}
 impl From<AssemblyError> for EvaluationError {
     fn from(error: AssemblyError) -> Self {
         Self::of_body(format_args!(
-            "the matrix has no room for the law's tangent: {error}; make it on the law's pattern"
+            "the pattern of the matrix lacks entries of the law's tangent: {error}; build the matrix with the law's pattern"
         ))
     }
 }
@@ -59,8 +59,8 @@ mod tests {
         let refused = AssemblyError::NotNeighbours { row: 1, column: 4 };
         assert_eq!(
             EvaluationError::from(refused).to_string(),
-            "the matrix has no room for the law's tangent: cells 1 and 4 are not neighbours in the pattern; make it on the \
-             law's pattern"
+            "the pattern of the matrix lacks entries of the law's tangent: cells 1 and 4 are not neighbours in the \
+             pattern; build the matrix with the law's pattern"
         );
     }
 }

@@ -67,7 +67,9 @@ pub enum StrokesError {
         stroke: f64,
     },
     /// A stroke that comes again.
-    #[error("row {row}: stroke {stroke} ended before; number its return anew")]
+    #[error(
+        "row {row}: stroke {stroke} already ended in an earlier row; give the new stroke another number"
+    )]
     Again {
         /// The row.
         row: usize,
@@ -298,7 +300,7 @@ mod tests {
                 rows[4].stroke = 3.0;
                 rows.extend([pose(1.0, 0.7, 0.0), pose(1.0, 0.8, 0.0)]);
             }),
-            "row 6: stroke 1 ended before; number its return anew"
+            "row 6: stroke 1 already ended in an earlier row; give the new stroke another number"
         );
     }
 }

@@ -216,29 +216,26 @@ pub enum Cause {
         edge: f64,
     },
     /// Supports that fix all components.
-    #[error("no degree of freedom is free: all {nodes} nodes are held")]
+    #[error("no degree of freedom is free: all {nodes} nodes are fixed; free some of them")]
     NothingFree {
         /// Nodes of the mesh.
         nodes: usize,
     },
     /// Supports other than those of the model whose pattern is to be shared.
-    #[error("node {tag} is not held as in the model given; build such a model anew")]
+    #[error("node {tag} has other fixed directions than in the given model; build a new model")]
     OtherSupports {
         /// Tag of the first node that is fixed in other directions.
         tag: u64,
     },
     /// A load that falls on fixed components only.
-    #[error(
-        "every node of {} is held there, so the load acts on nothing",
-        named(on)
-    )]
+    #[error("all nodes of {} are fixed, so the load has no effect", named(on))]
     NothingLoaded {
         /// The part of the mesh it is on.
         on: On,
     },
     /// A component that is both fixed and moved.
     #[error(
-        "node {tag} is held in {} by a support; a component is held or moved, never both", axis_name(*axis)
+        "node {tag} is already fixed in {}; a direction can be fixed or moved, not both", axis_name(*axis)
     )]
     MovedAndHeld {
         /// Tag of the first such node.

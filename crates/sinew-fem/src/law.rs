@@ -158,7 +158,7 @@ impl Law {
                     "not calibrated"
                 };
                 format!(
-                    "springs \"{rule}\" {calibrated}, E = {youngs_modulus} Pa, nu = 1/4 by nature"
+                    "springs \"{rule}\" {calibrated}, E = {youngs_modulus} Pa, nu = 1/4 (a property of spring networks)"
                 )
             }
         }

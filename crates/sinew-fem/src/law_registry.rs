@@ -440,7 +440,7 @@ fn found(id: &str) -> Result<&'static KnownLaw, LawError> {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum RegisterError {
     /// An id that another model has.
-    #[error("the id `{id}` is taken by another model: give the law one of its own")]
+    #[error("the id `{id}` is used by another model: choose another id for the law")]
     Taken {
         /// The id.
         id: &'static str,
@@ -526,10 +526,7 @@ mod tests {
     #[test]
     fn an_id_is_given_once() {
         let taken = register::<NeoHookean>().unwrap_err().to_string();
-        assert!(
-            taken.starts_with("the id `neo-hookean` is taken"),
-            "{taken}"
-        );
+        assert!(taken.starts_with("the id `neo-hookean` is used"), "{taken}");
         let make = || -> MakeBoxed { Box::new(|_| Err(ParameterError::NotStated { law: "none" })) };
         assert!(register_boxed("linear", "", &[], make()).is_err());
         register_boxed("registered-once", "", &[], make()).unwrap();

@@ -30,7 +30,7 @@ pub enum SupportMotionError {
     #[error(transparent)]
     Vector(#[from] ForceError),
     /// A displacement given to a free component.
-    #[error("node index {node} is not held in {}", ["x", "y", "z"][*axis % 3])]
+    #[error("node index {node} is not fixed in {}", ["x", "y", "z"][*axis % 3])]
     NotHeld {
         /// The node (0-based).
         node: u32,

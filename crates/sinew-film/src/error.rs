@@ -38,7 +38,7 @@ pub enum FilmError {
         source: io::Error,
     },
     /// A file with unexpected content.
-    #[error("{name}: {reason}; `sinew run SCENE --out DIR` writes it anew")]
+    #[error("{name}: {reason}; run `sinew run SCENE --out DIR` again to write it")]
     Damaged {
         /// The name of the file.
         name: String,

@@ -101,7 +101,7 @@ impl<M: Scheme> Stepper for Frame<M> {
         let rounding = self.rounding.map(|rounding| {
             format!(
                 "f32 rounds: expect displacements to be off by about {rounding:.1e} of their size after some periods, \
-                 more in time, and without bound where nothing holds the body"
+                 more in time, and without bound where the body has no support"
             )
         });
         std::iter::once(kernels).chain(rounding).collect()
@@ -289,7 +289,7 @@ impl<M: Scheme> Frame<M> {
     fn no_contact() -> SetupError {
         SetupError::Contact {
             integrator: M::ID,
-            reason: "tools push cells in closed form, which takes a step that divides forces by one block for each cell and then moves by the new velocity",
+            reason: "this method does not support tools: contact needs one mass block for each node and a position update with the new velocity",
             methods: METHODS_WITH_CONTACT,
         }
     }

@@ -50,7 +50,7 @@ pub enum LiveError {
     },
     /// An order that was still being carried out when the session was to end.
     #[error(
-        "what a page asked for was still being set up {seconds} s after the session was to end: it ended without that"
+        "a request of the page was still in preparation {seconds} s after the end of the session: it was dropped"
     )]
     Busy {
         /// Time (s) that it was given.
@@ -64,7 +64,7 @@ pub enum LiveError {
     Serve(std::io::Error),
     /// A simulation that ended by a fault of this program.
     #[error(
-        "the simulation ended by a fault of this program; please report what was done until then"
+        "the simulation ended by an internal error; please report it with the steps that led to it"
     )]
     Simulation,
 }

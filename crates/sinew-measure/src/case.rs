@@ -76,7 +76,7 @@ pub enum CaseError {
     /// A body that may be cut.
     #[error(
         "{case}: the body is cut while it moves ([cutting]), and no reference follows that: let the strokes end by t = 0, where they cut it before it \
-         moves, or take the table out to measure the motion of the whole body"
+         moves, or remove the table [cutting] to measure the uncut body"
     )]
     Cut {
         /// Id of the case.

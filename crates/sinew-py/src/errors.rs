@@ -118,9 +118,9 @@ pub(crate) fn of_command(error: CommandError) -> PyErr {
         CommandError::NoTool { .. } | CommandError::NoLoad { .. } => {
             PyKeyError::new_err(error.to_string())
         }
-        CommandError::Failed => PyRuntimeError::new_err(
-            "the last step failed: only `reset` or `restore` goes on from here",
-        ),
+        CommandError::Failed => {
+            PyRuntimeError::new_err("the last step failed: call `reset` or `restore` to continue")
+        }
         other => PyValueError::new_err(other.to_string()),
     }
 }

@@ -70,7 +70,7 @@ pub enum RecordRunError {
         reason: String,
     },
     /// A run that was not completed and can be gone on with.
-    #[error("{} holds a run that was not completed: `sinew resume {}` goes on with it; to throw it away, use `sinew run --again`", folder.display(), folder.display())]
+    #[error("{} holds a run that was not completed: `sinew resume {}` continues it; to discard it, use `sinew run --again`", folder.display(), folder.display())]
     Resumable {
         /// The folder.
         folder: PathBuf,

@@ -95,7 +95,7 @@ pub(crate) fn page(
         });
         page.figure(
             &plot.svg(),
-            "What remains is what the method, where that is not known, or rows that are steps apart bring in or take away.",
+            "The remainder is energy added or removed by the method (if not known), or by rows that are several steps apart.",
         );
     }
     if let Some(reactions) = read(tables::REACTIONS)? {

@@ -44,7 +44,7 @@ impl Taken {
         };
         (taken > MUCH * given && taken > THERMAL).then(|| {
             let told = format!(
-                "{methods}{clamp} took {taken:.3e} J of the {given:.3e} J that were put in, {:.0} %: so much of the motion dies away by the method and not by the tissue; \
+                "{methods}{clamp} took {taken:.3e} J of the {given:.3e} J that were put in, {:.0} %: the method, not the tissue, damps this part of the motion; \
                  {} keeps it",
                 100.0 * taken / given,
                 keeper(body, saturates)

@@ -171,10 +171,10 @@ pub enum CommandError {
     #[error("this world follows its scene and takes no commands: build one by `World::new`")]
     Follows,
     /// A session whose last step failed.
-    #[error("the last step failed: only a reset goes on from here")]
+    #[error("the last step failed: reset to continue")]
     Failed,
     /// A cut in a scene whose body stays whole.
-    #[error("the scene has no table [cutting], so its body stays whole: add one")]
+    #[error("the scene has no table [cutting], so its body cannot be cut: add one")]
     Whole,
     /// A place of a blade that is none.
     #[error("cut: {value}: expected finite numbers, at most {most:e} m in size")]

@@ -26,7 +26,7 @@ enum Command {
     Plan(command::plan::Arguments),
     /// Run a scene: the motion of its probes as CSV, or with --out a folder with fields and tables.
     Run(command::run::Arguments),
-    /// Go on with a run that was interrupted or killed.
+    /// Continue a run that was interrupted or killed.
     Resume(command::resume::Arguments),
     /// Compare the results of two runs, or of two scenes: the largest difference of each quantity, with its time.
     Compare(command::compare::Arguments),

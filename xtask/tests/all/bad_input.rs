@@ -210,9 +210,9 @@ fn an_output_that_would_destroy_something_is_refused_before_anything_is_measured
     permissions.set_readonly(true);
     std::fs::set_permissions(path("kept/stability-scene.svg"), permissions).unwrap();
     for (out, expected) in [
-        (path("file"), "file: it is no folder"),
-        (path("file/out"), "file: it is no folder"),
-        ("/dev/null".into(), "/dev/null: it is no folder"),
+        (path("file"), "file: it is not a folder"),
+        (path("file/out"), "file: it is not a folder"),
+        ("/dev/null".into(), "/dev/null: it is not a folder"),
         (path("taken"), "taken/report.html: it is a folder"),
         (path("linked"), "linked/results.json: this run reads it as "),
         (path("kept"), "kept/stability-scene.svg: it is read-only"),
@@ -285,7 +285,7 @@ fn a_bench_over_sizes_looks_at_its_folder_first_and_takes_no_scene() {
     std::fs::create_dir_all(path("taken/scale.json")).unwrap();
     std::fs::create_dir_all(path("drawn/real-time.svg")).unwrap();
     for (out, expected) in [
-        ("file", "file: it is no folder"),
+        ("file", "file: it is not a folder"),
         ("taken", "taken/scale.json: it is a folder"),
         ("drawn", "drawn/real-time.svg: it is a folder"),
     ] {

@@ -23,7 +23,7 @@ impl HyperelasticLaw for Stvk {
     const MEANING: &'static str = "(Saint Venant and Kirchhoff) collapses under strong compression";
     const PARAMETERS: &'static [LawParameter] = LawParameter::MODULI;
     const WEAKNESS: Option<[&'static str; 2]> = Some([
-        "pressed to less than 58 % of its length it gives way, and turns inside out without resistance",
+        "compressed to less than 58 % of its length it loses its resistance and can invert",
         "model = \"neo-hookean\" resists the more the farther it is pressed",
     ]);
     const OWN_DILATION: bool = true;

@@ -65,7 +65,7 @@ pub(super) fn limit_reached(law: &str, limit: &str, tag: u64) -> EvaluationError
 pub(super) fn refused(law: &str, tag: u64, volume_ratio: f64) -> EvaluationError {
     let reason = if volume_ratio.is_finite() {
         format!(
-            "its volume is {} of that at rest, and the law `{law}` has no meaning from 0 down: shorter steps avoid that unless \
+            "its volume is {} of that at rest, and the law `{law}` is not defined at 0 or below: shorter steps avoid that unless \
              the motion itself leads there, and a law for elements that invert, such as `stable-neo-hookean`, goes on",
             in_words(volume_ratio)
         )

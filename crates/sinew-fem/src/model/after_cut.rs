@@ -30,7 +30,7 @@ pub struct NodesCarried<'a> {
 pub enum CutStateError {
     /// Memory of regions whose numbers are not in the order of tetrahedra alone.
     #[error(
-        "tissue with memory (`prony`) can be cut where its element is p1, and none of its tetrahedra can be removed: what it remembers has another order otherwise"
+        "tissue with memory (`prony`) can be cut where its element is p1, and none of its tetrahedra can be removed: otherwise its stored stresses would belong to other tetrahedra"
     )]
     Memory,
     /// A state of another model.

@@ -13,12 +13,12 @@ use super::newton::{NewtonError, follow_load};
 pub enum StaticError {
     /// The stiffness matrix has no inverse.
     #[error(
-        "the stiffness matrix could not be factorised ({0}); is the body held against all rigid motions?"
+        "the stiffness matrix could not be factorised ({0}); add supports that prevent all rigid motions"
     )]
     Singular(#[source] FactorError),
     /// The stiffness matrix is so nearly singular that its factor gives no equilibrium.
     #[error(
-        "the solution leaves {residual:.1e} of the load unbalanced; is the body held against all rigid motions?"
+        "the solution leaves {residual:.1e} of the load unbalanced; add supports that prevent all rigid motions"
     )]
     Unbalanced {
         /// `||K u - F|| / ||F||`.
@@ -165,6 +165,6 @@ mod tests {
         let error = static_solution(&floating, &[1.0, 0.0]).unwrap_err();
         let source = error.source().and_then(|source| source.downcast_ref());
         assert_eq!(source, Some(&FactorError::NotPositiveDefinite));
-        assert!(error.to_string().contains("is the body held"), "{error}");
+        assert!(error.to_string().contains("add supports"), "{error}");
     }
 }

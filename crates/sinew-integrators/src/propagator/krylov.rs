@@ -98,7 +98,7 @@ impl Krylov {
             return Err(SetupError::Unresolved {
                 integrator: ID,
                 reason: format!(
-                    "a step of {dt} s may need a space of {room} dimensions, more than {HIGHEST_DEGREE}; take a shorter step"
+                    "a step of {dt} s may need a Krylov space of {room} dimensions, more than {HIGHEST_DEGREE}; take a shorter step"
                 ),
             });
         }

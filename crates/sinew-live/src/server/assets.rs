@@ -93,7 +93,7 @@ mod tests {
         assert_eq!(
             String::from_utf8(read("dist/hashes.txt")).unwrap(),
             found,
-            "`npm ci && npm run build` in crates/sinew-live/page makes the bundle anew"
+            "`npm ci && npm run build` in crates/sinew-live/page rebuilds the bundle"
         );
     }
 }

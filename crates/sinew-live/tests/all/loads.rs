@@ -43,7 +43,10 @@ fn pulled(second: PaneChoice) -> Settings {
 #[test]
 fn a_hand_beside_a_method_that_has_to_know_loads_beforehand_is_refused_at_once() {
     let error = Live::open(pulled(modal())).err().unwrap().to_string();
-    assert!(error.contains("loads known beforehand"), "{error}");
+    assert!(
+        error.contains("loads that are known before the run"),
+        "{error}"
+    );
     let page = Page::of(Settings {
         panes: vec![PaneChoice::default()],
         second: modal(),
@@ -59,7 +62,10 @@ fn a_hand_beside_a_method_that_has_to_know_loads_beforehand_is_refused_at_once()
         client.say(r#"{"id":2,"do":"reset"}"#);
         client.say(&format!(r#"{{"id":3,{order}}}"#));
         let reason = client.event("refused")["reason"].to_string();
-        assert!(reason.contains("loads known beforehand"), "{reason}");
+        assert!(
+            reason.contains("loads that are known before the run"),
+            "{reason}"
+        );
     }
 }
 
@@ -72,7 +78,10 @@ fn a_factor_that_the_method_does_not_take_is_refused_and_stays_as_it_was() {
     client.say(r#"{"id":2,"do":"pause","on":true}"#);
     client.say(r#"{"id":3,"do":"load","load":"x","factor":2.5}"#);
     let reason = client.event("refused")["reason"].to_string();
-    assert!(reason.contains("loads known beforehand"), "{reason}");
+    assert!(
+        reason.contains("loads that are known before the run"),
+        "{reason}"
+    );
     assert_eq!(client.event("settings")["factors"][0], 1.0);
     client.say(r#"{"id":4,"do":"pause","on":false}"#);
     let t = time(&client.picture(|picture| applied(picture) >= 4));
@@ -87,5 +96,8 @@ fn a_method_takes_the_factors_that_wait_for_the_next_step_as_well() {
     client.say(r#"{"id":2,"do":"load","load":"x","factor":2.5}"#);
     client.say(r#"{"id":3,"do":"integrator","pane":0,"name":"modal"}"#);
     let reason = client.event("refused")["reason"].to_string();
-    assert!(reason.contains("loads known beforehand"), "{reason}");
+    assert!(
+        reason.contains("loads that are known before the run"),
+        "{reason}"
+    );
 }

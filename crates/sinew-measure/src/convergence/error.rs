@@ -56,7 +56,7 @@ pub enum ConvergeError {
     },
     /// A body that may be cut.
     #[error(
-        "the body may be cut ([cutting]), on each mesh otherwise: take the table out to measure the motion of the whole body"
+        "the body may be cut ([cutting]), on each mesh otherwise: remove the table [cutting] to measure the uncut body"
     )]
     Cut,
     /// Errors are relative to the motion, and nothing moves.

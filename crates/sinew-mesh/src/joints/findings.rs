@@ -62,7 +62,7 @@ impl Joints {
                 nodes => format!("{nodes} nodes hang on faces or edges of others"),
             };
             format!(
-                "faces within a part that lie on others without being the same: {}; {kind}, so that tissue gapes there: mesh it anew with faces that match",
+                "faces within a part that lie on others without being the same: {}; {kind}, so the tissue is open there: generate the mesh again with matching faces",
                 self.mismatched
             )
         });
@@ -74,7 +74,7 @@ impl Joints {
         });
         say(&self.tangled, JointFinding::Tangled, &|| {
             format!(
-                "tangled mesh: faces of which both tetrahedra are on the same side, so that they overlap: {}; no repair turns them right: mesh it anew",
+                "tangled mesh: faces of which both tetrahedra are on the same side, so that they overlap: {}; this cannot be repaired: generate the mesh again",
                 self.tangled
             )
         });

@@ -65,7 +65,7 @@ fn read_row(
     if tag == 0 {
         remarks.at(
             tag_token.offset,
-            "$PhysicalNames: tag 0 stands for no group",
+            "$PhysicalNames: tag 0 is not the tag of a group",
         );
     }
     let Token { text, offset } = quoted_text(cursor)?;

@@ -21,7 +21,7 @@ pub(super) fn read_row<'a>(
             if !crosses_lines || (begins_line && cursor.is_at_line_end()) {
                 return Ok(());
             }
-            let problem = "this row goes on in the middle of the next line";
+            let problem = "this row continues in the middle of the next line";
             let expected = "neither fewer nor more numbers on a line than its row needs";
             Err(Fault::new(offset, problem, expected))
         })

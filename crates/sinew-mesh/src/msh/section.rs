@@ -88,7 +88,7 @@ fn section_name(cursor: &mut Cursor<'_>) -> Result<String, Fault> {
             Ok(String::from_utf8_lossy(name).into_owned())
         }
         _ => {
-            let problem = format!("{} stands outside any section", quoted(line));
+            let problem = format!("{} is outside any section", quoted(line));
             Err(Fault::new(
                 offset,
                 problem,

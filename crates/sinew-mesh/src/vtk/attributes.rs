@@ -51,7 +51,7 @@ pub(super) fn read(
         (b"LOOKUP_TABLE", _) => 0,
         (_, Some(holders)) => holders as u64,
         (_, None) => {
-            let problem = "data stand before POINT_DATA and CELL_DATA";
+            let problem = "data come before POINT_DATA or CELL_DATA";
             return Err(Fault::new(
                 offset,
                 problem,

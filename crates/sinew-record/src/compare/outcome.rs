@@ -35,7 +35,7 @@ pub struct Comparison {
 #[non_exhaustive]
 pub enum CompareError {
     /// A folder without a finished or interrupted run.
-    #[error("{}: no run has come to an end there; name the folder that `--out` named", path.display())]
+    #[error("{}: the folder has no completed run; name a folder that a run wrote with `--out`", path.display())]
     NoRun {
         /// The folder.
         path: PathBuf,

@@ -116,7 +116,7 @@ fn what_cannot_be_compared_is_said() {
 
     let refused = compare(place.path(), &path("one")).unwrap_err().to_string();
     assert!(
-        refused.contains("no run has come to an end there"),
+        refused.contains("the folder has no completed run"),
         "{refused}"
     );
     let frame = path("one").join("fields/frame-00001.vtu");

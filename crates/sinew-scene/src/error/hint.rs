@@ -15,7 +15,7 @@ use crate::nearest::nearest;
 pub(super) fn following_from(fault: &Fault) -> Option<String> {
     match fault {
         Fault::UnknownKey { key, known, .. } if stands_on_top(key, known) => Some(format!(
-            "`{key}` stands at the top of the file, before the first [table]"
+            "write `{key}` at the top of the file, before the first [table]"
         )),
         Fault::UnknownKey { known, .. } => Some(format!("the keys here are {}", quoted(known))),
         Fault::Integrator(OptionError::UnknownIntegrator { id, known }) => {

@@ -26,7 +26,7 @@ pub enum ToolFault {
         tet: u64,
     },
     /// A tool for which all nodes are fixed or moved.
-    #[error("the tool can touch no node: all {nodes} are held or moved")]
+    #[error("the tool can touch no node: all {nodes} are fixed or have a prescribed motion")]
     NothingToTouch {
         /// Number of the nodes.
         nodes: usize,

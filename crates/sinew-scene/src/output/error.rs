@@ -36,7 +36,7 @@ pub enum OutputError {
         folder: PathBuf,
     },
     /// A file or a device where a folder belongs.
-    #[error("cannot write into {}: it is no folder; name a folder, which is made if need be", path.display())]
+    #[error("cannot write into {}: it is not a folder; name a folder (it is created if absent)", path.display())]
     NotAFolder {
         /// The path.
         path: PathBuf,
@@ -104,7 +104,7 @@ pub enum OutputError {
         path: PathBuf,
     },
     /// A folder without an earlier result.
-    #[error("there is no {kind} in {} to go on with; name the folder that `--out` named", path.display())]
+    #[error("there is no {kind} in {} to continue; name a folder that a run wrote with `--out`", path.display())]
     NoResult {
         /// The path.
         path: PathBuf,

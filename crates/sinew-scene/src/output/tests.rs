@@ -121,7 +121,7 @@ fn a_folder_is_checked_with_the_files_in_it_and_made_when_it_is_needed() {
     fs::write(path("file"), "old").unwrap();
     for below in ["file", "file/out"] {
         let said = OutputFolder::new(path(below), &[]).check(&[]).unwrap_err();
-        assert!(said.to_string().contains("it is no folder"), "{said}");
+        assert!(said.to_string().contains("it is not a folder"), "{said}");
     }
     let input = path("deep/out/a.svg");
     let same = OutputFolder::new(path("deep/out"), std::slice::from_ref(&input));

@@ -49,7 +49,7 @@ fn apart(body: &Body, parts: usize) -> Vec<String> {
     let of_parts = (parts > 1).then(|| format!("{parts} parts: nothing keeps them apart; {TOLD}"));
     let of_pieces = cutting.map(|cutting| match cutting.lips {
         Lips::Contact => format!(
-            "pieces that cuts take off: nothing keeps them apart but the lips of their cut, while these face each other; {TOLD}"
+            "pieces that cuts take off: only the faces of their cut keep them apart, while these face each other; {TOLD}"
         ),
         Lips::Free => format!("pieces that cuts take off: nothing keeps them apart; {TOLD}"),
     });
@@ -296,7 +296,7 @@ fn supports(body: &Body, built: &BodyModel, report: &ModelReport) -> Vec<String>
         .count();
     if pinned > 0 {
         lines.push(format!(
-            "{pinned} held components belong to nodes that move in other directions"
+            "{pinned} fixed components belong to nodes that move in other directions"
         ));
     }
     lines
@@ -438,8 +438,8 @@ fn probe(probe: &Probe) -> String {
         [node] => match node.dofs.iter().filter(|dof| dof.is_none()).count() {
             0 => "",
             _ if node.courses.iter().any(|courses| !courses.is_empty()) => ", moved",
-            3 => ", held in x, y and z",
-            _ => ", held in some directions",
+            3 => ", fixed in x, y and z",
+            _ => ", fixed in some directions",
         },
         _ => "",
     };

@@ -52,7 +52,7 @@ fn shape(parts: &[ToolPart]) -> String {
 fn way(path: &ToolPath) -> String {
     let from = |start: &ToolStart| vector(start.position);
     match path {
-        ToolPath::Hold(start) => format!("held at {} m", from(start)),
+        ToolPath::Hold(start) => format!("fixed at {} m", from(start)),
         ToolPath::Velocity(start, velocity) => {
             format!("from {} m at {} m/s", from(start), vector(*velocity))
         }
@@ -67,7 +67,7 @@ fn rest(tool: &Tool) -> String {
         text.push_str(&format!(", friction {}", short(tool.friction)));
     }
     if let Some(grasp) = tool.grasp {
-        text.push_str(&format!(", seizes from {} s to {} s", grasp.from, grasp.to));
+        text.push_str(&format!(", grasps from {} s to {} s", grasp.from, grasp.to));
     }
     if let Some(body) = tool.body {
         text.push_str(&format!(

@@ -84,9 +84,9 @@ pub(super) const DAMPING_TABLE: Key<Inner, Optional> = Key::optional(
 
 pub(super) const SUPPORTS: Key<Inner, Optional> = Key::optional(
     "fixed",
-    "Parts that are held.",
+    "Fixed parts.",
     Inner::several("tables [[fixed]]", &FIXED),
-    "nothing is held",
+    "nothing is fixed",
 )
 .only(OF_A_BODY);
 

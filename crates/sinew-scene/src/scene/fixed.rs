@@ -10,7 +10,7 @@ use crate::error::SceneError;
 
 pub(super) const FIXED: TableDescription = TableDescription {
     name: "fixed",
-    meaning: "A part of the body that is held where it is, in all directions or in some of them.",
+    meaning: "A part of the body that is fixed, in all directions or in some of them.",
     keys: &[&GROUP, &WHERE, &AXES],
     needs: Needs::Any,
     examples: &[
@@ -23,7 +23,7 @@ pub(super) const FIXED: TableDescription = TableDescription {
 /// The directions of a support or a motion.
 pub(super) const AXES: Key<Axes, Or<[bool; 3]>> = Key::or(
     "axes",
-    "Directions that are held or moved; the body is free to move in the others.",
+    "Directions that are fixed or moved; the body is free to move in the others.",
     Axes,
     [true; 3],
 );

@@ -38,7 +38,7 @@ pub(super) const LOAD: TableDescription = TableDescription {
 
 const NAME: Key<Text, Optional> = Key::optional(
     "name",
-    "A name of its own, by which `[[initial]]` can call the load.",
+    "A unique name, by which `[[initial]]` can call the load.",
     Text {
         except: Some(GRAVITY),
         ..Text::any("a name other than \"gravity\"")
@@ -71,7 +71,7 @@ const FOLLOW: Key<Flag, Optional> = Key::optional(
 
 const FORCE: Key<Vector> = Key::required(
     "force",
-    "Total force, in equal parts on the nodes of the part that are not held.",
+    "Total force, in equal parts on the nodes of the part that are not fixed.",
     Vector::finite("[x, y, z] in N, all finite"),
 )
 .unit("N");

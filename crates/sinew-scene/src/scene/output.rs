@@ -97,7 +97,7 @@ const ENERGY: Key<Inner, Optional> = Key::optional(
 
 const CHECKPOINT: Key<Inner, Usual> = Key::usual(
     "checkpoint",
-    "How often a run leaves a checkpoint, from which `sinew resume` goes on.",
+    "How often a run leaves a checkpoint, from which `sinew resume` continues.",
     Inner::one("a table such as { every = 10.0 }", &CHECKPOINTS),
     "{ every = 10.0 }",
 );

@@ -57,7 +57,7 @@ pub(super) const PROBE: TableDescription = TableDescription {
 
 const NAME: Key<Text> = Key::required(
     "name",
-    "A name of its own, with which its columns in tables begin.",
+    "A unique name; its columns in tables begin with it.",
     Text {
         expected: "a name made of letters, digits, `-`, `_` and `.`",
         pattern: Some("^[^ -,/:-@\\[-^`{-~]+$"),

@@ -74,7 +74,7 @@ const YOUNGS_MODULUS: Key<OrData<Number>> = Key::required(
 .only(&[Condition::among(
     MODEL.name,
     model::by_modulus,
-    "does not go with this model, whose stiffness is stated by moduli of its own",
+    "does not go with this model, whose stiffness is given by its own parameters",
 )]);
 
 const POISSONS_RATIO: Key<Number> = Key::required(

@@ -98,7 +98,7 @@ const MEMORY: Key<Number, Optional> = Key::optional(
 
 const FREE_FLIGHT: Key<Flag, Or<bool>> = Key::or(
     "free_flight",
-    "Whether it is meant that nothing holds the body or a part of it; there is no warning then.",
+    "Whether it is meant that the body has no support or a part of it; there is no warning then.",
     Flag,
     false,
 );

@@ -54,10 +54,8 @@ const EXPECTED_GROUP: GroupName = GroupName {
 };
 
 /// A group beside `where`.
-pub(super) const NOT_WHERE: Condition = Condition::without(
-    "where",
-    "does not go with `where`, which stands in its place",
-);
+pub(super) const NOT_WHERE: Condition =
+    Condition::without("where", "cannot be used with `where`; give one of the two");
 
 /// The group of a table that is about a part of the body.
 pub(super) const GROUP: Key<GroupName> = Key::required(

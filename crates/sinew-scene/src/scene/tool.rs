@@ -109,7 +109,7 @@ pub(super) const TOOL: TableDescription = TableDescription {
 
 const NAME: Key<Text> = Key::required(
     "name",
-    "A name of its own, with which its columns in tables begin.",
+    "A unique name; its columns in tables begin with it.",
     Text {
         expected: "a name made of letters, digits, `-` and `_`",
         pattern: Some("^[^ -,./:-@\\[-^`{-~]+$"),
@@ -125,7 +125,7 @@ pub(super) const SHAPE_OF_TOOL: Key<Inner> = Key::required(
 )
 .only(&[Condition::without(
     "shapes",
-    "does not go with `shapes`, which stand in its place",
+    "cannot be used with `shapes`; give one of the two",
 )]);
 
 pub(super) const SHAPES: Key<Inner, Optional> = Key::optional(
@@ -157,7 +157,7 @@ const ROTATION: Key<Vector, Or<[f64; 3]>> = Key::or(
 
 const NOT_TABLE: Condition = Condition::without(
     "table",
-    "does not go with `table`, in which places and rotations stand",
+    "cannot be used with `table`: the table has the positions and rotations; remove it",
 );
 
 pub(super) const TABLE: Key<Text> = Key::required(
@@ -225,7 +225,7 @@ pub(super) const GRASP: Key<Inner, Optional> = Key::optional(
     "grasp",
     "The time for which the tool holds what it touches: a node that it pushes within this time goes with it until the end.",
     Inner::one("a table such as { from = 0.4, to = 1.2 }", &GRASPS),
-    "it seizes nothing",
+    "it grasps nothing",
 );
 
 pub(super) const BODY: Key<Inner, Optional> = Key::optional(
@@ -248,7 +248,7 @@ const GRASPS: TableDescription = TableDescription {
 
 const FROM: Key<Number> = Key::required(
     "from",
-    "The time at which the tool seizes.",
+    "The time at which the tool begins to grasp.",
     Number::zero_or_above("a finite time, 0 s or above"),
 )
 .unit("s");

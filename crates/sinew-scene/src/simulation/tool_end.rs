@@ -40,7 +40,7 @@ pub(super) fn sentences(
         };
         if depth > unsaid * size {
             said.push(format!(
-                "tool `{name}` left a node up to {} m in it: one that is held in that direction, or has no room between its surfaces",
+                "tool `{name}` left a node up to {} m in it: it is fixed in that direction, or lies between two surfaces of the tool",
                 short(depth)
             ));
         }
@@ -57,7 +57,7 @@ pub(super) fn sentences(
         }
         if let Some(rival) = rival {
             said.push(format!(
-                "tool `{name}` would have seized a node that tool `{}` had hold of, and did not",
+                "tool `{name}` did not grasp a node because tool `{}` already holds it",
                 tools.tools()[rival].name
             ));
         }
@@ -75,7 +75,7 @@ pub(super) fn sentences(
             && seized == 0
         {
             said.push(format!(
-                "tool `{name}` seized nothing from {} s to {} s: it pushed no node",
+                "tool `{name}` grasped nothing from {} s to {} s: it pushed no node",
                 short(grasp.from),
                 short(grasp.to)
             ));
@@ -84,7 +84,7 @@ pub(super) fn sentences(
     let residual = tools.lips_report(state).largest_residual;
     if residual > CONVERGED {
         said.push(format!(
-            "the contacts of lips of the cut are unconverged: the last sweep of a step still changed a displacement by {} of the largest",
+            "contact of the cut faces did not converge: the last sweep of a step still changed a displacement by {} of the largest",
             short(residual)
         ));
     }
@@ -110,7 +110,7 @@ pub(super) fn of_lips(body: &BodyModel, state: &State) -> Option<String> {
         .sum();
     (overlap > OVERLAP * whole).then(|| {
         format!(
-            "lips of the cut overlap by {} m3 in the end, {} of the body's volume",
+            "faces of the cut overlap by {} m3 in the end, {} of the body's volume",
             short(overlap),
             short(overlap / whole)
         )

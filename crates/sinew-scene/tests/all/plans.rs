@@ -46,7 +46,7 @@ fn the_papers_cube() {
                 groups `tissue` (6000 tetrahedra), `sides` (800 triangles), `top` (200 triangles),
                   `bottom` (200 triangles)
     regions     `tissue`: 6000 tetrahedra, 1060 kg/m3, springs "lloyd" not calibrated, E = 3500 Pa, nu =
-                  1/4 by nature
+                  1/4 (a property of spring networks)
                 its springs average to 1.27 E (Voigt), 0.3904 to 2.857 E by direction
     damping     80 1/s times M, no matrix
     fixed       `sides` in x, y, z
@@ -225,19 +225,19 @@ point = [0.05, 0.05, 0.06]
                 groups `tissue` (48 tetrahedra), `sides` (32 triangles), `top` (8 triangles), `bottom`
                   (8 triangles)
     regions     whole mesh: 48 tetrahedra, 1000 kg/m3, springs "van-gelder" calibrated, E = 10000 Pa, nu
-                  = 1/4 by nature
+                  = 1/4 (a property of spring networks)
                 its springs average to 1 E (Voigt), 0.7317 to 1.355 E by direction
     damping     1 1/s times M, no matrix; 0.0001 s times K, in the product with K; dashpots along
                   springs, a matrix of their own
     fixed       `bottom` in y, z
                 `sides` in x
                 81 -> 39 degrees of freedom; 19 of 27 nodes move, the others are removed
-                18 held components belong to nodes that move in other directions
+                18 fixed components belong to nodes that move in other directions
     loads       "press", pressure 100 Pa on `top` rising for 0.1 s: 1 N act
                 gravity [0, 0, -9.81] m/s2: 9.81 N asked, 7.358 N act, 2.453 N fall on fixed nodes
     initial     at rest under press, gravity, solved once
                 stretch [0.1, 0, 0] about [0, 0, 0] m of `top`: 9 of 9 nodes move
-    probes      `edge`: node 1, 0 m from the point, held in x, y and z
+    probes      `edge`: node 1, 0 m from the point, fixed in x, y and z
                 `centre`: node 14, 0.01 m from the point
     matrices    linear: assembled once, no loop over elements afterwards
                 K and D with 135 blocks of 3 x 3, lumped M: 20.6 kB
@@ -272,7 +272,7 @@ dt = 0.001
     for line in [
         "damping     none, left out of every step",
         "fixed       nothing: all 81 degrees of freedom move",
-        "warning     nothing holds the body: 48 tetrahedra with 0.001 m3 at [0, 0, 0] m",
+        "warning     the body has no support: 48 tetrahedra with 0.001 m3 at [0, 0, 0] m",
         "            `forward-euler` is unstable on this scene at any dt",
     ] {
         assert!(plan.contains(line), "{plan}");

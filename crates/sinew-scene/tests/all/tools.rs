@@ -99,8 +99,8 @@ fn a_plan_says_what_tools_do() {
     let at = at.unwrap();
     insta::assert_snapshot!(lines[at..at + 4].join("\n"), @r"
     tools       `ball`: sphere of radius 0.08 m from [0.05, 0.05, 0.2] m at [0, 0, -0.1] m/s; touches
-                  the surface, 17 nodes, friction 0.2, seizes from 0.01 s to 0.05 s
-                `hand`: box of [0.2, 0.2, 0.2] m and plane held at [0, 0, -0.2] m; touches `top`, 9
+                  the surface, 17 nodes, friction 0.2, grasps from 0.01 s to 0.05 s
+                `hand`: box of [0.2, 0.2, 0.2] m and plane fixed at [0, 0, -0.2] m; touches `top`, 9
                   nodes, pushes out what is inside at t = 0
     ");
 }
@@ -191,7 +191,7 @@ fn a_tool_that_passes_through_nodes_it_does_not_meet_is_warned_about() {
     let plate = "[[tool]]\nname = \"plate\"\nshape = { plane = {} }\nstart = [0.0, 0.0, 0.101]\nrotation = [3.141592653589793, 0.0, 0.0]\n\
                  velocity = [0.0, 0.0, -0.05]\n";
     let moved = "[[move]]\ngroup = \"top\"\naxes = \"x\"\nvelocity = [0.01, 0.0, 0.0]\n";
-    insta::assert_snapshot!(said(&build(&scene(&format!("{moved}{plate}")))).join("\n"), @"tool `plate` passes through node 19 at t = 0.02031 s, which is held or moved: tools meet nodes that move by themselves alone; leave room between the tool and what is held");
+    insta::assert_snapshot!(said(&build(&scene(&format!("{moved}{plate}")))).join("\n"), @"tool `plate` passes through node 19 at t = 0.02031 s, which is fixed or has a prescribed motion: tools touch free nodes only; keep the tool away from fixed nodes");
     assert!(said(&build(&scene(plate))).is_empty());
 }
 
@@ -203,7 +203,7 @@ fn a_tool_that_leaves_nodes_in_it_is_told() {
     let simulation = build(&scene(plate));
     let folder = tempfile::tempdir().unwrap();
     let (state, ..) = crate::common::run(&simulation, folder.path());
-    insta::assert_snapshot!(simulation.body().left_by_tools(&state).join("\n"), @"tool `plate` left a node up to 0.004 m in it: one that is held in that direction, or has no room between its surfaces");
+    insta::assert_snapshot!(simulation.body().left_by_tools(&state).join("\n"), @"tool `plate` left a node up to 0.004 m in it: it is fixed in that direction, or lies between two surfaces of the tool");
     assert_eq!(
         simulation.model().tools().unwrap().report(&state, 0).force,
         [0.0; 3]
@@ -229,11 +229,11 @@ fn a_grasp_that_seizes_nothing_and_one_that_comes_second_are_told() {
         let (state, ..) = crate::common::run(&simulation, folder.path());
         simulation.body().left_by_tools(&state).join("\n")
     };
-    insta::assert_snapshot!(told(&jaw("far", 0.4, 0.02, 0.05)), @"tool `far` seized nothing from 0.05 s to 0.9 s: it pushed no node");
+    insta::assert_snapshot!(told(&jaw("far", 0.4, 0.02, 0.05)), @"tool `far` grasped nothing from 0.05 s to 0.9 s: it pushed no node");
     let two = jaw("first", 0.18, 0.02, 0.05) + &jaw("second", 0.1812, 0.04, 0.07);
     insta::assert_snapshot!(told(&two), @r"
-    tool `second` would have seized a node that tool `first` had hold of, and did not
-    tool `second` seized nothing from 0.07 s to 0.9 s: it pushed no node
+    tool `second` did not grasp a node because tool `first` already holds it
+    tool `second` grasped nothing from 0.07 s to 0.9 s: it pushed no node
     ");
     assert_eq!(told(&jaw("later", 0.181, 0.02, 0.5)), "");
     assert_eq!(told(&jaw("near", 0.18, 0.02, 0.05)), "");

@@ -126,7 +126,7 @@ fn parts_that_nothing_holds_are_named_with_their_size_unless_they_are_meant() {
     let loose = on_file(&two_cubes(), "", "");
     let warning = only(loose.warnings());
     assert_eq!(warning.kind, WarningKind::FreePart);
-    insta::assert_snapshot!(warning, @"nothing holds 1 of 2 parts: 48 tetrahedra with 0.001 m3 at [0.2, 0, 0] m; hold it by [[fixed]], or say by free_flight = true in [run] that it is meant");
+    insta::assert_snapshot!(warning, @"no support for 1 of 2 parts: 48 tetrahedra with 0.001 m3 at [0.2, 0, 0] m; hold it by [[fixed]], or say by free_flight = true in [run] that it is meant");
     assert!((number(&warning, "free_volume_m3") - 0.001).abs() < 1e-15);
     let meant = on_file(&two_cubes(), "[run]", "[run]\nfree_flight = true");
     assert_eq!(meant.warnings(), []);
@@ -138,7 +138,7 @@ fn parts_that_nothing_holds_are_named_with_their_size_unless_they_are_meant() {
     assert_eq!(free.kind, WarningKind::FreePart);
     assert!(
         free.what
-            .starts_with("nothing holds the body: 48 tetrahedra")
+            .starts_with("the body has no support: 48 tetrahedra")
     );
     // A part that is moved is held by what moves it.
     let moved = warned(

@@ -144,7 +144,7 @@ pub enum ToolsError {
         most: usize,
     },
     /// Two tools of one name.
-    #[error("two tools are named \"{name}\": expected a name of its own for each")]
+    #[error("two tools are named \"{name}\": give each a different name")]
     SameName {
         /// The name.
         name: String,

@@ -32,7 +32,7 @@ pub enum LogError {
 #[non_exhaustive]
 pub enum LogFault {
     /// A file of another kind.
-    #[error("expected `{expected}`: this is no log of a session")]
+    #[error("expected `{expected}`: this is not the log of a session")]
     Kind {
         /// The first line of logs.
         expected: String,
@@ -55,7 +55,7 @@ pub enum LogFault {
     },
     /// A step before that of the line above.
     #[error(
-        "step {found} comes after step {last} of the line above: lines stand in the order of steps"
+        "step {found} comes after step {last} of the line above: lines must be in the order of steps"
     )]
     Step {
         /// The step.

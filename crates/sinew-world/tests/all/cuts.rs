@@ -638,7 +638,7 @@ fn each_mistake_has_its_line() {
             row(
                 "1,0,0,0,0,0,1,0\n1,1,1,0,0,1,1,0\n2,2,0,0,0,0,1,0\n2,3,1,0,0,0,1,0\n1,4,0,0,0,0,1,0\n1,5,0,0,0,0,1,1\n",
             ),
-            "scene.toml:15: [cutting]: strokes.csv:6: row 5: stroke 1 ended before; number its return anew",
+            "scene.toml:15: [cutting]: strokes.csv:6: row 5: stroke 1 already ended in an earlier row; give the new stroke another number",
         ),
     ] {
         assert_eq!(said, expected);

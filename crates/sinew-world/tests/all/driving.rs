@@ -299,7 +299,7 @@ fn methods_that_must_know_loads_beforehand_refuse_factors_by_name() {
     let given = session.command(factor("force", 2.0)).unwrap_err();
     for said in [checked.to_string(), given.to_string()] {
         assert!(
-            said.contains("`modal` needs loads known beforehand"),
+            said.contains("`modal` needs loads that are known before the run"),
             "{said}"
         );
     }
@@ -358,7 +358,7 @@ fn commands_that_make_no_sense_are_refused_by_what_is_wrong() {
                 from: [[0.0; 3]; 2],
                 to: [[0.0; 3]; 2],
             },
-            "the scene has no table [cutting], so its body stays whole: add one",
+            "the scene has no table [cutting], so its body cannot be cut: add one",
         ),
     ] {
         assert_eq!(session.command(command).unwrap_err().to_string(), said);
@@ -379,7 +379,7 @@ fn a_motion_that_diverges_ends_by_name_and_can_be_reset() {
     );
     assert_eq!(session.step().unwrap_err().to_string(), failed.to_string());
     let said = session.command(Command::Dt(0.001)).unwrap_err().to_string();
-    assert_eq!(said, "the last step failed: only a reset goes on from here");
+    assert_eq!(said, "the last step failed: reset to continue");
     session.command(Command::Reset).unwrap();
     steps(&mut session, 10);
     assert!(session.failure().is_none());

@@ -141,7 +141,7 @@ fn a_plate_on_a_cut_bar_presses_with_e_a_d_over_l() {
             "{overlap:?} {expected}"
         );
     }
-    insta::assert_snapshot!(said, @"lips of the cut overlap by 8.834e-7 m3 in the end, 0.03681 of the body's volume");
+    insta::assert_snapshot!(said, @"faces of the cut overlap by 8.834e-7 m3 in the end, 0.03681 of the body's volume");
 }
 
 /// Energy (J) of a body that falls freely, in the middle of the last step of symplectic Euler.

@@ -85,11 +85,11 @@ fn bad_lines_are_refused_by_file_line_and_what_to_do() {
         ),
         (
             said("sinew session log", "t_s,x_m"),
-            "s.log:1: expected `sinew session log 1`: this is no log of a session",
+            "s.log:1: expected `sinew session log 1`: this is not the log of a session",
         ),
         (
             parse("").unwrap_err(),
-            "s.log:1: expected `sinew session log 1`: this is no log of a session",
+            "s.log:1: expected `sinew session log 1`: this is not the log of a session",
         ),
         (
             parse("sinew session log 1\nprogram \"1\"\n").unwrap_err(),
@@ -122,7 +122,7 @@ fn bad_lines_are_refused_by_file_line_and_what_to_do() {
         ),
         (
             said("2 0.004 factor", "0 0.004 factor"),
-            "s.log:5: step 0 comes after step 1 of the line above: lines stand in the order of steps",
+            "s.log:5: step 0 comes after step 1 of the line above: lines must be in the order of steps",
         ),
         (
             said("2 0.004 factor", "2 0.001 factor"),
@@ -138,7 +138,7 @@ fn bad_lines_are_refused_by_file_line_and_what_to_do() {
         ),
         (
             said("10 end", "4 end"),
-            "s.log:13: step 4 comes after step 9 of the line above: lines stand in the order of steps",
+            "s.log:13: step 4 comes after step 9 of the line above: lines must be in the order of steps",
         ),
         (
             said("dt 0.001", "dt 1e999"),

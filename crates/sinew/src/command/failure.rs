@@ -132,7 +132,7 @@ pub(crate) enum Failure {
         source: TetMeshError,
     },
     /// An existing file with other content.
-    #[error("{} exists, holds something else and stays as it is; name another file, or write over it with --force", path.display())]
+    #[error("{} exists and has other content; it was not changed: name another file, or overwrite it with --force", path.display())]
     Exists {
         /// The file.
         path: PathBuf,

@@ -97,7 +97,7 @@ fn hand() -> Hand {
         loads: ["hand-x", "hand-y", "hand-z"].map(str::to_owned),
         unit: 1.0,
         at: [0.1, 0.1, 0.2],
-        note: "The hand pulls at the middle of the top: a force, since cnn cannot meet tools."
+        note: "You pull at the middle of the top with a force, since cnn does not support tools."
             .to_owned(),
     }
 }

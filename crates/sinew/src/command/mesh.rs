@@ -331,7 +331,7 @@ fn report(check: &MeshCheck, voice: Voice) -> Result<(), Failure> {
         voice.say(&format!("problem  {problem}"))?;
     }
     if check.is_clean() {
-        voice.say("nothing found that needs attention")?;
+        voice.say("no problem found")?;
     }
     Ok(())
 }
@@ -433,7 +433,7 @@ fn refine(input: &Path, output: (&Path, Force), style: Style) -> Result<(), Fail
         complain(&format!("warning: {}: {warning}", input.display()));
     }
     let growth = format!(
-        "{} tetrahedra in the place of {}, {} nodes in the place of {}; ",
+        "{} tetrahedra (before: {}), {} nodes (before: {}); ",
         fine.tets.len(),
         coarse.tets.len(),
         fine.points.len(),

@@ -114,7 +114,7 @@ pub(crate) fn check_folder(
             "{shown}: the results of an earlier run in it are kept beside it, with .old, until the new ones are complete"
         )),
         Tenant::Unfinished => complain(&format!(
-            "{shown}: what a run that was not completed left in it will be removed"
+            "{shown}: the files of an incomplete run in it will be removed"
         )),
     }
     Ok(())
@@ -135,7 +135,7 @@ pub(crate) fn in_folder(
         complain(&line);
     }
     Failure::of_end(end.ended, world.scene(), || {
-        format!("; `sinew resume {}` goes on", path.display())
+        format!("; `sinew resume {}` continues it", path.display())
     })
 }
 

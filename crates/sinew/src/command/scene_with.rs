@@ -17,7 +17,7 @@ use super::memory_left::memory_left;
 /// Values that the command line sets in a scene.
 #[derive(clap::Args)]
 pub(crate) struct Values {
-    /// Another integrator than the scene's; keys that are options of the scene's own are refused by it
+    /// Another integrator than the scene's; options of the scene's integrator that it does not have are an error
     #[arg(long, value_name = "ID")]
     integrator: Option<String>,
     /// Another step than the scene's, in s, or auto

@@ -90,7 +90,7 @@ fn a_boxed_law_refuses_a_mirrored_body_by_its_name() {
     assert!(
         refused
             .to_string()
-            .contains("the law `scripted` has no meaning"),
+            .contains("the law `scripted` is not defined"),
         "{refused}"
     );
 }

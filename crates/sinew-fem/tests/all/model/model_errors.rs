@@ -244,7 +244,7 @@ fn supports_that_leave_nothing_free() {
         &mesh(),
         &problem,
         Item::Fixed(2),
-        "support 3: no degree of freedom is free: all 27 nodes are held",
+        "support 3: no degree of freedom is free: all 27 nodes are fixed; free some of them",
     );
     assert_eq!(cause, Cause::NothingFree { nodes: 27 });
 }
@@ -268,7 +268,7 @@ fn loads_that_act_on_nothing() {
                 &mesh(),
                 &problem,
                 Item::Load(0),
-                "load 1: every node of group `top` is held there, so the load acts on nothing",
+                "load 1: all nodes of group `top` are fixed, so the load has no effect",
             );
             let on = "top".into();
             assert_eq!(cause, Cause::NothingLoaded { on });

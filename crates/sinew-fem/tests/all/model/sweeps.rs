@@ -137,7 +137,7 @@ fn other_supports_are_refused() {
         assert_eq!(
             error.to_string(),
             format!(
-                "supports: node {tag} is not held as in the model given; build such a model anew"
+                "supports: node {tag} has other fixed directions than in the given model; build a new model"
             )
         );
     }

@@ -59,7 +59,7 @@ impl Bound {
         if loads.iter().any(|load| !load.at(0.0).is_finite()) {
             return Err(SetupError::Lacks {
                 integrator,
-                needs: "a body held against its loads for saturation = \"auto\" (give a number instead)",
+                needs: "a body with enough supports for saturation = \"auto\" (give a number instead)",
             });
         }
         let layers = system.layers().count();

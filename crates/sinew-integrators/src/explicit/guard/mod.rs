@@ -198,7 +198,7 @@ impl Integrator for Guarded {
         if self.guard == Guard::Auto && batch.inputs().forces().next().is_some() {
             return Err(StepError::Setup(SetupError::Lacks {
                 integrator: self.inner.id(),
-                needs: "forces known beforehand for saturation = \"auto\" (give a number instead)",
+                needs: "forces that are known before the run for saturation = \"auto\" (give a number instead)",
             }));
         }
         let start = self.start(system, state);

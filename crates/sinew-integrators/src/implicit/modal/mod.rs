@@ -392,7 +392,7 @@ const MOST_MODES: u32 = 1_000_000_000;
 
 const MODES: OptionHelp = OptionHelp {
     key: "modes",
-    help: "that many modes, instead of a tolerance",
+    help: "number of modes, instead of a tolerance",
     expected: "a whole number above 0",
     kind: OptionKind::Count(MOST_MODES),
     default: OptionDefault::InWords("as many as the tolerance asks for"),
@@ -561,7 +561,7 @@ impl StepByHand for ModalSteps {
         if !known || step.inputs.forces().next().is_some() {
             return Err(StepError::Setup(SetupError::Lacks {
                 integrator: Modal::ID,
-                needs: "loads known beforehand, by which it chooses its modes, not inputs",
+                needs: "loads that are known before the run, to choose its modes; it does not support inputs",
             }));
         }
         let (system, dt) = (step.system, step.dt);

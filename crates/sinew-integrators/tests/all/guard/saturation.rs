@@ -221,7 +221,7 @@ fn a_body_that_its_loads_carry_away_needs_a_number() {
     let refusal = build("rk4", &auto()).prepare(&model, 1e-3).unwrap_err();
     assert_eq!(
         refusal.to_string(),
-        "`rk4` needs a body held against its loads for saturation = \"auto\" (give a number instead), which this system does not offer"
+        "`rk4` needs a body with enough supports for saturation = \"auto\" (give a number instead), which this system does not offer"
     );
     assert!(build("rk4", &saturation(4.0)).prepare(&model, 1e-3).is_ok());
     // A push ends.

@@ -34,7 +34,7 @@ pub enum WriteMshError {
         name: String,
     },
     /// A node tag is 0 or occurs twice.
-    #[error("node tag {tag} {}", if *tag == 0 { "stands for no node" } else { "occurs twice" })]
+    #[error("node tag {tag} {}", if *tag == 0 { "is not the tag of a node" } else { "occurs twice" })]
     BadNodeTag {
         /// The tag.
         tag: u64,

@@ -200,7 +200,7 @@ mod sections {
     #[test]
     fn text_outside_sections_is_refused() {
         let message =
-            "\"17 4\" stands outside any section; expected the start of a section, e.g. $Nodes";
+            "\"17 4\" is outside any section; expected the start of a section, e.g. $Nodes";
         refused(
             TWICE_22,
             ("$EndNodes\n", "$EndNodes\n17 4\n"),
@@ -458,7 +458,7 @@ mod nodes {
 
     #[test]
     fn a_row_with_a_number_too_few_is_found() {
-        let message = "$Nodes, node 2: this row goes on in the middle of the next line; expected neither \
+        let message = "$Nodes, node 2: this row continues in the middle of the next line; expected neither \
                        fewer nor more numbers on a line than its row needs";
         refused(TWICE_22, ("2 1 0 0\n", "2 1 0\n"), "2 1 0", message);
         let message = "$Nodes, node 4 of 4: the section ends early: the z coordinate is \"$EndNodes\"; expected a number";
@@ -467,7 +467,7 @@ mod nodes {
 
     #[test]
     fn a_row_with_a_number_too_many_is_found() {
-        let message = "$Nodes, node 3: this row goes on in the middle of the next line; expected neither \
+        let message = "$Nodes, node 3: this row continues in the middle of the next line; expected neither \
                        fewer nor more numbers on a line than its row needs";
         refused(TWICE_22, ("2 1 0 0\n", "2 1 0 0 5\n"), "5\n3", message);
     }
@@ -595,7 +595,7 @@ mod elements {
     #[test]
     fn a_row_with_a_number_too_few_is_found() {
         // Without the check, the rest would read as a triangle with tag 4.
-        let message = "$Elements, element 2: this row goes on in the middle of the next line; expected neither fewer nor \
+        let message = "$Elements, element 2: this row continues in the middle of the next line; expected neither fewer nor \
                        more numbers on a line than its row needs";
         refused(
             TWICE_22,

@@ -152,10 +152,10 @@ fn counts_are_checked_both_ways() {
 
 #[test]
 fn a_row_with_a_number_too_few_or_too_many_is_found() {
-    let message = "$NOD, node 2: this row goes on in the middle of the next line; expected neither fewer nor more numbers \
+    let message = "$NOD, node 2: this row continues in the middle of the next line; expected neither fewer nor more numbers \
                    on a line than its row needs";
     refused(("2 1 0 0\n", "2 1 0\n"), "2 1 0", message);
-    let message = "$ELM, element 2: this row goes on in the middle of the next line; expected neither fewer nor more \
+    let message = "$ELM, element 2: this row continues in the middle of the next line; expected neither fewer nor more \
                    numbers on a line than its row needs";
     refused(("2 4 1 6 4 1 2 3 4", "2 4 1 6 4 1 2 3"), "2 4 1", message);
 }

@@ -156,7 +156,7 @@ fn contradictory_data_are_not_written() {
     insta::assert_snapshot!(refused(&|m| { m.cell_data[0].blocks.pop(); }), @r#"blocks of field "energy" has 2 entries, but 3 are needed"#);
     insta::assert_snapshot!(refused(&|m| m.point_data[1].name.push('"')), @r#"the name of data field "displacement, größer\"" has a line break or a double quote"#);
     insta::assert_snapshot!(refused(&|m| m.node_tags[1] = 40), @"node tag 40 occurs twice");
-    insta::assert_snapshot!(refused(&|m| m.node_tags[1] = 0), @"node tag 0 stands for no node");
+    insta::assert_snapshot!(refused(&|m| m.node_tags[1] = 0), @"node tag 0 is not the tag of a node");
     insta::assert_snapshot!(refused(&|m| m.node_tags[1] = 1 << 31), @"tag 2147483648 does not fit into the 31 bits that the format has for it there");
     let on_unused_entity = |m: &mut Mesh| m.node_entities[0] = Entity { dim: 3, tag: 99 };
     let mut mesh = full_mesh();

@@ -40,8 +40,8 @@ pub(super) fn free(built: &BodyModel) -> Option<Warning> {
         described.push(format!("and {} more", free.len() - LISTED));
     }
     let which = match parts.len() {
-        1 => "nothing holds the body".to_owned(),
-        all => format!("nothing holds {} of {}", free.len(), count(all, "part")),
+        1 => "the body has no support".to_owned(),
+        all => format!("no support for {} of {}", free.len(), count(all, "part")),
     };
     let volume = free
         .iter()

@@ -83,7 +83,7 @@ fn unmet(simulation: &Simulation, built: &BodyModel, index: usize) -> Option<War
         };
         if let Some(node) = nodes.iter().find(is_inside) {
             let what = format!(
-                "tool `{}` passes through node {} at t = {} s, which is held or moved: tools meet nodes that move by themselves alone",
+                "tool `{}` passes through node {} at t = {} s, which is fixed or has a prescribed motion: tools touch free nodes only",
                 tool.name,
                 built.mesh.node_tags[*node as usize],
                 short(t)
@@ -91,7 +91,7 @@ fn unmet(simulation: &Simulation, built: &BodyModel, index: usize) -> Option<War
             let warning = Warning::new(
                 WarningKind::UnmetNodes,
                 what,
-                "leave room between the tool and what is held",
+                "keep the tool away from fixed nodes",
             );
             return Some(warning.with(&[("t_s", t)]));
         }

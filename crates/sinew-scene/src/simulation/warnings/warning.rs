@@ -37,7 +37,7 @@ impl Warning {
             time(seconds),
             short(dt)
         );
-        let mend = "`sinew plan --tolerance` finds the cheapest method and step, `sinew resume` goes on with a run in a folder \
+        let mend = "`sinew plan --tolerance` finds the cheapest method and step, `sinew resume` continues a run in a folder \
                     that was ended";
         let numbers = [("run_s", seconds), ("steps", steps as f64), ("dt_s", dt)];
         Self::new(WarningKind::LongRun, what, mend).with(&numbers)

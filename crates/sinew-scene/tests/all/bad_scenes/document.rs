@@ -78,7 +78,7 @@ fn gravity_below_a_table() {
         refusal(BODY, "[[probe]]", "gravity = [0, 0, -9.81]\n[[probe]]"),
         @"
     scene.toml:24: [run]: unknown key `gravity`
-    help: `gravity` stands at the top of the file, before the first [table]
+    help: write `gravity` at the top of the file, before the first [table]
     "
     );
 }
@@ -107,7 +107,7 @@ fn gravity_in_words_below_a_table() {
         refusal(BODY, "mass = 80.0", "gravity = \"down\""),
         @"
     scene.toml:10: [damping]: unknown key `gravity`
-    help: `gravity` stands at the top of the file, before the first [table]
+    help: write `gravity` at the top of the file, before the first [table]
     "
     );
 }

@@ -88,7 +88,7 @@ fn a_static_state_of_a_body_that_nothing_holds() {
         let start = "scene.toml:17: [[initial]] 1: no static state: ";
         assert!(message.starts_with(start), "{message}");
         assert!(
-            message.ends_with("held against all rigid motions?"),
+            message.ends_with("supports that prevent all rigid motions"),
             "{message}"
         );
     }

@@ -71,7 +71,7 @@ fn traction_in_a_volume() {
 fn a_load_on_held_nodes_only() {
     insta::assert_snapshot!(
         refusal(BODY, "group = \"top\"", "group = \"sides\""),
-        @"scene.toml:15: [[load]] 1: every node of group `sides` is held there, so the load acts on nothing"
+        @"scene.toml:15: [[load]] 1: all nodes of group `sides` are fixed, so the load has no effect"
     );
 }
 

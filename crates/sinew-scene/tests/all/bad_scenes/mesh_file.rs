@@ -118,7 +118,7 @@ run = { duration = 1.0, integrator = \"newmark\", dt = 0.1 }
     insta::assert_snapshot!(simulation.warnings().iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"), @r#"
     order = "linear": cells taken by their corners: 1 tetra10; 6 nodes between them dropped; curved edges became straight, by up to 0.001 m at their middle
     groups of the mesh that the scene does not use: `3:1`
-    nothing holds the body: 1 tetrahedron with 1.667e-7 m3 at [0, 0, 0] m; hold it by [[fixed]], or say by free_flight = true in [run] that it is meant
+    the body has no support: 1 tetrahedron with 1.667e-7 m3 at [0, 0, 0] m; hold it by [[fixed]], or say by free_flight = true in [run] that it is meant
     nothing acts on the body: without loads, gravity, motions, tools and an initial state it stays at rest; a [[load]], or gravity at the top of the scene, moves it
     the scene has no [[probe]]: a run writes its times only; name a node whose motion is wanted: [[probe]] with name and point
     "#);

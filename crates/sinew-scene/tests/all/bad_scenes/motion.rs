@@ -14,7 +14,7 @@ const RAMP: &str = "ramp = { kind = \"sin2\", rise = 0.2 }\n";
 fn moved_and_held_in_the_same_direction() {
     insta::assert_snapshot!(
         refusal(MOVED, "axes = \"x\"\nvelocity = [0.05, 0.0, 0.0]", "axes = \"xy\"\nvelocity = [0.05, 0.01, 0.0]"),
-        @"scene.toml:19: [[move]] 2: node 1 is held in y by a support; a component is held or moved, never both"
+        @"scene.toml:19: [[move]] 2: node 1 is already fixed in y; a direction can be fixed or moved, not both"
     );
 }
 

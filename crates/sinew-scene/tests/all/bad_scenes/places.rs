@@ -26,7 +26,7 @@ fn a_place_without_a_whole_triangle() {
 fn a_group_and_a_place() {
     insta::assert_snapshot!(
         refusal(PLACED, FLOOR, "group = \"bottom\"\nwhere = { below = { z = 0.0 } }"),
-        @"scene.toml:16: [[fixed]] 1: `group` does not go with `where`, which stands in its place"
+        @"scene.toml:16: [[fixed]] 1: `group` cannot be used with `where`; give one of the two"
     );
 }
 

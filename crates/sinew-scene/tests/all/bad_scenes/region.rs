@@ -344,7 +344,7 @@ fn an_unknown_key_of_a_law_lists_the_keys_of_that_law() {
 #[test]
 fn a_law_with_moduli_of_its_own_takes_no_youngs_modulus() {
     let said = refused_yeoh("c = [600.0]\nyoungs_modulus = 3500.0\npoissons_ratio = 0.45\n");
-    insta::assert_snapshot!(said, @"scene.toml:8: [[region]] 1: `youngs_modulus` does not go with this model, whose stiffness is stated by moduli of its own");
+    insta::assert_snapshot!(said, @"scene.toml:8: [[region]] 1: `youngs_modulus` does not go with this model, whose stiffness is given by its own parameters");
 }
 
 #[test]

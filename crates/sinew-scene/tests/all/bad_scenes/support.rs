@@ -47,7 +47,7 @@ fn no_axis() {
 fn nothing_left_free() {
     insta::assert_snapshot!(
         refusal(BODY, "group = \"sides\"", "group = \"tissue\""),
-        @"scene.toml:12: [[fixed]] 1: no degree of freedom is free: all 27 nodes are held"
+        @"scene.toml:12: [[fixed]] 1: no degree of freedom is free: all 27 nodes are fixed; free some of them"
     );
 }
 

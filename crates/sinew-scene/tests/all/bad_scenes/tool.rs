@@ -50,7 +50,7 @@ fn no_shape_and_two_shapes() {
     );
     insta::assert_snapshot!(
         refusal(TOUCHED, shape, &format!("{shape}\nshapes = [{{ plane = {{}} }}]")),
-        @"scene.toml:12: [[tool]] 1: `shape` does not go with `shapes`, which stand in its place"
+        @"scene.toml:12: [[tool]] 1: `shape` cannot be used with `shapes`; give one of the two"
     );
     insta::assert_snapshot!(refusal(TOUCHED, shape, "shapes = []"), @"scene.toml:12: [[tool]] 1: shapes = []: expected a list of tables such as [{ sphere = { radius = 0.006 } }]");
     insta::assert_snapshot!(refusal(TOUCHED, shape, "shapes = { plane = {} }"), @"scene.toml:12: [[tool]] 1: `shapes` is one table: write a list of tables, as there may be several");
@@ -82,7 +82,7 @@ fn a_start_that_is_missing_or_beside_a_table() {
     insta::assert_snapshot!(refusal(TOUCHED, "start = [0.1, 0.1, 0.32]\n", ""), @"scene.toml:10: [[tool]] 1: `start` is missing: expected [x, y, z] in m, of at most 1e6");
     insta::assert_snapshot!(
         refusal(TOUCHED, "velocity = [0.0, 0.0, -0.01]", "table = \"probe.csv\""),
-        @"scene.toml:13: [[tool]] 1: `start` does not go with `table`, in which places and rotations stand"
+        @"scene.toml:13: [[tool]] 1: `start` cannot be used with `table`: the table has the positions and rotations; remove it"
     );
 }
 
@@ -103,7 +103,7 @@ fn numbers_out_of_range() {
 #[test]
 fn nothing_to_touch() {
     insta::assert_snapshot!(refusal(TOUCHED, "touches = \"sides\"", "touches = \"side\""), @r#"scene.toml:21: [[tool]] 2: no group is named "side", did you mean "sides"?; the groups are "tissue" (dimension 3), "sides" (dimension 2), "top" (dimension 2), "bottom" (dimension 2)"#);
-    insta::assert_snapshot!(refusal(TOUCHED, "touches = \"sides\"", "touches = \"bottom\""), @"scene.toml:21: [[tool]] 2: the tool can touch no node: all 9 are held or moved");
+    insta::assert_snapshot!(refusal(TOUCHED, "touches = \"sides\"", "touches = \"bottom\""), @"scene.toml:21: [[tool]] 2: the tool can touch no node: all 9 are fixed or have a prescribed motion");
 }
 
 #[test]
@@ -249,10 +249,10 @@ fn numbers_beyond_all_bounds() {
 #[test]
 fn methods_that_tools_cannot_push() {
     let method = "integrator = \"symplectic-euler\"";
-    insta::assert_snapshot!(refusal(TOUCHED, method, "integrator = \"newmark\""), @r#"scene.toml:26: [run]: `newmark`: tools push cells in closed form, which takes a step that divides forces by one block for each cell and then moves by the new velocity; take `central-difference` without `patches`, `symplectic-euler`, `cnn-symplectic`, `cnn-stabilised` with one block for each cell, or `cnn-energy` with kind = "ie""#);
-    insta::assert_snapshot!(refusal(TOUCHED, method, "integrator = \"cnn-energy\"\nkind = \"trap\""), @r#"scene.toml:26: [run]: `cnn-energy`: tools push cells in closed form, which takes a step that divides forces by one block for each cell and then moves by the new velocity; take `central-difference` without `patches`, `symplectic-euler`, `cnn-symplectic`, `cnn-stabilised` with one block for each cell, or `cnn-energy` with kind = "ie""#);
+    insta::assert_snapshot!(refusal(TOUCHED, method, "integrator = \"newmark\""), @r#"scene.toml:26: [run]: `newmark`: this method does not support tools: contact needs one mass block for each node and a position update with the new velocity; take `central-difference` without `patches`, `symplectic-euler`, `cnn-symplectic`, `cnn-stabilised` with one block for each cell, or `cnn-energy` with kind = "ie""#);
+    insta::assert_snapshot!(refusal(TOUCHED, method, "integrator = \"cnn-energy\"\nkind = \"trap\""), @r#"scene.toml:26: [run]: `cnn-energy`: this method does not support tools: contact needs one mass block for each node and a position update with the new velocity; take `central-difference` without `patches`, `symplectic-euler`, `cnn-symplectic`, `cnn-stabilised` with one block for each cell, or `cnn-energy` with kind = "ie""#);
     insta::assert_snapshot!(refusal(TOUCHED, method, &format!("{method}\nsaturation = \"auto\"")), @r#"scene.toml:27: [run]: `symplectic-euler`: tools do work that the limits of a guard do not know; take saturation = "off", or leave it out"#);
-    insta::assert_snapshot!(refusal(TOUCHED, method, "integrator = \"rk4\""), @r#"scene.toml:26: [run]: `rk4`: tools push cells in closed form, which takes a step that divides forces by one block for each cell and then moves by the new velocity; take `central-difference` without `patches`, `symplectic-euler`, `cnn-symplectic`, `cnn-stabilised` with one block for each cell, or `cnn-energy` with kind = "ie""#);
+    insta::assert_snapshot!(refusal(TOUCHED, method, "integrator = \"rk4\""), @r#"scene.toml:26: [run]: `rk4`: this method does not support tools: contact needs one mass block for each node and a position update with the new velocity; take `central-difference` without `patches`, `symplectic-euler`, `cnn-symplectic`, `cnn-stabilised` with one block for each cell, or `cnn-energy` with kind = "ie""#);
 }
 
 /// Patches are made as the method is set up, since they depend on the body.
@@ -269,5 +269,5 @@ fn patches_that_a_body_needs_and_tools_cannot_push() {
     let mut integrator = simulation.integrator().unwrap();
     let refused = simulation.set_up(&mut *integrator).unwrap_err();
     let said = message(&refused).replace(path, "slivers.toml");
-    insta::assert_snapshot!(said, @r#"slivers.toml:46: [run]: `central-difference`: tools push cells in closed form, which takes a step that divides forces by one block for each cell and then moves by the new velocity; take `central-difference` without `patches`, `symplectic-euler`, `cnn-symplectic`, `cnn-stabilised` with one block for each cell, or `cnn-energy` with kind = "ie""#);
+    insta::assert_snapshot!(said, @r#"slivers.toml:46: [run]: `central-difference`: this method does not support tools: contact needs one mass block for each node and a position update with the new velocity; take `central-difference` without `patches`, `symplectic-euler`, `cnn-symplectic`, `cnn-stabilised` with one block for each cell, or `cnn-energy` with kind = "ie""#);
 }

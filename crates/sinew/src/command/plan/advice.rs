@@ -250,7 +250,7 @@ fn provenance(advice: &Advice) -> String {
     )];
     if !advice.covers_the_scene() {
         let unseen = unseen_changes(advice).map_or_else(String::new, |changes| {
-            format!("; no pilot saw what the loads do from {changes} on")
+            format!("; no short run covers the loads from {changes} on")
         });
         let later = if advice.stiffness_changes {
             "; large deformation changes the stiffness, and a step that is stable so far may not be so later"

@@ -62,7 +62,7 @@ impl Cost {
         let mut lines = Vec::new();
         lines.extend(self.footprint.map(|footprint| {
             format!(
-                "memory: about {} MB, {} MB of them for matrices{}; told from the mesh, before anything was built",
+                "memory: about {} MB, {} MB of them for matrices{}; estimated from the mesh before the model is built",
                 three(footprint.bytes as f64 / 1e6),
                 three(footprint.matrix_bytes as f64 / 1e6),
                 if self.factor.is_some() { ", the factor apart" } else { "" }

@@ -146,5 +146,5 @@ fn probes(arguments: &Arguments) -> &PathBuf {
 
 /// The rest of the message after an interruption.
 fn no_remedy() -> String {
-    "; a session is repeated as a whole, and cannot be gone on with".to_owned()
+    "; a replay runs from the beginning and cannot be resumed".to_owned()
 }

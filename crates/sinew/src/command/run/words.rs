@@ -104,7 +104,7 @@ pub(super) fn summary_of(simulation: &Simulation, end: &RunEnd, path: &Path) -> 
     ));
     if let Replaced::KeptIn(kept) = &end.replaced {
         lines.push(format!(
-            "{}: the results that {} held before",
+            "{}: the earlier results in {}",
             kept.display(),
             path.display()
         ));

@@ -122,7 +122,7 @@ fn where_loads_change_after_the_pilots_the_first_line_says_up_to_when_the_advice
     );
     for part in [
         "expected",
-        "no pilot saw what the loads do from t = 300 s and 300.13 s on",
+        "no short run covers the loads from t = 300 s and 300.13 s on",
     ] {
         assert!(advice.contains(part), "{part} is not in\n{advice}");
     }

@@ -113,7 +113,7 @@ fn values_that_do_not_fit_are_one_error() {
     let said = sinew(folder.path(), &["compare", "beam.toml", "."]);
     assert_eq!(said.code, Some(2));
     assert!(
-        said.err.contains("no run has come to an end there"),
+        said.err.contains("the folder has no completed run"),
         "{}",
         said.err
     );

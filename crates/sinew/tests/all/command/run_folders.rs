@@ -160,7 +160,7 @@ fn a_run_ends_in_order_when_it_is_asked_to() {
         let said = String::from_utf8_lossy(&ended.stderr).into_owned();
         assert_eq!(ended.status.code(), Some(130), "{said}");
         assert!(
-            said.contains(&format!("`sinew resume {signal}` goes on")),
+            said.contains(&format!("`sinew resume {signal}` continues it")),
             "{said}"
         );
         let summary = fs::read_to_string(folder.path(signal).join("summary.json")).unwrap();
@@ -230,7 +230,7 @@ fn a_folder_that_holds_other_things_is_left_alone() {
         &run("."),
         "cannot write into .: this run reads short.toml in it",
     );
-    refused(&run("short.toml"), "it is no folder");
+    refused(&run("short.toml"), "it is not a folder");
     refused(
         &["resume", "notes"],
         "there is no run in notes to go on with",
@@ -358,10 +358,7 @@ fn results_stay_until_those_in_their_place_are_complete() {
     let unfinished = contents(&folder.path("out"));
     let (code, said) = folder.says(&["run", "short.toml", "--out", "out"]);
     assert_eq!(code, Some(2), "{said}");
-    assert!(
-        said.contains("`sinew resume out` goes on with it"),
-        "{said}"
-    );
+    assert!(said.contains("`sinew resume out` continues it"), "{said}");
     assert!(unfinished == contents(&folder.path("out")));
     let (code, said) = folder.says(&["resume", "out"]);
     assert_eq!(code, Some(0), "{said}");
@@ -409,7 +406,7 @@ fn results_are_kept_by_nothing_that_is_not_ours() {
     let (code, said) = folder.says(&["run", "diverges.toml", "--out", "out"]);
     assert_eq!(code, Some(1), "{said}");
     assert!(
-        said.contains("out.old: the results that out held before"),
+        said.contains("out.old: the earlier results in out"),
         "{said}"
     );
     let summary = |name: &str| fs::read_to_string(folder.path(name).join("summary.json")).unwrap();
