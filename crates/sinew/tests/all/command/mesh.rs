@@ -190,7 +190,7 @@ fn convert_and_back_keeps_the_mesh() {
     let (code, said) = again(&["--ascii"]);
     assert_eq!(code, Some(2), "{said}");
     assert!(
-        said.contains("a.msh exists, has other content; it was not changed"),
+        said.contains("a.msh exists and has other content; it was not changed"),
         "{said}"
     );
     assert!(std::fs::read(path("a.msh")).unwrap() == before);

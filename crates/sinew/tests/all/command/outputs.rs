@@ -192,7 +192,9 @@ fn a_links_target_is_written_and_keeps_its_mode() {
             let mut run = folder.sinew(&["run", "spring.toml", "--probes", link]);
             let output = run.output().unwrap();
             assert_eq!(code(&output), Some(2));
-            assert!(err(&output).contains("a.csv exists, has other content; it was not changed"));
+            assert!(
+                err(&output).contains("a.csv exists and has other content; it was not changed")
+            );
             assert_eq!(fs::read_to_string(folder.path(target)).unwrap(), "old");
         }
         // A table of probes may be written over by the next one.

@@ -231,13 +231,10 @@ fn a_folder_that_holds_other_things_is_left_alone() {
         "cannot write into .: this run reads short.toml in it",
     );
     refused(&run("short.toml"), "it is not a folder");
-    refused(
-        &["resume", "notes"],
-        "there is no run in notes to go on with",
-    );
+    refused(&["resume", "notes"], "there is no run in notes to continue");
     refused(
         &["resume", "nothing"],
-        "there is no run in nothing to go on with",
+        "there is no run in nothing to continue",
     );
 
     assert_eq!(folder.says(&run("out")).0, Some(0));
@@ -374,7 +371,7 @@ fn results_stay_until_those_in_their_place_are_complete() {
     let (code, said) = folder.says(&["run", "short.toml", "--out", "out", "--again"]);
     assert_eq!(code, Some(0), "{said}");
     assert!(
-        said.contains("was not completed left in it will be removed"),
+        said.contains("files of an incomplete run in it will be removed"),
         "{said}"
     );
     assert!(!folder.path("out.old").exists());
