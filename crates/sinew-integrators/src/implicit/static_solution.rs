@@ -165,6 +165,11 @@ mod tests {
         let error = static_solution(&floating, &[1.0, 0.0]).unwrap_err();
         let source = error.source().and_then(|source| source.downcast_ref());
         assert_eq!(source, Some(&FactorError::NotPositiveDefinite));
-        assert!(error.to_string().contains("add supports"), "{error}");
+        assert!(
+            error
+                .to_string()
+                .contains("add supports that prevent all rigid motions"),
+            "{error}"
+        );
     }
 }

@@ -132,7 +132,8 @@ fn a_table_has_its_picture_beside_it_and_spares_what_is_not_its_own() {
     let said = law(path, &one);
     assert_eq!(said.code, Some(2));
     assert!(
-        said.err.contains("one.svg exists and has other content"),
+        said.err
+            .contains("one.svg exists and has other content; it was not changed"),
         "{}",
         said.err
     );

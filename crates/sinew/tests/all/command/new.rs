@@ -27,7 +27,8 @@ fn a_first_scene_runs_as_it_is_and_is_never_replaced() {
     let said = sinew(folder.path(), &["new", &mesh("beam.msh")]);
     assert_eq!(said.code, Some(2));
     assert!(
-        said.err.contains("beam.toml exists and has other content"),
+        said.err
+            .contains("beam.toml exists and has other content; it was not changed"),
         "{}",
         said.err
     );
@@ -113,7 +114,8 @@ fn a_mesh_that_differs_is_not_replaced_by_that_of_a_ready_scene() {
     let said = sinew(folder.path(), &["new", "--ready", "beam"]);
     assert_eq!(said.code, Some(2), "{}", said.out);
     assert!(
-        said.err.contains("beam.msh exists and has other content"),
+        said.err
+            .contains("beam.msh exists and has other content; it was not changed"),
         "{}",
         said.err
     );

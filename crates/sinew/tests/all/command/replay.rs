@@ -69,6 +69,6 @@ fn probes_alone_of_a_run_and_of_a_session_tell_that_the_body_is_in_itself() {
     assert!(
         apart.unwrap()["lines"]
             .to_string()
-            .contains("keep them apart")
+            .contains("only the faces of their cut keep them apart")
     );
 }
