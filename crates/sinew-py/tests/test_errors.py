@@ -158,7 +158,7 @@ SESSIONS = {
     "an unknown option": (ValueError, "no option `bta`; it takes", lambda s: s.switch("newmark", bta=0.3)),
     "an option out of bounds": (ValueError, "beta = 7: expected", lambda s: s.switch("newmark", beta=7)),
     "an option of None": (sn.SceneError, "beta: None", lambda s: s.switch("newmark", beta=None)),
-    "a method for other scenes": (ValueError, "`newmark`: tools", lambda s: s.switch("newmark")),
+    "a method for other scenes": (ValueError, "`newmark`: this method does not support tools", lambda s: s.switch("newmark")),
     "a step of 0 of a method": (ValueError, "dt = 0", lambda s: s.switch("symplectic-euler", dt=0.0)),
     "a negative step": (ValueError, "dt = -1", lambda s: s.switch("symplectic-euler", dt=-1)),
     "a step of nan": (ValueError, "dt = NaN", lambda s: s.switch("symplectic-euler", dt=NAN)),
@@ -334,7 +334,7 @@ def test_folders_of_others_are_left_alone(tmp_path):
     error = refused(OSError, "mine.txt", lambda: of(cube()).run(tmp_path))
     assert "new folder" in str(error)
     assert [file.name for file in tmp_path.iterdir()] == ["mine.txt"]
-    refused(OSError, "no folder", lambda: of(cube()).run(tmp_path / "mine.txt"))
+    refused(OSError, "it is not a folder", lambda: of(cube()).run(tmp_path / "mine.txt"))
     assert (tmp_path / "mine.txt").read_text() == "x"
 
 
