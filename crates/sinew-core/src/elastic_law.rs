@@ -1,5 +1,6 @@
 //! Elastic forces with their energy and their tangent.
 
+use std::fmt;
 use std::sync::Arc;
 
 use sinew_sparse::{BlockMatrix, Pattern};
@@ -78,6 +79,12 @@ pub trait ElasticLaw: Send + Sync {
     /// As [`ElasticLaw::elastic_force`].
     fn fastest_wave(&self, _trial: &Trial<'_>) -> Result<Option<f64>, EvaluationError> {
         Ok(None)
+    }
+
+    /// The element with the fastest plane waves, for messages on a motion that cannot be computed: about two evaluations of
+    /// [`ElasticLaw::fastest_wave`]. `None` for a law without it, or where the law refuses the trial.
+    fn stiffest_element(&self, _trial: &Trial<'_>) -> Option<StiffestElement> {
+        None
     }
 
     /// Writes a symmetric positive semidefinite block (N/m, row-major, layers x layers) for every cell: its own block
@@ -294,6 +301,28 @@ impl Default for Deformed {
             inverted: 0,
             worst_element: None,
         }
+    }
+}
+
+/// The element with the fastest plane waves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StiffestElement {
+    /// Tag of the element in its mesh.
+    pub element: u64,
+    /// The largest and the smallest principal stretch; the smallest is negative in an element that is inside out.
+    pub stretches: [f64; 2],
+    /// Square of the frequency of its fastest wave, over the largest of any element at rest.
+    pub stiffening: f64,
+}
+
+impl fmt::Display for StiffestElement {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [largest, smallest] = self.stretches;
+        write!(
+            f,
+            "element {}, with principal stretches from {smallest:.2} to {largest:.2}, is {:.1e} times as stiff as any at rest",
+            self.element, self.stiffening
+        )
     }
 }
 

@@ -85,7 +85,7 @@ pub use clock::Clock;
 pub use contact::{AllShown, Contact, Inertia, Meeting, ShowCells, Shown};
 pub use cost_clock::CostClock;
 pub use counting_allocator::CountingAllocator;
-pub use elastic_law::{Deformed, ElasticLaw, TangentKind, Velocities};
+pub use elastic_law::{Deformed, ElasticLaw, StiffestElement, TangentKind, Velocities};
 pub use element_bounds::ElementBounds;
 pub use element_forces::{ElementForces, ElementPrecision, ElementSweep, SweepShape, sweep_alone};
 pub use elements::{ElementStiffness, Elements, element_omegas_squared};

@@ -154,7 +154,7 @@ pub enum StepError {
     #[error(transparent)]
     Synchronise(#[from] SynchroniseError),
     /// The method found that its step would be wrong.
-    #[error("`{integrator}` at t = {t} s: {reason}")]
+    #[error("`{integrator}` at t = {} s: {reason}", to_nine_digits(*t))]
     Inaccurate {
         /// Integrator id.
         integrator: &'static str,
@@ -165,8 +165,9 @@ pub enum StepError {
     },
     /// Steps that were not taken, without an error.
     #[error(
-        "`{by}` at t = {t} s: its `run` ended without an error before all steps were taken; expected each step \
-         of the batch, or the reason against it"
+        "`{by}` at t = {} s: its `run` ended without an error before all steps were taken; expected each step \
+         of the batch, or the reason against it",
+        to_nine_digits(*t)
     )]
     Stalled {
         /// The integrator's id, or the machine's name.
@@ -176,8 +177,9 @@ pub enum StepError {
     },
     /// The nonlinear equations of a step were not solved.
     #[error(
-        "`{integrator}` at t = {t} s: {iterations} Newton iterations left {residual:.1e} of the forces unbalanced: \
-         {reason}; take a shorter step"
+        "`{integrator}` at t = {} s: {iterations} Newton iterations left {residual:.1e} of the forces unbalanced: \
+         {reason}; take a shorter step",
+        to_nine_digits(*t)
     )]
     NotConverged {
         /// Integrator id.
@@ -192,11 +194,16 @@ pub enum StepError {
         reason: String,
     },
     /// The system refused a trial state.
-    #[error("at t = {t} s: {source}")]
+    #[error("at t = {} s: {source}", to_nine_digits(*t))]
     Refused {
         /// Time of the trial (s).
         t: f64,
         /// Error of the system.
         source: EvaluationError,
     },
+}
+
+/// A time without the rounding of the sum of steps.
+fn to_nine_digits(t: f64) -> f64 {
+    format!("{t:.8e}").parse().unwrap_or(t)
 }

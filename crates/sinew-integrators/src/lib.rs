@@ -34,6 +34,7 @@ mod registry;
 mod rounding;
 mod scheme;
 mod stepper;
+mod stiffening;
 
 pub use explicit_method::Explicit;
 pub use frame::Frame;

@@ -318,11 +318,13 @@ pub fn a_refusal_ends_the_run_and_keeps_what_was(make: &dyn Fn() -> Boxed) {
             unreachable!("refused by another door: {message}");
         };
         assert_eq!(source.element, ELEMENT);
-        for part in [
-            format!("t = {t} s"),
-            format!("element {ELEMENT}"),
-            format!("more than {limit} m"),
-        ] {
+        let said = message
+            .split("t = ")
+            .nth(1)
+            .and_then(|rest| rest.split(' ').next());
+        let said: f64 = said.unwrap_or_default().parse().unwrap_or(f64::NAN);
+        assert!((said - t).abs() <= 1e-8 * t, "{message}: at {t} s");
+        for part in [format!("element {ELEMENT}"), format!("more than {limit} m")] {
             assert!(message.contains(&part), "{message}");
         }
 

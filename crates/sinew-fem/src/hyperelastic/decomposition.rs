@@ -137,7 +137,7 @@ const FLAT: f64 = 0.05;
 /// the result is a function of F.
 #[inline(always)]
 #[must_use]
-pub(super) fn rotation<N: Number>(gradient: Tensor<N>, volume_ratio: N) -> Tensor<N> {
+pub(crate) fn rotation<N: Number>(gradient: Tensor<N>, volume_ratio: N) -> Tensor<N> {
     // The error after a step is about the square of what moved, so that single precision is reached long before.
     let tolerance = N::of((32.0 * N::EPSILON).max(1e-12));
     let mut rotation = gradient;

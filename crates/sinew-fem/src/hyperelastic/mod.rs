@@ -61,6 +61,7 @@ pub use arruda_boyce::ArrudaBoyce;
 pub use boxed::{Boxed, PointLaw};
 pub use corotational::Corotational;
 pub use decomposition::SingularValues;
+pub(crate) use decomposition::rotation;
 pub use deformation::Deformation;
 pub use fung::Fung;
 pub use gent::Gent;

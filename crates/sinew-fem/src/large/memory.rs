@@ -23,6 +23,12 @@ pub(crate) struct Past<'a, T = f64> {
 }
 
 impl<T> Past<'_, T> {
+    /// Nothing happened before, and all happens at once.
+    pub(crate) const NONE: Self = Self {
+        internal: &[],
+        dt: 0.0,
+    };
+
     /// All has relaxed.
     pub(crate) const RELAXED: Self = Self {
         internal: &[],

@@ -46,6 +46,7 @@ use sinew_mesh::TetMesh;
 use sinew_sparse::simd::{InstructionSet, SharedSlice};
 
 use crate::cells::Cells;
+use crate::hyperelastic::Tensor;
 use crate::smoothing::Smoothing;
 use chunks::chunks;
 use force::Evaluation;
@@ -318,11 +319,38 @@ impl LargeDeformation {
                 relaxing: Wanted::Stiffest.relaxing(region, past),
                 set: self.set,
                 fastest,
+                tet: None,
             };
             law.waves(&mut waves)?;
             fastest = waves.fastest;
         }
         Ok(fastest)
+    }
+
+    /// The tetrahedron with that frequency: its square, the tag, and the gradient of the displacement.
+    pub(crate) fn fastest_tet(
+        &self,
+        scratch: &Scratch,
+        past: Past<'_>,
+    ) -> Result<Option<(f64, u64, Tensor<f64>)>, EvaluationError> {
+        let (mut fastest, mut found) = (0.0, None);
+        for (region, law) in self.with_laws() {
+            let mut waves = Waves {
+                region,
+                scratch,
+                relaxing: Wanted::Stiffest.relaxing(region, past),
+                set: self.set,
+                fastest,
+                tet: None,
+            };
+            waves.with_numbers(law)?;
+            fastest = waves.fastest;
+            if let Some(tet) = waves.tet {
+                let gradient = region.rest.gradient_of(tet, &scratch.displacement);
+                found = Some((fastest, region.rest.tag(tet), gradient));
+            }
+        }
+        Ok(found)
     }
 
     /// The Cauchy stress (Pa) of a tetrahedron of the mesh, in the order of [`crate::stress`], with the displacement (m) of each node; `None`

@@ -26,6 +26,8 @@ pub(crate) struct Waves<'a> {
     pub(super) set: InstructionSet,
     /// The largest square so far.
     pub(super) fastest: f64,
+    /// The tetrahedron of the region that has it, found by plain numbers only.
+    pub(super) tet: Option<usize>,
 }
 
 impl Waves<'_> {
@@ -72,6 +74,9 @@ impl Waves<'_> {
             // Motions that are no plane waves gain where the volume grows.
             let volume = at.deformation().volume_ratio.max(N::of(1.0));
             let squares = N::load(&speeds[first..]) * volume * largest_eigenvalue(moduli);
+            if N::LANES == 1 && squares.lane(0) > fastest.lane(0) {
+                self.tet = Some(first);
+            }
             fastest = fastest.max(squares);
         }
         for lane in 0..N::LANES {

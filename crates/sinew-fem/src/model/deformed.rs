@@ -2,7 +2,7 @@
 
 use super::Model;
 use super::field_error::FieldError;
-use crate::hyperelastic::{SingularValues, Tensor};
+use crate::hyperelastic::{Deformation, Tensor, rotation};
 use crate::large::Past;
 use crate::{stress, tetra};
 
@@ -91,9 +91,12 @@ fn small_strain([[xx, xy, xz], [yx, yy, yz], [zx, zy, zz]]: &[[f64; 3]; 3]) -> [
 
 /// The angle (rad) of the rotation R in F = R S, by the gradient of the displacement.
 fn angle(displacement_gradient: &[[f64; 3]; 3]) -> f64 {
-    let gradient = Tensor(*displacement_gradient) + Tensor::identity();
-    let SingularValues { left, right, .. } = SingularValues::of(gradient);
-    let rotation = Tensor::from_columns(left).times_transposed(Tensor::from_columns(right));
+    let Deformation {
+        gradient,
+        volume_ratio,
+        ..
+    } = Deformation::of(Tensor(*displacement_gradient));
+    let rotation = rotation(gradient, volume_ratio);
     // Twice the sine and twice the cosine.
     let [[xx, xy, xz], [yx, yy, yz], [zx, zy, zz]] = rotation.0;
     let axis = [zy - yz, xz - zx, yx - xy];

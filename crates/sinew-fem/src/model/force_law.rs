@@ -6,11 +6,12 @@ use sinew_core::spectrum::{Spectrum, estimated_largest_eigenvalue, largest_eigen
 use sinew_core::vectors::scale;
 use sinew_core::{
     BlockMatrix, Damping, Deformed, ElasticLaw, ElementForces, EvaluationError, ForceLaw, Hash,
-    LoadTime, Pattern, State, TangentKind, Trial, Velocities,
+    LoadTime, Pattern, State, StiffestElement, TangentKind, Trial, Velocities,
 };
 
 use super::Model;
 use crate::following::{FollowingPressure, Part};
+use crate::hyperelastic::{Deformation, SingularValues};
 use crate::large::{LargeDeformation, Past, Scratch, Wanted, fill};
 use crate::motion::Field;
 
@@ -368,6 +369,24 @@ impl ElasticLaw for Model {
     fn fastest_wave(&self, trial: &Trial<'_>) -> Result<Option<f64>, EvaluationError> {
         self.at_trial((trial.load, trial.u), |large, scratch| {
             large.fastest_wave(scratch, past(trial)).map(Some)
+        })
+    }
+
+    fn stiffest_element(&self, trial: &Trial<'_>) -> Option<StiffestElement> {
+        let large = self.large.as_ref()?;
+        let found = self.at_trial((trial.load, trial.u), |large, scratch| {
+            large.fastest_tet(scratch, past(trial))
+        });
+        let (fastest, element, gradient) = found.ok()??;
+        let at_rest = large.with_scratch(|scratch| {
+            fill(&mut scratch.displacement, |_| [0.0; 3]);
+            large.fastest_wave(scratch, Past::NONE)
+        });
+        let [largest, _, smallest] = SingularValues::of(Deformation::of(gradient).gradient).values;
+        Some(StiffestElement {
+            element,
+            stretches: [largest, smallest],
+            stiffening: fastest / at_rest.ok()?,
         })
     }
 

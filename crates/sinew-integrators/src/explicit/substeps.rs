@@ -9,6 +9,7 @@ use sinew_core::{
     StepReport, System, Trial,
 };
 
+use crate::stiffening::stiffened_element;
 use crate::{OptionDefault, OptionHelp, OptionKind, Stepper};
 
 /// Share of the stable step that automatic sub-steps stay below.
@@ -303,7 +304,7 @@ impl Substepped {
         if cut.parts <= MOST_PARTS {
             return Ok(cut);
         }
-        Err(self.too_stiff(batch.dt(), state))
+        Err(self.too_stiff(batch, state))
     }
 
     /// Takes the next step, and again in more parts as long as it turns out to be too long.
@@ -357,17 +358,24 @@ impl Substepped {
                 StepError::Refused { t, source }
             }
             _ if batch.diverged().is_some() => return Ok(()),
-            _ => self.too_stiff(dt, state),
+            _ => self.too_stiff(batch, state),
         })
     }
 
-    fn too_stiff(&self, dt: f64, state: &State) -> StepError {
+    fn too_stiff(&self, batch: &Batch<'_>, state: &State) -> StepError {
+        let cause = match stiffened_element(batch.system(), batch.inputs(), state) {
+            Some(element) => element.to_string(),
+            None => "elements are squeezed flat, fibres or a law that stiffens are stretched too far, or the displacement is \
+                     not finite"
+                .to_owned(),
+        };
+        let dt = batch.dt();
         StepError::Inaccurate {
             integrator: self.id(),
             t: state.t(),
             reason: format!(
-                "the current stiffness takes more than {MOST_PARTS} parts of {dt} s, which takes two at rest: elements are squeezed flat, \
-                 fibres or a law that stiffens are stretched too far, or the displacement is not finite. A dt in seconds has no such bound"
+                "the current stiffness takes more than {MOST_PARTS} parts of {dt} s, which takes two at rest: {cause}. Reduce the \
+                 loads or motions, or give dt in seconds, which has no such bound"
             ),
         }
     }

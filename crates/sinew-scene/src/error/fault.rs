@@ -182,8 +182,8 @@ pub enum Fault {
     /// An oscillator that cannot be built.
     #[error(transparent)]
     Oscillator(#[from] sinew_core::OperatorError),
-    /// dt = "auto" with an integrator that sets no step on this scene.
-    #[error("dt = \"auto\" needs an integrator with a largest stable step: {0}")]
+    /// dt = "auto" where no step can be found.
+    #[error("dt = \"auto\" finds no step: {0}")]
     NoStableStep(#[from] NoStableStep),
     /// A method that cannot be set up for the scene.
     #[error(transparent)]

@@ -6,6 +6,7 @@ use sinew_core::OptionError;
 use sinew_mesh::{CellType, TetMeshError};
 
 use super::fault::Fault;
+use super::no_step::NoStableStep;
 use super::tool_fault::ToolFault;
 use super::words::quoted;
 use crate::keys::AT_THE_TOP;
@@ -39,6 +40,11 @@ pub(super) fn following_from(fault: &Fault) -> Option<String> {
                 .to_owned(),
         ),
         Fault::Tool(ToolFault::Within { .. }) => Some("move it out of the body".to_owned()),
+        Fault::NoStableStep(NoStableStep::Refused(_)) => Some(
+            "give the motion or the load a ramp that begins at 0, such as kind = \"sin2\""
+                .to_owned(),
+        ),
+        Fault::NoStableStep(NoStableStep::NotFinite) => None,
         Fault::NoStableStep(_) => Some(
             "give dt in s; `sinew plan --tolerance` finds one that is accurate enough".to_owned(),
         ),

@@ -1,6 +1,6 @@
 //! Errors of dt = "auto".
 
-use sinew_core::{OptionError, SetupError};
+use sinew_core::{EvaluationError, OptionError, SetupError};
 
 /// Reasons why the stable step of an integrator cannot be found.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -34,6 +34,14 @@ pub enum NoStableStep {
         /// Integrator id.
         integrator: String,
     },
+    /// The body cannot be computed as it is at the start.
+    #[error("the body is refused at t = 0: {0}")]
+    Refused(EvaluationError),
+    /// Moduli with which the stiffness of the undeformed body overflows.
+    #[error(
+        "the stiffness of the body at t = 0 is not finite: a modulus or a density is too large or too small"
+    )]
+    NotFinite,
     /// The integrator does not know.
     #[error("`{integrator}` cannot tell up to which step it is stable")]
     Unknown {

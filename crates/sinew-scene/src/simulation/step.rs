@@ -1,6 +1,6 @@
 //! The step of a scene, and the largest stable one of its integrator.
 
-use sinew_core::{Options, StableStep, State, System};
+use sinew_core::{LoadTime, Options, StableStep, State, System, Trial};
 use sinew_integrators::Stepper;
 use sinew_integrators::explicit::{Substepped, Substeps};
 
@@ -54,7 +54,24 @@ pub(super) fn seconds(
         StableStep::UpTo(limit) if limit > 0.0 => Err(NoStableStep::Unlimited { integrator }),
         StableStep::UpTo(_) => Err(NoStableStep::Never { integrator }),
         StableStep::Any => Err(NoStableStep::Any { integrator }),
-        StableStep::Unknown => Err(NoStableStep::Unknown { integrator }),
+        StableStep::Unknown => Err(unknown(system, integrator)),
+    }
+}
+
+/// The reason why no stable step is known.
+fn unknown(system: &dyn System, integrator: String) -> NoStableStep {
+    let rest = vec![0.0; system.dofs()];
+    let trial = Trial {
+        load: LoadTime::at(0.0),
+        dt: 0.0,
+        u: &rest,
+        v: &rest,
+        internal: &[],
+    };
+    match system.as_elastic().map(|law| law.fastest_wave(&trial)) {
+        Some(Err(refusal)) => NoStableStep::Refused(refusal),
+        Some(Ok(Some(wave))) if !wave.is_finite() => NoStableStep::NotFinite,
+        _ => NoStableStep::Unknown { integrator },
     }
 }
 

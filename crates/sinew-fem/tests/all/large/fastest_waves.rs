@@ -1,5 +1,6 @@
 //! The fastest wave through a tetrahedron, beside the fastest motion of the body.
 
+use nalgebra::{Matrix3, Vector3};
 use sinew_core::{ElasticLaw, State, System};
 use sinew_fem::hyperelastic::Hyperelastic;
 use sinew_fem::{Element, Law, Model};
@@ -115,4 +116,38 @@ fn the_fastest_wave_at_rest_is_that_of_pressure_and_two_shear_moduli() {
     let number = (2.0 + 2.0_f64.sqrt()) / (0.1_f64 / 3.0).powi(2);
     let expected = 4.0 * number * (lambda + 4.0 * mu) / DENSITY;
     assert!((wave / expected - 1.0).abs() < 1e-9, "{wave} {expected}");
+}
+
+/// The stretches are those of the deformation gradient of the element that is named, by nalgebra's singular values.
+#[test]
+fn the_stiffest_element_is_named_with_its_principal_stretches() {
+    let model = cube("veronda-westmann", 0.45, Element::P1);
+    let mesh = model.mesh();
+    let (rest, mut u) = (vec![0.0; model.dofs()], vec![0.0; model.dofs()]);
+    let mut displacement = vec![[0.0; 3]; mesh.points.len()];
+    let inside = |point: &[f64; 3]| point.iter().all(|x| (0.01..0.09).contains(x));
+    let node = mesh.points.iter().position(inside).unwrap();
+    displacement[node] = [0.012, -0.004, 0.015];
+    model.to_dofs(&displacement, &mut u).unwrap();
+    let found = model.stiffest_element(&at(&u, &rest)).unwrap();
+
+    let tet = mesh.tet_tags.iter().position(|tag| *tag == found.element);
+    let corners = mesh.tets[tet.unwrap()];
+    assert!(corners.contains(&(node as u32)), "{found}");
+    let edges = |moved: bool| {
+        let place = |corner: usize| {
+            let node = corners[corner] as usize;
+            let moved = displacement[node].map(|d| if moved { d } else { 0.0 });
+            Vector3::from(mesh.points[node]) + Vector3::from(moved)
+        };
+        Matrix3::from_columns(&[1, 2, 3].map(|corner| place(corner) - place(0)))
+    };
+    let gradient = edges(true) * edges(false).try_inverse().unwrap();
+    let values = gradient.singular_values();
+    assert!((found.stretches[0] - values.max()).abs() < 1e-12, "{found}");
+    assert!((found.stretches[1] - values.min()).abs() < 1e-12, "{found}");
+
+    let [wave, at_rest] = [&u, &rest].map(|u| squares(&model, u).unwrap()[0]);
+    assert!((found.stiffening / (wave / at_rest) - 1.0).abs() < 1e-9);
+    assert!(found.stiffening > 2.0, "{found}");
 }

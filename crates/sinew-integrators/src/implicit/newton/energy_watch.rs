@@ -117,6 +117,11 @@ impl EnergyWatch {
         self.take_up(elastic - self.elastic);
     }
 
+    /// Begins anew with the next step, for one in which the work of supports is not known.
+    pub(super) fn restart(&mut self) {
+        self.expected = None;
+    }
+
     fn take_up(&mut self, work: f64) {
         self.work += work;
         self.turnover += work.abs();

@@ -1,4 +1,4 @@
-//! Static equilibrium of a nonlinear law, followed in steps of the load.
+//! Static equilibrium of a nonlinear law, followed in parts of the load.
 
 use sinew_core::vectors::{add_scaled, dot, largest, weighted_dot};
 use sinew_core::{
@@ -8,19 +8,11 @@ use sinew_core::{
 
 use super::equations::{Equations, Point};
 use super::factor_use::FactorUse;
+use super::follow::{ByShare, Unreached, follow};
 use super::newton_error::NewtonError;
 use super::settings::NewtonSettings;
 use super::solver::Newton;
 use crate::implicit::factor::Combination;
-
-/// The first step, as a share of the load.
-const FIRST: f64 = 0.25;
-
-/// The smallest step, as a share of the load.
-const SMALLEST: f64 = 1.0 / 4096.0;
-
-/// Iterations up to which the next step of the load is four times as long; it is twice as long after more.
-const EASY: u64 = 3;
 
 /// Newton's method in a step of the load.
 const SETTINGS: NewtonSettings = NewtonSettings {
@@ -37,6 +29,7 @@ struct StaticEquations<'s> {
     system: &'s dyn System,
     law: &'s dyn ElasticLaw,
     load: &'s dyn StaticLoad,
+    /// The part of the load that acts.
     share: f64,
     /// F (N) at the point evaluated.
     force: Vec<f64>,
@@ -104,16 +97,13 @@ impl Equations for StaticEquations<'_> {
     }
 }
 
-/// The equilibrium could be followed to a share of the load only.
-pub(in crate::implicit) struct Unreached {
-    /// The share of the load that is carried.
-    pub(in crate::implicit) share: f64,
-    /// The error of the last attempt to increase the load.
-    pub(in crate::implicit) error: NewtonError,
+impl ByShare for StaticEquations<'_> {
+    fn take_share(&mut self, share: f64) {
+        self.share = share;
+    }
 }
 
-/// The displacement in equilibrium with a load, from the undeformed body on: the load grows by steps that are halved
-/// if Newton's method fails and lengthened if it succeeds.
+/// The displacement in equilibrium with a load, followed from the undeformed body on.
 pub(in crate::implicit) fn follow_load(
     system: &dyn System,
     law: &dyn ElasticLaw,
@@ -135,33 +125,6 @@ pub(in crate::implicit) fn follow_load(
         internal: vec![0.0; system.internal_variables()],
         extent: system.extent().unwrap_or(0.0),
     };
-    let (mut u, mut reached, mut step) = (vec![0.0; dofs], 0.0, FIRST);
-    while reached < 1.0 {
-        equations.share = f64::min(reached + step, 1.0);
-        newton.point.x.copy_from_slice(&u);
-        let mut work = StepReport::default();
-        let begun = equations.evaluate(&mut newton.point, &mut work);
-        let solved = begun
-            .map_err(NewtonError::Refused)
-            .and_then(|()| newton.solve(&mut equations, &mut work));
-        match solved {
-            Ok(()) => {
-                reached = equations.share;
-                u.copy_from_slice(&newton.point.x);
-                step *= if work.newton_iterations <= EASY {
-                    4.0
-                } else {
-                    2.0
-                };
-            }
-            Err(_) if step > SMALLEST => step *= 0.5,
-            Err(error) => {
-                return Err(Unreached {
-                    share: reached,
-                    error,
-                });
-            }
-        }
-    }
-    Ok(u)
+    follow(&mut newton, &mut equations, &mut work)?;
+    Ok(newton.point.x)
 }

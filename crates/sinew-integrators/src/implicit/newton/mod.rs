@@ -10,6 +10,7 @@ mod derivative;
 mod energy_watch;
 mod equations;
 mod factor_use;
+mod follow;
 mod forcing;
 mod linear;
 mod load_steps;

@@ -9,6 +9,7 @@ use sinew_core::{
 use super::by_products::Products;
 use super::derivative::Derivative;
 use super::equations::{Equations, Point};
+use super::follow::ByShare;
 use crate::implicit::factor::Combination;
 
 /// Distance over which the change of stiffness damping is measured, as a share of the smallest cell.
@@ -64,6 +65,8 @@ pub(super) struct StepEquations<'s> {
     pub(super) law: &'s dyn ElasticLaw,
     pub(super) state: &'s State,
     pub(super) unknown: Unknown<'s>,
+    /// Times of the loads, and of those that stiffness damping takes, at the step's end.
+    pub(super) end: [LoadTime<'s>; 2],
     /// `c_old net(u, v)` (N), where `c_old` is not 0.
     pub(super) old_forces: &'s [f64],
     /// Displacement and velocity of the point evaluated.
@@ -360,5 +363,18 @@ impl Products for StepEquations<'_> {
 
     fn inertia(&self, dof: usize) -> f64 {
         self.derivative_there().inertia(dof)
+    }
+}
+
+/// The way of the supports, and the loads with it, to their end.
+impl ByShare for StepEquations<'_> {
+    fn take_share(&mut self, share: f64) {
+        let start = self.state.t();
+        let [load, viscous] = self.end.map(|end| match share {
+            1.0 => end,
+            _ => LoadTime::at(start + share * (end.t() - start)).under(end.inputs()),
+        });
+        self.unknown.loads[1] = load;
+        self.unknown.viscosity.load = viscous;
     }
 }

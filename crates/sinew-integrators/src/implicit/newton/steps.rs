@@ -7,11 +7,13 @@ use super::by_products::Products;
 use super::derivative::AtRest;
 use super::energy_watch::EnergyWatch;
 use super::equations::Equations;
+use super::follow::follow;
 use super::newton_error::NewtonError;
 use super::settings::NewtonSettings;
 use super::solver::Newton;
 use super::step_equations::{StepEquations, Unknown, Viscous, ViscousPlace};
 use crate::implicit::factor::Factor;
+use crate::stiffening::stiffened_element;
 
 /// Share of the size of body and motion by which rounding moves positions.
 const ROUNDING: f64 = 1e-14;
@@ -107,18 +109,21 @@ impl NewtonSteps {
             work += StepReport::ONE_FORCE;
             scale(&mut self.old_forces, unknown.of_old_forces);
         }
+        let loads = unknown.loads.map(|load| load.under(step.inputs));
+        let viscous = unknown.viscosity.load.under(step.inputs);
         let mut equations = StepEquations {
             step,
             law,
             state,
             unknown: Unknown {
-                loads: unknown.loads.map(|load| load.under(step.inputs)),
+                loads,
                 viscosity: ViscousPlace {
-                    load: unknown.viscosity.load.under(step.inputs),
+                    load: viscous,
                     ..unknown.viscosity
                 },
                 ..unknown
             },
+            end: [loads[1], viscous],
             old_forces: &self.old_forces,
             u: &mut self.u,
             v: &mut self.v,
@@ -144,9 +149,11 @@ impl NewtonSteps {
             let energy = point.energy * unknown.reach() / unknown.of_forces;
             self.watch.supports(energy);
         }
-        self.newton.take_better(stayed, &moved).map_err(refused)?;
         let before = work.newton_iterations;
-        let mut solved = self.newton.solve(&mut equations, &mut work);
+        let begun = self.newton.take_better(stayed, &moved);
+        let mut solved = begun
+            .map_err(NewtonError::Refused)
+            .and_then(|()| self.newton.solve(&mut equations, &mut work));
         let is_open = matches!(
             solved,
             Err(NewtonError::Unbalanced { .. } | NewtonError::Singular(_))
@@ -160,15 +167,24 @@ impl NewtonSteps {
             self.newton.take_better(stayed, &moved).map_err(refused)?;
             solved = self.newton.solve(&mut equations, &mut work);
         }
+        if solved.is_err() && unknown.reach() > 0.0 && law.supports_move() {
+            equations.begin_at(0.0, &mut self.newton.point.x);
+            self.watch.restart();
+            match (follow(&mut self.newton, &mut equations, &mut work), &solved) {
+                (Ok(()), _) => solved = Ok(()),
+                (Err(_), Err(NewtonError::Refused(_))) => {}
+                (Err(unreached), _) => solved = Err(unreached.error),
+            }
+        }
         solved.map_err(|failure| match failure {
             NewtonError::Refused(refusal) => refused(refusal),
             NewtonError::Unbalanced {
                 iterations,
                 residual,
                 reason,
-            } => self.not_converged(state, iterations, residual, reason),
+            } => self.not_converged((step, state), iterations, residual, reason),
             NewtonError::Singular(_) => self.not_converged(
-                state,
+                (step, state),
                 work.newton_iterations - before,
                 f64::INFINITY,
                 "not even the projected tangent is positive definite".to_owned(),
@@ -183,11 +199,14 @@ impl NewtonSteps {
 
     fn not_converged(
         &self,
-        state: &State,
+        (step, state): (&Step<'_>, &State),
         iterations: u64,
         residual: f64,
-        reason: String,
+        mut reason: String,
     ) -> StepError {
+        if let Some(element) = stiffened_element(step.system, step.inputs, state) {
+            reason.push_str(&format!("; before the step {element}"));
+        }
         StepError::NotConverged {
             integrator: self.integrator,
             t: state.t(),

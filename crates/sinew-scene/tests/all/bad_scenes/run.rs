@@ -64,7 +64,7 @@ fn automatic_step_of_a_method_without_a_limit() {
     insta::assert_snapshot!(
         refusal(BODY, "dt = 0.02", "dt = \"auto\""),
         @r#"
-    scene.toml:23: [run]: dt = "auto" needs an integrator with a largest stable step: `newmark` is stable at any step
+    scene.toml:23: [run]: dt = "auto" finds no step: `newmark` is stable at any step
     help: give dt in s; `sinew plan --tolerance` finds one that is accurate enough
     "#
     );
@@ -77,7 +77,7 @@ fn automatic_step_of_a_method_that_is_never_stable() {
     insta::assert_snapshot!(
         refusal(&body, "dt = 0.02", "dt = \"auto\""),
         @r#"
-    scene.toml:23: [run]: dt = "auto" needs an integrator with a largest stable step: `forward-euler` is stable at no step on this scene
+    scene.toml:23: [run]: dt = "auto" finds no step: `forward-euler` is stable at no step on this scene
     help: give dt in s; `sinew plan --tolerance` finds one that is accurate enough
     "#
     );
@@ -87,7 +87,7 @@ fn automatic_step_of_a_method_that_is_never_stable() {
 fn automatic_step_that_substeps_leave_nothing_to() {
     let body = BODY.replace("\"newmark\"", "\"rk4\"\nsubsteps = \"auto\"");
     insta::assert_snapshot!(refusal(&body, "dt = 0.02", "dt = \"auto\""), @r#"
-    scene.toml:24: [run]: dt = "auto" needs an integrator with a largest stable step: `rk4` is stable at any step
+    scene.toml:24: [run]: dt = "auto" finds no step: `rk4` is stable at any step
     help: give dt in s; `sinew plan --tolerance` finds one that is accurate enough
     "#);
 }
