@@ -75,6 +75,17 @@ impl Clip {
         Self { frames }
     }
 
+    /// The clip with displacements that are `factor` times as large, to show small ones.
+    #[must_use]
+    pub fn magnified(mut self, factor: f64) -> Self {
+        for frame in &mut self.frames {
+            for u in &mut frame.displacements {
+                *u = u.map(|u| (f64::from(u) * factor) as f32);
+            }
+        }
+        self
+    }
+
     /// Times (s) of the first and the last frame; `None` without frames.
     #[must_use]
     pub fn span(&self) -> Option<[f64; 2]> {

@@ -15,7 +15,7 @@ use crate::request;
 pub(crate) const NAME: &str = "checkpoint.bin";
 
 /// The first line, with the version of the format.
-const HEAD: &str = "sinew checkpoint 10\n";
+const HEAD: &str = "sinew checkpoint 11\n";
 
 /// Bytes of the checksum at its end.
 const CHECKSUM: usize = 32;
@@ -26,8 +26,6 @@ pub(crate) struct Checkpoint {
     pub(crate) progress: Progress,
     /// The motion at the last row of energies.
     pub(crate) row: LastRow,
-    /// Displacements (m) of the surface at the instant of the largest one so far.
-    pub(crate) largest: Vec<f64>,
 }
 
 impl Checkpoint {

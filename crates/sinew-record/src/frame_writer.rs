@@ -20,8 +20,6 @@ const SNAPSHOTS: usize = 2;
 #[derive(Debug, Clone, Default)]
 pub(crate) struct SeenInFrames {
     pub(crate) seen: Seen,
-    /// Displacements (m) of the surface in the frame with the largest one so far.
-    pub(crate) largest: Vec<f64>,
     /// Seals of the frames, from the first one of the run on.
     pub(crate) seals: Vec<Seal>,
 }
@@ -77,11 +75,7 @@ impl<'a> FrameJob<'a> {
 impl FrameJob<'_> {
     fn write(&mut self, snapshot: &Snapshot) -> Result<(), RecordRunError> {
         let mut guard = lock(self.seen);
-        let SeenInFrames {
-            seen,
-            largest,
-            seals,
-        } = &mut *guard;
+        let SeenInFrames { seen, seals } = &mut *guard;
         let seal = self.fields.write(self.folder, snapshot, seen)?;
         seals.push(seal);
         let displacements = self.fields.displacements();
@@ -95,12 +89,7 @@ impl FrameJob<'_> {
             }
         }
         let tag = || self.body.mesh.node_tags[node];
-        // Of a body that was cut the last frame is kept: its surface was another one in earlier ones.
-        if seen.displacement.see(most, snapshot.t, tag) || self.body.cut.is_some() {
-            let nodes = self.body.surface().nodes.iter();
-            largest.clear();
-            largest.extend(nodes.flat_map(|node| displacements[*node as usize]));
-        }
+        seen.displacement.see(most, snapshot.t, tag);
         Ok(())
     }
 

@@ -52,6 +52,7 @@ mod frame_looks;
 mod frame_writer;
 mod frames;
 mod growth;
+mod instruments;
 mod laws;
 mod made_energy;
 #[cfg(feature = "implicit")]
@@ -80,6 +81,7 @@ pub use error::RecordRunError;
 pub use folder_size::FolderSize;
 pub use frame_looks::{FrameLooks, Looked};
 pub use growth::EnergyGrowth;
+pub use instruments::Instruments;
 pub use laws::{
     AskedCurves, LawCurvesError, Measured, MeasuredError, MeasuredFault, RegionCurves,
     check_curves_folder, curves_of_laws, is_curves_file, picture_of_law, table_of_laws,

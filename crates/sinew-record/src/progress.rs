@@ -176,13 +176,11 @@ pub(crate) struct Largest {
 }
 
 impl Largest {
-    /// Takes a value if it is larger than that so far; returns true if it was.
-    pub(crate) fn see(&mut self, value: f64, t: f64, at: impl FnOnce() -> u64) -> bool {
-        let larger = value > self.value;
-        if larger {
+    /// Takes a value if it is larger than that so far.
+    pub(crate) fn see(&mut self, value: f64, t: f64, at: impl FnOnce() -> u64) {
+        if value > self.value {
             *self = Self { value, t, at: at() };
         }
-        larger
     }
 }
 

@@ -261,36 +261,27 @@ impl RunRecorder<'_> {
         Ok(())
     }
 
-    /// Completes pending writes; returns the progress of the run, and the displacements (m) of the surface at the
-    /// instant of the largest one.
-    pub(crate) fn settle(&mut self) -> Result<(Progress, Vec<f64>), RecordRunError> {
+    /// Completes pending writes; returns the progress of the run.
+    pub(crate) fn settle(&mut self) -> Result<Progress, RecordRunError> {
         self.tables.secure(self.folder, &mut self.progress.seals)?;
         self.progress.energy = self.balance.sums;
         let Some(frames) = &mut self.frames else {
-            return Ok((self.progress.clone(), Vec::new()));
+            return Ok(self.progress.clone());
         };
-        let SeenInFrames {
-            seen,
-            largest,
-            seals,
-        } = frames.settle()?.clone();
+        let SeenInFrames { seen, seals } = frames.settle()?.clone();
         self.progress.seen = seen;
         self.progress.seals.frames = seals;
-        Ok((self.progress.clone(), largest))
+        Ok(self.progress.clone())
     }
 
     /// Leaves a checkpoint of a world that it stopped, after this work.
     pub(crate) fn save(&mut self, world: &World, work: StepReport) -> Result<(), RecordRunError> {
-        let (mut progress, largest) = self.settle()?;
+        let mut progress = self.settle()?;
         let row = self.balance.last.clone().unwrap_or_default();
         progress.work.add(work);
         // What the checkpoint counts on is there before it is.
         self.folder.secure()?;
-        let checkpoint = Checkpoint {
-            progress,
-            row,
-            largest,
-        };
+        let checkpoint = Checkpoint { progress, row };
         checkpoint.write(self.folder, world)?;
         self.saved = Instant::now();
         Ok(())

@@ -46,7 +46,6 @@ impl RunFolder {
             schedules,
             balance: Balance::new(simulation, body, method, schedules.energy),
             progress: Progress::default(),
-            largest: Vec::new(),
             resumed: false,
             saves: false,
         };

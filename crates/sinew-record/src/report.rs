@@ -27,7 +27,6 @@ const MOST_DRAWN: usize = 24;
 pub(crate) fn page(
     summary: &Summary<'_>,
     surface: Option<&BoundarySurface>,
-    largest: &[f64],
     folder: &OwnedFolder,
 ) -> Result<String, RecordRunError> {
     let (scene, body) = (summary.scene.scene(), summary.body);
@@ -35,14 +34,16 @@ pub(crate) fn page(
         "" => "A run",
         title => title,
     };
-    let mut page = Page::new(title).with_style(beside::STYLE);
+    let mut page = Page::new(title)
+        .with_style(beside::STYLE)
+        .with_style(body::STYLE);
     for warning in summary.record.warnings.iter().chain(summary.warnings) {
         page.warning(warning);
     }
     page.facts(facts(summary));
     page.paragraph("The error of this run is not known: `sinew plan --tolerance` measures it.");
     if let Some(surface) = surface {
-        body::section(&mut page, summary, surface, largest);
+        body::section(&mut page, summary, surface, folder);
     }
     let read = |name: &'static str| -> Result<Option<Table>, RecordRunError> {
         let Some(content) = folder.read(name)? else {

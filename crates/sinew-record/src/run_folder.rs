@@ -49,8 +49,6 @@ pub(crate) struct Beginning {
     pub(crate) schedules: Schedules,
     pub(crate) balance: Balance,
     pub(crate) progress: Progress,
-    /// Displacements (m) of the surface at the instant of the largest one so far.
-    pub(crate) largest: Vec<f64>,
     /// True if the present state was recorded by an earlier process.
     pub(crate) resumed: bool,
     pub(crate) saves: bool,
@@ -59,7 +57,6 @@ pub(crate) struct Beginning {
 /// Results of a recorder.
 pub(crate) struct Recorded {
     pub(crate) progress: Progress,
-    largest: Vec<f64>,
     /// Steps and work since the recorder began.
     pub(crate) steps: usize,
     pub(crate) work: StepReport,
@@ -263,18 +260,16 @@ impl RunFolder {
             Some(world.integrator()),
             schedules.energy,
         );
-        let (mut progress, mut largest) = (Progress::default(), Vec::new());
+        let mut progress = Progress::default();
         if let Some(checkpoint) = checkpoint {
             balance = balance.resumed(checkpoint.progress.energy, checkpoint.row)?;
             progress = checkpoint.progress;
-            largest = checkpoint.largest;
         }
         let (before, begins_at) = (progress.steps, world.t());
         let beginning = Beginning {
             schedules,
             balance,
             progress,
-            largest,
             resumed,
             saves: true,
         };
@@ -334,7 +329,6 @@ impl RunFolder {
             schedules,
             balance,
             progress,
-            largest,
             resumed,
             saves,
         } = beginning;
@@ -352,7 +346,6 @@ impl RunFolder {
         )?;
         let seen = Mutex::new(SeenInFrames {
             seen: progress.seen.clone(),
-            largest,
             seals: progress.seals.frames.clone(),
         });
         let before = progress.steps;
@@ -390,10 +383,9 @@ impl RunFolder {
             };
             let ended = drive(world, &mut shown)?;
             let (steps, work) = (shown.steps() - before, shown.work());
-            let (progress, largest) = recorder.settle()?;
+            let progress = recorder.settle()?;
             Ok(Recorded {
                 progress,
-                largest,
                 steps,
                 work,
                 ended,
@@ -411,7 +403,6 @@ impl RunFolder {
     ) -> Result<RunEnd, RecordRunError> {
         let Recorded {
             mut progress,
-            largest,
             steps,
             work,
             ended,
@@ -476,12 +467,7 @@ impl RunFolder {
         for (frame, seal) in progress.seals.frames.iter().enumerate() {
             seal.check_length(&self.folder, &frames::frame_name(frame))?;
         }
-        let page = report::page(
-            &summary,
-            surface.map(|surface| &**surface),
-            &largest,
-            &self.folder,
-        )?;
+        let page = report::page(&summary, surface.map(|surface| &**surface), &self.folder)?;
         self.folder.write(report::NAME, page.as_bytes())?;
         self.folder.secure()?;
         self.folder

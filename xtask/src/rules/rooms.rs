@@ -63,6 +63,7 @@ pub(super) const ROOMS: &[(&str, &[&str])] = &[
         &[
             "sinew-core",
             "sinew-draw",
+            "sinew-film",
             "sinew-mesh",
             "sinew-fem",
             "sinew-integrators",

@@ -71,15 +71,35 @@ impl<'a> Run<'a> {
         Colouring::find(name, &self.fields)
     }
 
+    /// Times (s) of its frames.
+    pub fn times(&self) -> impl Iterator<Item = f64> {
+        self.series.iter().map(|(t, _)| *t)
+    }
+
     /// Reads the surface at all frames, with the values by which it is coloured.
     ///
     /// # Errors
     /// [`FilmError`] for damaged files.
     pub fn clip(&self, colouring: &Colouring) -> Result<Clip, FilmError> {
+        self.clip_of(colouring, |_| true)
+    }
+
+    /// Reads the surface at the first frame and at those whose time (s) `is_wanted`.
+    ///
+    /// # Errors
+    /// [`FilmError`] for damaged files.
+    pub fn clip_of(
+        &self,
+        colouring: &Colouring,
+        is_wanted: impl Fn(f64) -> bool,
+    ) -> Result<Clip, FilmError> {
         let mut frames = Vec::with_capacity(self.series.len());
         let mut known: Option<(Cells, Arc<Surface>)> = None;
         let mut uncut: Option<Uncut> = None;
-        for (t, name) in &self.series {
+        let wanted = self.series.iter().enumerate();
+        // The faces of cuts are found by the first frame.
+        let wanted = wanted.filter(|(frame, (t, _))| *frame == 0 || is_wanted(*t));
+        for (_, (t, name)) in wanted {
             let mesh = read(self.files, name)?;
             let damaged = |reason: String| FilmError::Damaged {
                 name: name.clone(),

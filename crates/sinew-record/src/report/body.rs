@@ -1,13 +1,18 @@
 //! Pictures of the body.
 
-use sinew_draw::{Page, Surface as Picture};
-use sinew_mesh::BoundarySurface;
+use std::io;
 
-use super::beside;
+use sinew_draw::Page;
+use sinew_draw::markup::escape;
+use sinew_film::{Clip, Colouring, Film, FilmError, Look, Run, Tool, View};
+use sinew_mesh::BoundarySurface;
+use sinew_scene::output::OwnedFolder;
+
+use crate::instruments::Instruments;
 use crate::summary::Summary;
 
-/// Triangles beyond which a page with two pictures takes long to open.
-const MOST_TRIANGLES: usize = 80_000;
+/// Triangles beyond which pictures take longer than a short run.
+const MOST_TRIANGLES: usize = 300_000;
 
 /// Share of the body's size below which a displacement cannot be seen.
 const SEEN: f64 = 0.02;
@@ -15,105 +20,181 @@ const SEEN: f64 = 0.02;
 /// Size of a displacement in the picture, as a share of the body's size, if it would be invisible to scale.
 const DRAWN: f64 = 0.08;
 
-/// The viewing direction of pictures.
-const AWAY: [f64; 3] = [1.0, 1.0, -1.0];
+/// Width and height of a picture.
+const SIZE: &str = "480x270";
 
-/// The body at rest and at its largest motion.
+/// Views of the body.
+const VIEWS: [&str; 4] = ["iso", "front", "right", "top"];
+
+/// Colours of the body at its largest motion; a run without the field has no such picture.
+const COLOURS: [&str; 2] = ["displacement", "stress"];
+
+/// Rules by which the chosen view is shown.
+pub(super) const STYLE: &str = ".views > .beside { display: none; margin-top: .5rem; }\n\
+     .views img { max-width: 100%; height: auto; }\n\
+     .views > label { margin-right: 1rem; }\n\
+     .views > input:nth-of-type(1):checked ~ .beside:nth-of-type(1),\n\
+     .views > input:nth-of-type(2):checked ~ .beside:nth-of-type(2),\n\
+     .views > input:nth-of-type(3):checked ~ .beside:nth-of-type(3),\n\
+     .views > input:nth-of-type(4):checked ~ .beside:nth-of-type(4) { display: flex; }\n\
+     @media print { .views > .beside { display: flex; } }\n";
+
+/// The body at rest and at its largest motion, coloured by displacement and by stress, from four sides.
 pub(super) fn section(
     page: &mut Page,
     summary: &Summary<'_>,
     surface: &BoundarySurface,
-    largest: &[f64],
+    folder: &OwnedFolder,
 ) {
     page.section("body", "The body");
-    let seen = summary.progress.seen.displacement;
-    let moved = largest.as_chunks::<3>().0;
-    // Of a body that was cut there are displacements also where all of them are 0, and no scale would show them.
-    if moved.len() != surface.points.len() || seen.value == 0.0 {
+    if summary.progress.seen.displacement.value == 0.0 {
         page.paragraph("It did not move at any instant of the fields.");
         return;
     }
     if surface.triangles.len() > MOST_TRIANGLES {
         page.paragraph(&format!(
-            "A picture of {} triangles would make this page slow: `surface.vtu` and `fields.pvd` show them.",
+            "Pictures of {} triangles would take long: `sinew film` draws them, and ParaView shows `fields.pvd`.",
             surface.triangles.len()
         ));
         return;
     }
-    let extent = summary.body.system().extent().unwrap_or(1.0);
-    let scale = match seen.value < SEEN * extent {
-        true => round_down(DRAWN * extent / seen.value),
-        false => 1.0,
-    };
-    let place = |factor: f64| -> Vec<[f64; 3]> {
-        let points = surface.points.iter().zip(moved);
-        points
-            .map(|(point, u)| std::array::from_fn(|axis| point[axis] + factor * u[axis]))
-            .collect()
-    };
-    let sizes: Vec<f64> = moved
-        .iter()
-        .map(|u| 1e3 * u.iter().map(|x| x * x).sum::<f64>().sqrt())
-        .collect();
-    let (rest, then) = (surface.points.clone(), place(scale));
-    let view = bounds(rest.iter().chain(&then));
-    let range = Some((0.0, 1e3 * seen.value));
-    let body = summary.body.model().body();
-    let when = match body.is_some_and(|body| body.cut.is_some()) {
-        true => "After the cuts, in the last frame".to_owned(),
-        false => format!("At t = {:.4} s", seen.t),
-    };
-    let words = match scale > 1.0 {
-        true => format!("{when}, displacements drawn {scale} times as large"),
-        false => when,
-    };
-    let pictures = [
-        ("At rest".to_owned(), rest, vec![0.0; sizes.len()]),
-        (words, then, sizes),
-    ];
-    let drawn = pictures.map(|(title, points, values)| {
-        let facing: Vec<[u32; 3]> = surface
-            .triangles
-            .iter()
-            .filter(|triangle| faces(&triangle.map(|point| points[point as usize])))
-            .copied()
-            .collect();
-        let picture = Picture {
-            range,
-            view: Some(view),
-            ..Picture::new(title, &points, &facing, &values, "displacement [mm]")
-        };
-        picture.svg()
-    });
-    beside::figures(page, &drawn);
-}
-
-/// True if a triangle shows its outside to the viewer.
-fn faces([a, b, c]: &[[f64; 3]; 3]) -> bool {
-    let edge = |to: &[f64; 3]| -> [f64; 3] { std::array::from_fn(|axis| to[axis] - a[axis]) };
-    let (p, q) = (edge(b), edge(c));
-    let normal = [
-        p[1] * q[2] - p[2] * q[1],
-        p[2] * q[0] - p[0] * q[2],
-        p[0] * q[1] - p[1] * q[0],
-    ];
-    normal
-        .iter()
-        .zip(AWAY)
-        .map(|(n, away)| n * away)
-        .sum::<f64>()
-        < 0.0
-}
-
-fn bounds<'a>(points: impl Iterator<Item = &'a [f64; 3]>) -> [[f64; 3]; 2] {
-    let mut bounds = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
-    for point in points {
-        for axis in 0..3 {
-            bounds[0][axis] = bounds[0][axis].min(point[axis]);
-            bounds[1][axis] = bounds[1][axis].max(point[axis]);
-        }
+    match Pictures::of(summary, folder).and_then(|pictures| pictures.markup()) {
+        Ok(markup) => page.markup(&markup),
+        Err(error) => page.paragraph(&format!("There are no pictures: {error}.")),
     }
-    bounds
+}
+
+/// Films of the body, each of two frames.
+struct Pictures {
+    /// The factor of displacements.
+    magnified: f64,
+    /// Time (s) of the moved body.
+    t: f64,
+    looks: Vec<Shown>,
+}
+
+/// A row of pictures, one for each view.
+struct Shown {
+    title: String,
+    t: f64,
+    films: Vec<Film>,
+}
+
+impl Pictures {
+    fn of(summary: &Summary<'_>, folder: &OwnedFolder) -> Result<Self, FilmError> {
+        let read = |name: &str| match folder.read(name) {
+            Ok(Some(content)) => Ok(content),
+            Ok(None) => Err(io::Error::from(io::ErrorKind::NotFound)),
+            Err(error) => Err(io::Error::other(error)),
+        };
+        let run = Run::open(&read)?;
+        let body = summary.body.model().body();
+        let is_cut = body.is_some_and(|body| body.cut.is_some());
+        let seen = summary.progress.seen.displacement;
+        let wanted = match is_cut {
+            // The largest displacement may be that of a piece that is gone.
+            true => f64::INFINITY,
+            false => seen.t,
+        };
+        let apart = |t: &f64| (t - wanted).abs();
+        let nearest = run.times().min_by(|a, b| apart(a).total_cmp(&apart(b)));
+        let t = match is_cut {
+            true => run.times().last(),
+            false => nearest,
+        };
+        let t = t.ok_or(FilmError::NothingToShow)?;
+        let extent = summary.body.system().extent().unwrap_or(1.0);
+        let magnified = match seen.value < SEEN * extent {
+            true => round_down(DRAWN * extent / seen.value),
+            false => 1.0,
+        };
+        let mut pictures = Self {
+            magnified,
+            t,
+            looks: Vec::new(),
+        };
+        // Where displacements are not to scale, tools would be in the body or away from it.
+        let tools = match magnified > 1.0 {
+            true => Vec::new(),
+            false => Instruments::of(summary.scene.scene(), &read).tools,
+        };
+        for name in COLOURS {
+            // A run of a surface alone has no stress.
+            let Ok(colouring) = run.colouring(name) else {
+                continue;
+            };
+            let clip = run.clip_of(&colouring, |other| other == t)?;
+            let clip = clip.magnified(magnified);
+            if pictures.looks.is_empty() {
+                let tissue = run.colouring("tissue")?;
+                let first = run.times().next().unwrap_or(0.0);
+                pictures.add(("At the start".to_owned(), first), tissue, &clip, &tools)?;
+            }
+            pictures.add((pictures.title(), t), colouring, &clip, &tools)?;
+        }
+        Ok(pictures)
+    }
+
+    /// Adds a row of pictures at a time (s).
+    fn add(
+        &mut self,
+        (title, t): (String, f64),
+        colouring: Colouring,
+        clip: &Clip,
+        tools: &[Tool],
+    ) -> Result<(), FilmError> {
+        let films = VIEWS.map(|view| {
+            let look = Look {
+                size: SIZE.parse()?,
+                view: view.parse::<View>()?,
+                colouring: colouring.clone(),
+                range: None,
+                title: title.clone(),
+            };
+            Film::new(clip.clone(), tools.to_vec(), &look)
+        });
+        let films: Result<Vec<Film>, FilmError> = films.into_iter().collect();
+        self.looks.push(Shown {
+            title,
+            t,
+            films: films?,
+        });
+        Ok(())
+    }
+
+    /// The title of pictures of the moved body.
+    fn title(&self) -> String {
+        let scale = match self.magnified > 1.0 {
+            true => format!(", displacements {} times as large", self.magnified),
+            false => String::new(),
+        };
+        format!("t = {:.4} s{scale}", self.t)
+    }
+
+    /// Buttons for the views, and the pictures of each.
+    fn markup(&self) -> Result<String, FilmError> {
+        let mut html = "<div class=\"views\">\n".to_owned();
+        for (place, view) in VIEWS.iter().enumerate() {
+            let checked = if place == 0 { " checked" } else { "" };
+            html.push_str(&format!(
+                "<input type=\"radio\" name=\"view\" id=\"view-{view}\"{checked}><label for=\"view-{view}\">{view}</label>\n"
+            ));
+        }
+        for (place, view) in VIEWS.iter().enumerate() {
+            html.push_str("<div class=\"beside\">\n");
+            for shown in &self.looks {
+                let picture = shown.films[place].picture(shown.t);
+                let data = data_encoding::BASE64.encode(&picture.to_png()?);
+                let alt = escape(&format!("The body from {view}: {}", shown.title));
+                html.push_str(&format!(
+                    "<figure><img alt=\"{alt}\" src=\"data:image/png;base64,{data}\"></figure>\n"
+                ));
+            }
+            html.push_str("</div>\n");
+        }
+        html.push_str("</div>\n");
+        Ok(html)
+    }
 }
 
 /// The largest of 1, 2, 5, 10, 20, ... that is not larger.

@@ -154,6 +154,19 @@ fn rows_come_as_often_as_those_of_probes_and_their_size_is_told_before() {
     assert!((500.0..3000.0).contains(&text), "{text}");
     let page = fs::read_to_string(out.join("report.html")).unwrap();
     assert!(page.contains("Forces on tools"));
+    let pictures: Vec<&str> = page.split("src=\"data:image/png;base64,").skip(1).collect();
+    assert_eq!(pictures.len(), 12, "three pictures from four sides");
+    for (at, picture) in pictures.iter().enumerate() {
+        let png = data_encoding::BASE64.decode(picture.split('"').next().unwrap().as_bytes());
+        let png = png.unwrap();
+        // Width and height are in the header.
+        assert_eq!(
+            png[16..24],
+            [480_u32.to_be_bytes(), 270_u32.to_be_bytes()].concat(),
+            "{at}"
+        );
+        assert!(pictures[..at].iter().all(|other| other != picture), "{at}");
+    }
 }
 
 /// Nothing but a plate gives this body energy, many times what it began with.

@@ -25,6 +25,11 @@ pub(super) fn following_from(fault: &Fault) -> Option<String> {
         Fault::Integrator(OptionError::Unknown { key, known, .. }) => {
             takers(key).or_else(|| suggestion(nearest(key, known.iter().copied())))
         }
+        Fault::Value {
+            found, expected, ..
+        } if found.starts_with('"') => {
+            suggestion(nearest(found.trim_matches('"'), words_in(expected)))
+        }
         Fault::MeshFile(error) => error.advice(),
         Fault::Tetrahedra(TetMeshError::UnsupportedCells { kind, .. })
             if kind.linear() != *kind && is_supported(kind.linear()) =>
@@ -53,6 +58,11 @@ pub(super) fn following_from(fault: &Fault) -> Option<String> {
         }
         _ => None,
     }
+}
+
+/// The words in quotation marks of a list of expected values.
+fn words_in(expected: &str) -> impl Iterator<Item = &str> {
+    expected.split('"').skip(1).step_by(2)
 }
 
 /// True if cells of a linear kind can be simulated.

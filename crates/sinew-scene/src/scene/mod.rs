@@ -29,6 +29,7 @@ mod tool_body;
 mod tool_shape;
 
 use std::borrow::Cow;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -196,6 +197,10 @@ impl Scene {
         let document = DeTable::parse(source.text()).map_err(|error| {
             let message = error.message().to_owned();
             let fault = SceneError::new(&source, Fault::Syntax { message });
+            let fault = match has_unit(source.text(), error.span()) {
+                true => fault.with_help(WITHOUT_UNITS),
+                false => fault,
+            };
             match error.span() {
                 Some(span) => fault.at(span),
                 None => fault,
@@ -489,4 +494,27 @@ impl Body {
             selected: selections.parts,
         })
     }
+}
+
+/// Help for a number with a unit.
+const WITHOUT_UNITS: &str =
+    "numbers have no units: they are in m, kg, s, N and Pa, so 6 kPa is 6000.0";
+
+/// True if the line of an error has a number that is followed by a unit.
+fn has_unit(text: &str, span: Option<Range<usize>>) -> bool {
+    let line = span.and_then(|span| {
+        let before = text.get(..span.start)?;
+        let start = before.rfind('\n').map_or(0, |end| end + 1);
+        text[start..].lines().next()
+    });
+    let Some((_, value)) = line.and_then(|line| line.split_once('=')) else {
+        return false;
+    };
+    let value = value.trim_start();
+    let unit = value.trim_start_matches(|c: char| c.is_ascii_digit() || "+-._".contains(c));
+    let is_number = value.len() > unit.len();
+    is_number
+        && unit
+            .trim_start()
+            .starts_with(|c: char| c.is_alphabetic() || c == '%')
 }

@@ -2,7 +2,7 @@
 
 mod arguments;
 mod goal;
-mod instruments;
+mod known;
 mod run_files;
 
 use std::path::{Path, PathBuf};
@@ -13,7 +13,7 @@ use sinew_scene::Scene;
 use sinew_scene::output::{Destination, OwnedFolder, Voice, complain};
 
 use self::goal::{Goal, KIND};
-use self::instruments::known_of;
+use self::known::known_of;
 use self::run_files::read_within;
 use super::Failure;
 use super::interruption::Interruption;
@@ -48,7 +48,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let colouring = frames.colouring(&arguments.colour).map_err(refused)?;
     let clip = frames.clip(&colouring).map_err(refused)?;
     let known = known_of(folder);
-    for missing in &known.missing {
+    for missing in &known.instruments.missing {
         complain(&format!("warning: {missing}"));
     }
     let look = Look {
@@ -61,7 +61,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         },
         title: known.title.unwrap_or_default(),
     };
-    let film = Film::new(clip, known.tools, &look).map_err(refused)?;
+    let film = Film::new(clip, known.instruments.tools, &look).map_err(refused)?;
     let maker = Maker {
         arguments,
         film: &film,

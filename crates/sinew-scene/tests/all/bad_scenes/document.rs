@@ -12,6 +12,17 @@ fn text_that_is_not_toml() {
 }
 
 #[test]
+fn a_number_with_a_unit() {
+    insta::assert_snapshot!(
+        refusal(BODY, "density = 1060.0", "density = 1.06 g/cm3"),
+        @"
+    scene.toml:5: not TOML: unexpected key or value, expected newline, `#`
+    help: numbers have no units: they are in m, kg, s, N and Pa, so 6 kPa is 6000.0
+    "
+    );
+}
+
+#[test]
 fn a_key_given_twice() {
     insta::assert_snapshot!(
         refusal(BODY, "density = 1060.0", "density = 1060.0\ndensity = 1060.0"),

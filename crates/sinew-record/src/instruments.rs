@@ -1,51 +1,39 @@
-//! The tools of a run: parts from its scene, poses from its table.
+//! The instruments of a run: parts from its scene, poses from its table.
 
-use std::path::{Path, PathBuf};
+use std::io;
 
-use serde_json::Value;
 use sinew_film::{Part, PoseAt, Shape, Tool, back_of, blades_of_strokes, poses_of_table};
-use sinew_scene::{Blade, Body, Scene, SceneSource, Subject, ToolPath, ToolShape};
+use sinew_scene::{Blade, Body, Scene, Subject, ToolPath, ToolShape};
 
-use super::run_files::read_within;
+use crate::tool_rows;
 
-/// The title of a run and its instruments, as far as they are known.
-pub(super) struct Known {
-    pub(super) title: Option<String>,
-    pub(super) tools: Vec<Tool>,
-    /// Things missing from the picture, each with the reason.
-    pub(super) missing: Vec<String>,
+/// The instruments of a run, as far as they are known.
+#[derive(Default)]
+pub struct Instruments {
+    /// Tools and blades with their motion.
+    pub tools: Vec<Tool>,
+    /// Things missing from a picture, each with the reason.
+    pub missing: Vec<String>,
 }
 
-/// The title and the tools that the scene of a run folder describes.
-pub(super) fn known_of(folder: &Path) -> Known {
-    let scene = match scene_of(folder) {
-        Ok(scene) => scene,
-        Err(reason) => {
-            return Known {
-                title: None,
-                tools: Vec::new(),
-                missing: vec![format!("tools are not shown: {reason}")],
-            };
+impl Instruments {
+    /// The instruments of a scene's run whose files `read` returns by their names. The file of strokes is read where
+    /// the scene says.
+    #[must_use]
+    pub fn of(scene: &Scene, read: &dyn Fn(&str) -> io::Result<Vec<u8>>) -> Self {
+        let mut known = Self::default();
+        if let Subject::Body(body) = scene.subject() {
+            known.add_tools(read, body);
+            known.add_blades(scene, body);
         }
-    };
-    let mut known = Known {
-        title: Some(scene.title_or_path().into_owned()),
-        tools: Vec::new(),
-        missing: Vec::new(),
-    };
-    if let Subject::Body(body) = scene.subject() {
-        known.add_tools(folder, body);
-        known.add_blades(&scene, body);
+        known
     }
-    known
-}
 
-impl Known {
-    fn add_tools(&mut self, folder: &Path, body: &Body) {
+    fn add_tools(&mut self, read: &dyn Fn(&str) -> io::Result<Vec<u8>>, body: &Body) {
         if body.tools.is_empty() {
             return;
         }
-        let table = match read_within(folder, "tools.csv") {
+        let table = match read(tool_rows::NAME) {
             Ok(table) => String::from_utf8_lossy(&table).into_owned(),
             Err(reason) => {
                 self.missing
@@ -98,22 +86,6 @@ impl Known {
             }
         }
     }
-}
-
-/// The scene of a run folder. Its files may be absent: only its text is needed.
-fn scene_of(folder: &Path) -> Result<Scene, String> {
-    let read = |name: &str| {
-        let bytes = read_within(folder, name).map_err(|reason| format!("{name}: {reason}"))?;
-        String::from_utf8(bytes).map_err(|reason| format!("{name}: {reason}"))
-    };
-    let record = read("run.json")?;
-    let record: Value =
-        serde_json::from_str(&record).map_err(|reason| format!("run.json: {reason}"))?;
-    let path = record["scene"]
-        .as_str()
-        .map_or_else(|| folder.join("scene.toml"), PathBuf::from);
-    let source = SceneSource::new(path, read("scene.toml")?);
-    Scene::parse(source).map_err(|error| format!("scene.toml: {error}"))
 }
 
 fn shape(shape: &ToolShape, poses: &[PoseAt]) -> Shape {
