@@ -65,11 +65,8 @@ pub(super) fn section(
 }
 
 /// Films of the body, each of two frames.
+#[derive(Default)]
 struct Pictures {
-    /// The factor of displacements.
-    magnified: f64,
-    /// Time (s) of the moved body.
-    t: f64,
     looks: Vec<Shown>,
 }
 
@@ -108,11 +105,15 @@ impl Pictures {
             true => round_down(DRAWN * extent / seen.value),
             false => 1.0,
         };
-        let mut pictures = Self {
-            magnified,
-            t,
-            looks: Vec::new(),
+        let then = match is_cut {
+            true => "In the last frame",
+            false => "At the largest displacement",
         };
+        let then = match magnified > 1.0 {
+            true => format!("{then}, drawn {magnified} times as large"),
+            false => then.to_owned(),
+        };
+        let mut pictures = Self::default();
         // Where displacements are not to scale, tools would be in the body or away from it.
         let tools = match magnified > 1.0 {
             true => Vec::new(),
@@ -130,7 +131,7 @@ impl Pictures {
                 let first = run.times().next().unwrap_or(0.0);
                 pictures.add(("At the start".to_owned(), first), tissue, &clip, &tools)?;
             }
-            pictures.add((pictures.title(), t), colouring, &clip, &tools)?;
+            pictures.add((then.clone(), t), colouring, &clip, &tools)?;
         }
         Ok(pictures)
     }
@@ -160,15 +161,6 @@ impl Pictures {
             films: films?,
         });
         Ok(())
-    }
-
-    /// The title of pictures of the moved body.
-    fn title(&self) -> String {
-        let scale = match self.magnified > 1.0 {
-            true => format!(", displacements {} times as large", self.magnified),
-            false => String::new(),
-        };
-        format!("t = {:.4} s{scale}", self.t)
     }
 
     /// Buttons for the views, and the pictures of each.
