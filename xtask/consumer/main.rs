@@ -1,9 +1,10 @@
-//! A program that has the library from its packages: a scene, a state at rest by the factorisation, and a run that stays there.
+//! A program that uses the library from its packages: a scene, an equilibrium by factorisation, and a run that stays in
+//! it.
 
 use sinew::prelude::*;
 use sinew::scene::SceneSource;
 
-/// Without lateral contraction a pressed cube becomes shorter by `p L / E` (m).
+/// Without lateral contraction a compressed cube becomes shorter by `p L / E` (m).
 const SHORTER: f64 = 10.0 * 0.1 / 3500.0;
 
 const PRESSED: &str = r#"

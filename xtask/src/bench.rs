@@ -53,8 +53,8 @@ pub(crate) struct Arguments {
     /// with 1 if a mark is not passed
     #[arg(long, conflicts_with_all = ["scenes", "integrators", "steps", "beside"])]
     hard: bool,
-    /// Measure the kernels of all machines instead, beside plain loops and what the computer can do, and guard
-    /// what makes them fast; exits with 1 if a guard does not hold
+    /// Measure the kernels of all machines instead, compared with plain loops and the peak rates of the computer, and
+    /// check the ratios that show if they are fast; exits with 1 if a guard does not hold
     #[arg(long, conflicts_with_all = ["scenes", "integrators", "steps", "hard", "beside"])]
     kernels: bool,
     /// Measure methods, laws and elements on tissue of large deformation instead: errors in time and of the mesh, cost, energy, smallest
@@ -115,7 +115,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     })
 }
 
-/// Runs a bench that reads and writes these files, shows how far it is, and writes its results.
+/// Runs a bench that reads and writes these files, shows its progress, and writes its results.
 fn measure(
     arguments: &Arguments,
     (inputs, outputs): (Vec<PathBuf>, Vec<String>),
@@ -275,7 +275,8 @@ fn folder(arguments: &Arguments, inputs: &[PathBuf]) -> Folder {
     }
 }
 
-/// The kind of bench, which is also the name of its folder under `target`, so that none writes over the report of another.
+/// The kind of bench, which is also the name of its folder under `target`, so that no bench overwrites the report of
+/// another.
 fn kind(arguments: &Arguments) -> &'static str {
     let [full, quick] = if arguments.hard {
         ["bench-hard", "bench-hard-quick"]

@@ -12,13 +12,13 @@ use crate::failure::Failure;
 use crate::repository::root;
 use crate::{book, compare, memory, python_test, rules, to_a_scene};
 
-/// Seed of the random cases of properties, so that a failure is due to a change and not to new cases. `cargo test`
-/// alone draws new cases each time.
+/// Seed of the random cases of properties, so that a failure is due to a change and not to new cases. Only `cargo test`
+/// draws new cases each time.
 const SEED_OF_CASES: &str = "1";
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// Go on after a check that fails; all that failed are named at the end.
+    /// Continue after a failed check; all failed checks are named at the end.
     #[arg(long)]
     keep_going: bool,
 }
@@ -37,8 +37,8 @@ enum Check {
     Own(fn() -> Result<(), Failure>),
 }
 
-/// All steps in order. Those that build the same objects follow each other; no step has flags of its own, so that each builds
-/// only what those before it have not built.
+/// All steps in order. Those that build the same objects follow each other; no step has its own flags, so that each
+/// builds only what previous steps have not built.
 const STEPS: &[Step] = &[
     own("rules", check_rules),
     cargo("formatting", "fmt --all --check"),
@@ -162,7 +162,7 @@ struct Failed {
 }
 
 impl Failed {
-    /// The value of a check that did not fail; a failure is noted, or ends the run if `is_last`.
+    /// The value of a check that did not fail; a failure is recorded, or ends the run if `is_last`.
     fn without<T>(
         &mut self,
         name: &str,
@@ -198,7 +198,7 @@ fn watch_memory_if_possible() -> Result<(), Failure> {
     }
 }
 
-/// Runs a check with programs of this machine, or says in a line why they are missing.
+/// Runs a check with programs of this machine, or prints a line with the reason why they are missing.
 fn if_possible<P>(
     found: Result<P, Failure>,
     check: impl FnOnce(&P) -> Result<(), Failure>,
@@ -209,7 +209,7 @@ fn if_possible<P>(
     }
 }
 
-/// A program, or the reason why this machine has none. A pip that fails is an error.
+/// A program, or the reason why it is absent on this machine. A pip that fails is an error.
 fn unless_missing<P>(python: Result<P, Failure>) -> Result<Result<P, String>, Failure> {
     match python {
         Ok(python) => Ok(Ok(python)),
@@ -218,7 +218,7 @@ fn unless_missing<P>(python: Result<P, Failure>) -> Result<Result<P, String>, Fa
     }
 }
 
-/// Runs cargo in the repository. The error is why it did not succeed.
+/// Runs cargo in the repository. The error is the reason why it did not succeed.
 fn run_cargo(arguments: &str) -> Result<(), String> {
     let status = Command::new(env!("CARGO"))
         .args(arguments.split_whitespace())

@@ -79,8 +79,9 @@ fn host() -> Result<String, Failure> {
     Ok(host.to_owned())
 }
 
-/// Builds the command for any processor of the target; `RUSTFLAGS` of the caller do not count. For this computer's own target
-/// it shares the libraries of every other release build: only the command itself is compiled and linked as flags ask.
+/// Builds the command for any processor of the target; `RUSTFLAGS` of the caller have no effect. For this computer's
+/// own target it shares the libraries of every other release build: only the command itself is compiled and linked with
+/// these flags.
 fn build(target: &str, host: &str) -> Result<PathBuf, Failure> {
     let mut output = root().join("target");
     let mut cargo = Command::new(env!("CARGO"));
@@ -102,7 +103,7 @@ fn build(target: &str, host: &str) -> Result<PathBuf, Failure> {
     Ok(output.join("release").join(program))
 }
 
-/// Flags of rustc that make the program as independent as it may be.
+/// Flags of rustc that make the program as independent as possible.
 fn flags(target: &str) -> Option<&'static str> {
     let is_gnu = target.contains("-linux-gnu");
     (!is_gnu || has_static_libc()).then_some("-Ctarget-feature=+crt-static")

@@ -8,7 +8,7 @@ use sinew_scene::output::{Destination, OutputError, say};
 use crate::failure::Failure;
 use crate::repository::root;
 
-/// The case of which README and book show a plot.
+/// The case whose plot is shown in README and book.
 const CASE: &str = "paper-cube";
 /// A stability map of the hard cases that the book shows.
 const MAP: &str = "map-poisson.svg";
@@ -19,8 +19,8 @@ const CHAPTER: &str = "docs/book/src/bench.md";
 const BEGIN: &str = "<!-- bench -->\n";
 const END: &str = "<!-- end -->";
 
-/// Brings the table and the pictures of the book's chapter on the bench up to the last bench and the last hard bench; its picture of a large deformation is
-/// computed.
+/// Updates the table and the pictures of the book's chapter on the bench from the last bench and the last hard bench;
+/// the picture of a large deformation is computed.
 pub(crate) fn run() -> Result<(), Failure> {
     let inputs = [
         root().join("target/bench-hard").join(MAP),
@@ -79,7 +79,7 @@ pub(crate) fn run() -> Result<(), Failure> {
     Ok(())
 }
 
-/// The text with this table and a line on the computer between its marks; `None` if it has none.
+/// The text with this table and a line on the computer between its marks; `None` without marks.
 fn with_table(text: &str, table: &str, machine: &str) -> Option<String> {
     let (before, rest) = text.split_once(BEGIN)?;
     let (_, after) = rest.split_once(END)?;

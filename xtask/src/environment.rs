@@ -1,5 +1,4 @@
-//! Virtual environments of Python in `target/`, for packages with programs and for packages that are installed from
-//! here.
+//! Virtual environments of Python in `target/`, for packages with programs and for packages of this repository.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -10,7 +9,7 @@ use sinew_scene::output::say;
 use crate::failure::Failure;
 use crate::python::{find, last_line};
 
-/// The file that lists the contents of an environment, written once it is complete.
+/// The file that lists the contents of an environment, written when it is complete.
 const COMPLETE: &str = "complete.txt";
 
 /// The oldest Python that the package supports.
@@ -22,10 +21,10 @@ pub(crate) struct Environment {
 }
 
 impl Environment {
-    /// The environment with these packages under `target`, made unless it is there.
+    /// The environment with these packages under `target`, created if absent.
     ///
     /// # Errors
-    /// [`Failure::Input`] if there is no Python 3.10 or later with venv and pip, [`Failure::Chore`] where pip fails.
+    /// [`Failure::Input`] if there is no Python 3.10 or later with venv and pip, [`Failure::Chore`] if pip fails.
     pub(crate) fn with(name: &str, packages: &[&str], target: &Path) -> Result<Self, Failure> {
         let (program, version) = supported()?;
         let own = Self {

@@ -16,7 +16,7 @@ const SCENES: &str = "scenes/ready";
 const PICTURES: &str = "docs/book/src/gallery";
 /// Size of a picture (pixels).
 const SIZE: &str = "720x405";
-/// Scenes whose motion is seen without colours; the others are coloured by their displacement.
+/// Scenes whose motion is visible without colours; the others are coloured by their displacement.
 const TISSUE: [&str; 9] = [
     "artery",
     "handle",
@@ -31,7 +31,7 @@ const TISSUE: [&str; 9] = [
 /// Scene of the README's film, and the film.
 const FILM: (&str, &str) = ("retract", "docs/film.png");
 
-/// Runs every ready scene, and draws each at the instant of its largest displacement.
+/// Runs every ready scene, and draws each of them at the instant of its largest displacement.
 ///
 /// # Errors
 /// [`Failure::Chore`] for the first run or picture that fails.

@@ -1,4 +1,4 @@
-//! A mesh of gmsh that is too large to be committed.
+//! A mesh from gmsh that is too large to be committed.
 
 use std::path::PathBuf;
 
@@ -16,8 +16,8 @@ const PACKAGES: Packages = Packages {
     beside_libraries: true,
 };
 
-/// The file of a block of some 50,000 tetrahedra, which gmsh makes unless it exists; `None`, with a line on the
-/// reason, if that fails.
+/// The file of a block of some 50,000 tetrahedra, which gmsh creates unless it exists; `None`, after a line with the
+/// reason, if this fails.
 pub(crate) fn block() -> Result<Option<PathBuf>, Failure> {
     let target = root().join("target");
     let file = target.join("gmsh-block.msh");

@@ -1,4 +1,5 @@
-//! `cargo xtask laws`: energies in arithmetic of 50 digits, written by mpmath and from the literature, against the laws here.
+//! `cargo xtask laws`: energies in 50-digit arithmetic, computed by mpmath from formulas of the literature, compared
+//! with the laws here.
 
 use std::process::Stdio;
 
@@ -21,7 +22,7 @@ const PACKAGES: Packages = Packages {
     beside_libraries: false,
 };
 
-/// Deformations of each law.
+/// Number of deformations for each law.
 const SAMPLES: usize = 40;
 
 const FILE: &str = "laws.json";

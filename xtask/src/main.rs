@@ -52,9 +52,9 @@ struct Arguments {
 enum Chore {
     /// Measure error, cost and stability of integrators on scenes.
     Bench(bench::Arguments),
-    /// Compute every figure that the library is held to and compare it: closed forms, published digits and tables.
+    /// Compute every required figure of the library and compare it: closed forms, published digits and tables.
     Verify(verify::Arguments),
-    /// Compare the kernels' speed in a portable build with one for this very processor.
+    /// Compare the kernels' speed in a portable build with one for this processor.
     Native,
     /// Run the kernels' tests under a program that watches memory: Miri or valgrind.
     Memory,
@@ -68,18 +68,21 @@ enum Chore {
     Laws,
     /// Build the Python package sinew-sim as a wheel; pip installs maturin into target/.
     Wheel(wheel::Arguments),
-    /// Try the Python package in environments of its own: tests, examples, notebook, types, and without Rust; pip installs what they
-    /// need into target/. Part of `ci`.
+    /// Test the Python package in separate environments: tests, examples, notebook, types, and without Rust; pip
+    /// installs what they need into target/. Part of `ci`.
     PythonTest,
-    /// Try the live page in Chromium without a window: a hand, fingers, a blade, strangers, speed; skipped where there is no Chromium.
+    /// Test the live page in Chromium without a window: a hand, fingers, a blade, strangers, speed; skipped if Chromium
+    /// is absent.
     LiveTest(live_test::Arguments),
-    /// Lose the power under runs on a disk of their own and go on with them; skipped where none can be mounted. Needs root, ext4 and perl.
+    /// Lose the power during runs on a separate disk and continue them; skipped if none can be mounted. Needs root,
+    /// ext4 and perl.
     PowerLoss(power_loss::Arguments),
-    /// Bring the table and the pictures of the book's chapter on the bench up to the last bench and the last hard bench.
+    /// Update the table and the pictures of the book's chapter on the bench from the last bench and the last hard
+    /// bench.
     Docs,
     /// Draw the pictures of the ready scenes in the book, and the film of the README, by runs of them.
     Gallery,
-    /// Build the book into target/book by mdBook; part of `ci` where there is one.
+    /// Build the book into target/book by mdBook; part of `ci` if mdBook is installed.
     Book(book::Arguments),
     /// Write the reference and the JSON schema of scenes into docs.
     Reference,
@@ -88,7 +91,8 @@ enum Chore {
     /// Run the commands of docs/to-a-scene.md and those that errors name for files of other programs; pip installs what they need into
     /// target/. Part of `ci`.
     ToAScene,
-    /// Pack the command with scenes, meshes and documents into an archive for computers without Rust, and try it elsewhere.
+    /// Pack the command with scenes, meshes and documents into an archive for computers without Rust, and test it in
+    /// another place.
     Dist(dist::Arguments),
     /// Check the rules of ARCHITECTURE.md that a machine can check; part of `ci`.
     Rules,

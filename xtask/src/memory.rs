@@ -10,14 +10,14 @@ use crate::repository::root;
 
 const TESTS: [&str; 3] = ["test", "-psinew-sparse", "--no-default-features"];
 
-/// Test programs with a part of the names of their tests: sweeps of every kind against their definition.
+/// Test programs, each with a part of the names of their tests: sweeps of every kind compared with their definition.
 const PROGRAMS: [(&[&str], &str); 2] = [(&["--lib"], ""), (&["--test", "all"], "sweeps::")];
 
-/// Runs the tests under valgrind (the portable and the AVX2 kernels; it knows no AVX-512), and under Miri (the portable ones),
-/// whichever is there.
+/// Runs the tests under valgrind (the portable and the AVX2 kernels; it does not support AVX-512), and under Miri (the
+/// portable ones), as far as these are installed.
 ///
 /// # Errors
-/// [`Failure::Input`] if neither is.
+/// [`Failure::Input`] if neither is installed.
 pub(crate) fn run() -> Result<(), Failure> {
     let (valgrind, miri) = (has_valgrind(), has_miri());
     if valgrind {
@@ -49,8 +49,8 @@ fn succeeds(command: &mut Command) -> bool {
     command.output().is_ok_and(|output| output.status.success())
 }
 
-/// Tests of the whole workspace by the beginnings of their names, with the source of their program: the machines, which move bodies by the force loops of
-/// `sinew-fem`, and their threads.
+/// Tests of the whole workspace by the beginnings of their names, with the source of their program: the machines, which
+/// move bodies with the force loops of `sinew-fem`, and their threads.
 const OF_WORKSPACE: (&str, [&str; 2]) = (
     "crates/sinew-machines/tests/all/main.rs",
     ["elements::kernels_", "threads::templates_"],
@@ -74,7 +74,7 @@ pub(crate) fn under_valgrind() -> Result<(), Failure> {
         .try_for_each(|filter| watch(&binaries, filter))
 }
 
-/// Builds test programs; cargo's messages.
+/// Builds test programs; returns cargo's messages.
 fn built(arguments: &[&str]) -> Result<String, Failure> {
     let build = Command::new(env!("CARGO"))
         .args(arguments)
@@ -90,7 +90,7 @@ fn built(arguments: &[&str]) -> Result<String, Failure> {
     }
 }
 
-/// Runs the tests of programs that have this in their names under valgrind.
+/// Runs the tests of programs whose names contain this text under valgrind.
 fn watch(binaries: &[PathBuf], filter: &str) -> Result<(), Failure> {
     for binary in binaries {
         say(&format!("== valgrind {} {filter}", binary.display()))?;
@@ -110,7 +110,7 @@ fn watch(binaries: &[PathBuf], filter: &str) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The programs that a build made of sources whose paths end like this, of cargo's messages.
+/// The programs that a build produced from sources whose paths end like this, from cargo's messages.
 fn binaries(messages: &str, source: &str) -> Vec<PathBuf> {
     let messages = messages
         .lines()

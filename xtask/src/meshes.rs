@@ -17,7 +17,7 @@ const PAPER_EDGE: f64 = 0.2;
 const SLIVER_CUBE: (usize, f64) = (5, 0.1);
 /// Ratios of an ordinary element's thickness to the sliver's.
 const THINNESS: [u32; 3] = [20, 100, 1000];
-/// The cube with an inclusion: cells along an edge, how many of them in the core, edge (m).
+/// The cube with an inclusion: cells along an edge, number of cells in the core, edge (m).
 const INCLUSION_CUBE: (usize, usize, f64) = (6, 2, 0.1);
 
 pub(crate) fn run() -> Result<(), Failure> {

@@ -1,4 +1,4 @@
-//! `cargo xtask native`: a portable build of the kernels compared with one for this very processor.
+//! `cargo xtask native`: a portable build of the kernels compared with one for this processor.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -8,13 +8,13 @@ use sinew_scene::output::say;
 use crate::failure::Failure;
 use crate::repository::root;
 
-/// Runs of each program, in turn.
+/// Number of runs of each program, alternating.
 const RUNS: usize = 9;
 
-/// Speed of the portable build over the other's, at least.
+/// Minimum speed of the portable build over that of the other.
 const LEAST: f64 = 0.95;
 
-/// Builds the kernels' laps twice, runs both in turn and compares the medians of their ratios.
+/// Builds the kernels' laps twice, runs both alternately and compares the medians of their ratios.
 pub(crate) fn run() -> Result<(), Failure> {
     let portable = build("", &root().join("target"))?;
     let native = build("-Ctarget-cpu=native", &root().join("target/native"))?;
@@ -51,7 +51,7 @@ pub(crate) fn run() -> Result<(), Failure> {
     }
 }
 
-/// The program that makes laps, built with these flags.
+/// Builds the program for laps with these flags.
 fn build(flags: &str, target: &Path) -> Result<PathBuf, Failure> {
     let status = Command::new(env!("CARGO"))
         .args([

@@ -1,4 +1,4 @@
-//! `cargo xtask power-loss`: the rest of a run after a loss of power.
+//! `cargo xtask power-loss`: continuation of a run after a loss of power.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -21,28 +21,28 @@ pub(crate) struct Arguments {
     sinew: Option<PathBuf>,
 }
 
-/// Losses of power while a run writes.
+/// Number of power losses while a run writes.
 const LOSSES: u64 = 8;
 
-/// A run of some seconds that leaves a checkpoint at every chance.
+/// A run of some seconds that writes a checkpoint as often as possible.
 const SCENE: &str = "[mesh]\ncube = { cells = 6, edge = 0.1 }\n[[region]]\ndensity = 1060.0\nmodel = \"linear\"\n\
                      youngs_modulus = 3500.0\npoissons_ratio = 0.3\n[damping]\nmass = 1.0\n[[fixed]]\n\
                      group = \"bottom\"\n[[load]]\ngroup = \"top\"\npressure = 60.0\n[run]\nduration = 120.0\n\
                      integrator = \"central-difference\"\ndt = 0.001\n[[probe]]\nname = \"top\"\n\
                      point = [0.05, 0.05, 0.1]\n[output]\ncheckpoint = { every = 0.05 }\nfields = { frames = 400 }\n";
 
-/// Stops the file system of a folder as a loss of power does: data not yet on the disk are lost (`EXT4_IOC_SHUTDOWN`
+/// Stops the file system of a folder like a loss of power: data not yet on the disk are lost (`EXT4_IOC_SHUTDOWN`
 /// without flushing the log, include/uapi/linux/ext4.h).
 const SHUTDOWN: &str = "open(my $f, '<', $ARGV[0]) or die $!; my $flags = pack('L', 2); ioctl($f, 0x8004587d, $flags) or die $!";
 
-/// A file system of its own, in a file.
+/// A separate file system, in a file.
 struct Disk {
     image: PathBuf,
     place: PathBuf,
 }
 
 impl Disk {
-    /// Makes one, or says why this computer cannot.
+    /// Creates one, or returns the reason why this computer cannot.
     fn new(folder: &Path) -> Result<Self, String> {
         let (image, place) = (folder.join("disk.img"), folder.join("disk"));
         fs::create_dir(&place).map_err(|error| error.to_string())?;
@@ -122,7 +122,8 @@ impl Bench {
     }
 }
 
-/// Loses the power while a run writes and when one has just ended. Whatever is left, going on gives the files of a run that nothing happened to.
+/// Cuts the power while a run writes and when a run has just ended. In every case, the continued run must give the
+/// files of an undisturbed run.
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let place = TempDir::new().map_err(Failure::chore)?;
     let disk = match Disk::new(place.path()) {
@@ -175,7 +176,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     ))?)
 }
 
-/// Loses the power under a run, and gives it back.
+/// Cuts the power during a run, and restores it.
 fn lose_power(disk: &Disk, run: &mut Child) -> Result<(), Failure> {
     disk.lose_power().map_err(Failure::chore)?;
     // One that notices ends by itself.

@@ -6,7 +6,7 @@ use std::process::Command;
 use crate::failure::Failure;
 use crate::repository::root;
 
-/// Builds it in release mode; then its path.
+/// Builds it in release mode; returns its path.
 pub(crate) fn build() -> Result<PathBuf, Failure> {
     let status = Command::new(env!("CARGO"))
         .args(["build", "--release", "--quiet", "-psinew"])

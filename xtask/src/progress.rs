@@ -3,7 +3,7 @@
 use indicatif::{ProgressBar, ProgressStyle};
 use sinew_verify::Progress;
 
-/// A bar that follows a bench. Hidden where standard error is no terminal.
+/// A bar that follows a bench. Hidden if standard error is no terminal.
 pub(crate) struct Bar(ProgressBar);
 
 impl Bar {

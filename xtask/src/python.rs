@@ -33,11 +33,11 @@ pub(crate) struct Python {
 }
 
 impl Python {
-    /// Finds Python and installs the packages under `target` unless they are there.
+    /// Finds Python and installs the packages under `target` if absent.
     ///
     /// # Errors
     ///
-    /// [`Failure::Input`] if there is no Python 3 or no pip, [`Failure::Chore`] where pip fails.
+    /// [`Failure::Input`] if there is no Python 3 or no pip, [`Failure::Chore`] if pip fails.
     pub(crate) fn with(packages: &Packages, target: &Path) -> Result<Self, Failure> {
         let (program, version) = find().ok_or_else(|| {
             Failure::Input(format!(
@@ -88,7 +88,7 @@ pub(crate) fn find() -> Option<(&'static str, String)> {
     })
 }
 
-/// Installs into a folder of another name and renames it when all is there.
+/// Installs into a temporary folder and renames it when the installation is complete.
 fn install(program: &str, packages: &Packages, folder: &Path) -> Result<(), Failure> {
     let pip = |arguments: &[&str]| {
         let mut command = Command::new(program);

@@ -1,4 +1,4 @@
-//! `cargo xtask python-test`: the Python package as its users have it, tried in virtual environments.
+//! `cargo xtask python-test`: the Python package as users receive it, tested in virtual environments.
 
 use std::path::Path;
 use std::process::Command;
@@ -32,7 +32,7 @@ const PACKAGE: &str = "crates/sinew-py";
 /// The PATH of a computer without Rust.
 const PATH_WITHOUT_RUST: &str = "/usr/bin:/bin";
 
-/// The example that an environment with nothing but the wheel runs.
+/// The example that runs in an environment with only the wheel.
 const TWELVE_LINES: &str = "examples/twelve_lines.py";
 
 pub(crate) fn run() -> Result<(), Failure> {
@@ -42,7 +42,7 @@ pub(crate) fn run() -> Result<(), Failure> {
 /// The environment of the tests, without the package itself.
 ///
 /// # Errors
-/// As [`Environment::with`].
+/// Same as [`Environment::with`].
 pub(crate) fn environment() -> Result<Environment, Failure> {
     Environment::with("python-test", PACKAGES, &root().join("target"))
 }

@@ -13,8 +13,9 @@ use crate::repository::root;
 /// Chapters of the book.
 const BOOK: &str = "docs/book/src";
 
-/// Commands that take too long, or need what not every computer has, with the reason. With `--help` behind it, which reads
-/// all options before it and then ends, each still fails where an option is gone.
+/// Commands that take too long, or need something that not every computer has, with the reason. Each is run with
+/// `--help` at its end, which reads all previous options and then ends, so that it still fails if an option no longer
+/// exists.
 const NOT_RUN: [(&str, &str); 20] = [
     (
         "cargo run --release -p sinew -- live ball.toml",
@@ -82,8 +83,9 @@ enum Block<'a> {
     Commands(Vec<&'a str>),
 }
 
-/// Runs the commands of README.md and of each chapter of the book, in order, each document in a folder of its own that has the scenes and the
-/// meshes as a clone has them. It is within `target`, where cargo finds the workspace, so that nothing is built again.
+/// Runs the commands of README.md and of each chapter of the book, in order, each document in its own folder with the
+/// scenes and the meshes of a clone. The folder is within `target`, where cargo finds the workspace, so that nothing is
+/// built again.
 ///
 /// # Errors
 /// [`Failure::Chore`] for the first command that fails.
@@ -168,7 +170,7 @@ fn folder(path: &Path) -> std::io::Result<PathBuf> {
     Ok(path.to_owned())
 }
 
-/// The form of a command in which it is run here.
+/// The form of a command for running it here.
 fn as_run(command: &str) -> String {
     match NOT_RUN.iter().any(|(other, _)| *other == command) {
         true => format!("{command} --help"),
@@ -176,7 +178,7 @@ fn as_run(command: &str) -> String {
     }
 }
 
-/// The scenes that are saved and the commands of a text, in order.
+/// The scenes to be saved and the commands of a text, in order.
 fn blocks(text: &str) -> Vec<Block<'_>> {
     let mut found = Vec::new();
     let mut rest = text;
@@ -250,7 +252,7 @@ mod tests {
         lines.flatten().collect()
     }
 
-    /// Keys that a fragment of a scene leaves out.
+    /// Keys that a fragment of a scene does not contain.
     const REST: &str = r#"
 [mesh]
 cube = { cells = 2, edge = 0.1 }

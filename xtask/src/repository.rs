@@ -1,4 +1,4 @@
-//! The place of the repository.
+//! The location of the repository.
 
 use std::path::{Path, PathBuf};
 

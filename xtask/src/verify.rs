@@ -16,7 +16,7 @@ const KIND: &str = "verify";
 /// Subjects to verify, and the folder for page and JSON.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// Run the rows that take long, too
+    /// Also run the rows that take long
     #[arg(long)]
     long: bool,
     /// A subject by its short name; may be given several times [default: all]
@@ -50,7 +50,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     conclude(&verification, &folder, arguments.all)
 }
 
-/// Writes and prints everything, then fails if a row does.
+/// Writes and prints everything, then fails if a row fails.
 fn conclude(verification: &Verification, folder: &OutputFolder, all: bool) -> Result<(), Failure> {
     let written = verification.write(folder).map_err(|error| match error {
         WriteVerificationError::Output(error) => error.into(),

@@ -17,7 +17,7 @@ pub(crate) struct Arguments {
     /// Folder of the wheel
     #[arg(long, value_name = "DIR", default_value = "target/wheel")]
     out: PathBuf,
-    /// Make a source distribution too, and build the wheel from it: all is compiled again
+    /// Also make a source distribution, and build the wheel from it: everything is compiled again
     #[arg(long)]
     sdist: bool,
 }
@@ -29,7 +29,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     Ok(say(&format!("{}: {megabytes:.1} MB", wheel.display()))?)
 }
 
-/// Builds the wheel into a folder, removing others from it; returns its path.
+/// Builds the wheel into a folder, removing other wheels from it; returns its path.
 ///
 /// # Errors
 /// Same as [`Environment::with`], and [`Failure::Chore`] if the build fails.

@@ -43,7 +43,7 @@ pub enum BenchError {
     /// No scene could be measured.
     #[error("{}", in_one_line(.0))]
     Cases(Vec<CaseError>),
-    /// There is no thread to measure on.
+    /// No thread could be started for the measurement.
     #[error(transparent)]
     Thread(#[from] ThreadError),
 }
@@ -66,9 +66,8 @@ pub fn default_steps(dt: f64, quick: bool) -> Vec<f64> {
 }
 
 impl Bench {
-    /// Measures everything on one thread. A run that diverges is a row like any other; one that
-    /// cannot be made is listed with its reason, and so is a scene that cannot be read or has no
-    /// reference: the others are measured.
+    /// Measures everything on one thread. A run that diverges is a row like any other; a run that is not possible is
+    /// listed with its reason, and so is a scene that cannot be read or has no reference: the others are measured.
     ///
     /// # Errors
     /// [`BenchError`] for mistakes in the request, before anything is measured, and if
@@ -173,7 +172,7 @@ impl Bench {
         scene_files(&self.scenes)
     }
 
-    /// The names of the files that [`write_all`](crate::report::write_all) writes of the results.
+    /// The names of the files that [`write_all`](crate::report::write_all) writes for the results.
     #[must_use]
     pub fn output_files(&self) -> Vec<String> {
         file_names(&case_ids(&self.scenes), &[])
@@ -218,8 +217,8 @@ pub(crate) fn case_ids(scenes: &[PathBuf]) -> Vec<String> {
     named_cases(scenes).into_iter().map(|(id, _)| id).collect()
 }
 
-/// Each scene once, with an id that no other has: the name of its file, of its folder and its file,
-/// or of its file with a number, whichever is free.
+/// Each scene once, with a unique id: the name of its file, of its folder and its file, or of its file with a number,
+/// whichever is not in use.
 fn named_cases(scenes: &[PathBuf]) -> Vec<(String, &Path)> {
     let names: Vec<String> = scenes.iter().map(|scene| Case::id_of(scene)).collect();
     let mut seen = BTreeSet::new();
@@ -249,7 +248,7 @@ fn load(id: String, scene: &Path) -> Result<Case, CaseError> {
     Case::new(id, Scene::load(scene)?.build()?)
 }
 
-/// A method as it runs on a case, and the variants that reach other parts of the front.
+/// A method as it runs on a case, and its variants for other parts of the Pareto front.
 fn variants(case: &Case, integrator: &str) -> Vec<MethodChoice> {
     let plain = MethodChoice::on(case, integrator);
     let entry = sinew_integrators::entry(integrator);
@@ -263,8 +262,8 @@ fn variants(case: &Case, integrator: &str) -> Vec<MethodChoice> {
     variants
 }
 
-/// Longest steps at which a method is measured that is exact over a step: shorter ones cost more
-/// and are no better.
+/// Number of steps, the longest ones, at which a method that is exact over a step is measured: shorter steps cost more
+/// and are not more accurate.
 const STEPS_OF_EXACT_METHODS: usize = 4;
 
 /// True if the error of a method does not depend on the step.

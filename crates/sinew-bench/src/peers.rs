@@ -1,19 +1,19 @@
 //! Errors and costs of other systems on the peers' cube, measured by us.
 //!
-//! Measured once, on one machine and one thread, each program on the same mesh with the same lumped
-//! mass and load. Those times are not comparable with times from other machines, so only ratios to one
-//! rival's cost leave this module; `cargo xtask bench --beside scipy` runs that rival again.
+//! Measured once, on one machine and one thread, each program on the same mesh with the same lumped mass and load.
+//! Those times are not comparable with times from other machines, so this module only provides ratios to one rival's
+//! cost; `cargo xtask bench --beside scipy` runs that rival again.
 
-/// Id of the case the figures belong to.
+/// Id of the case to which the figures belong.
 pub const CASE: &str = "peers-cube";
 
 /// The day of the measurements, and of the newest source or package of each program.
 pub const MEASURED_ON: &str = "20 November 2026";
 
-/// The machine they were made on.
+/// The machine of the measurements.
 pub const MACHINE: &str = "one machine of two shared cores, one thread used";
 
-/// The body, its load and how errors were taken.
+/// The body, its load and the definition of errors.
 pub const BODY: &str = "a cube of 0.1 m in 10 × 10 × 10 cells (6000 tetrahedra, 2673 free degrees of \
      freedom), 1060 kg/m³, E 3500 Pa, ν 0.45, undamped, held in all lateral faces; 0.042135 N in all on \
      the 81 free nodes of the top from t = 0 on; error against the modal solution at 10, 20, .. 1000 ms";
@@ -26,14 +26,14 @@ const SCIPY: f64 = 0.065;
 pub struct Peer {
     /// System and method.
     pub who: &'static str,
-    /// The release that ran, or that it was built from the source of [`MEASURED_ON`].
+    /// The release that ran, or that was built from the source of [`MEASURED_ON`].
     pub version: &'static str,
     /// Step, or number of modes and step.
     pub setting: &'static str,
-    /// Error (%) with the digits that were noted.
+    /// Error (%) with the recorded digits.
     pub error: &'static str,
-    /// Cost over that of scipy's central difference at 1 ms (ratio), set-up left out; none for
-    /// methods that never come near 5 %.
+    /// Cost over that of scipy's central difference at 1 ms (ratio), without set-up; none for methods that never reach
+    /// about 5 %.
     pub cost: Option<f64>,
     /// A remark; may be empty.
     pub note: &'static str,

@@ -1,8 +1,7 @@
 //! Results of a bench: the content of `results.json`.
 //!
-//! JSON has no NaN and no infinity. A figure that need not be there is an `Option`; any other number
-//! that is not finite is written as `null`, read as NaN, and named with its reason in the list
-//! `missing`, so that only this number is lost.
+//! JSON has no NaN and no infinity. An optional figure is an `Option`; any other number that is not finite is written
+//! as `null`, read as NaN, and named with its reason in the list `missing`, so that only this number is lost.
 
 use serde::{Deserialize, Serialize};
 use sinew_measure::{CaseInfo, Row};
@@ -40,7 +39,7 @@ pub struct BenchResults {
     pub cases: Vec<CaseInfo>,
     /// One row per run.
     pub rows: Vec<Row>,
-    /// Runs that were requested and not made.
+    /// Requested runs that were not executed.
     #[serde(default)]
     pub skipped: Vec<Skipped>,
     /// Missing scenes and maps. The written file also lists the numbers that cannot be shown;
@@ -55,7 +54,7 @@ pub struct BenchResults {
     pub maps: Vec<StabilityMap>,
 }
 
-/// A run that was requested and not made.
+/// A requested run that was not executed.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Skipped {
     /// Id of the case.
@@ -64,7 +63,7 @@ pub struct Skipped {
     pub integrator: String,
     /// Step (s).
     pub dt: f64,
-    /// Reason why it was not made.
+    /// Reason why it was not executed.
     pub reason: String,
 }
 
@@ -87,7 +86,7 @@ impl BenchResults {
         }
     }
 
-    /// The marks that are not passed.
+    /// The marks that failed.
     pub fn failed_marks(&self) -> impl Iterator<Item = &Mark> {
         let failed = |mark: &&Mark| mark.verdict == MarkVerdict::Fail;
         self.marks.iter().filter(failed)
@@ -98,7 +97,7 @@ impl BenchResults {
         self.rows.iter().filter(move |row| row.case == case)
     }
 
-    /// Ids of the cases: those described, then those that only rows name.
+    /// Ids of the cases: those with a description, then those that appear only in rows.
     #[must_use]
     pub fn case_ids(&self) -> Vec<&str> {
         let described = self.cases.iter().map(|case| case.id.as_str());
@@ -120,8 +119,7 @@ impl BenchResults {
 }
 
 impl BenchResults {
-    /// The missing things: those found as the bench ran, and every number that cannot
-    /// be shown.
+    /// The missing results: those found during the bench, and every number that cannot be shown.
     #[must_use]
     pub fn all_missing(&self) -> Vec<Missing> {
         let mut all = self.missing.clone();

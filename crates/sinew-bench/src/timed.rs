@@ -36,13 +36,13 @@ pub enum TimedRunError {
 /// Time of some work (s).
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Spent {
-    /// Time on the wall.
+    /// Wall time.
     pub(crate) wall: f64,
     /// CPU time of this thread.
     pub(crate) cpu: f64,
 }
 
-/// Time of work that cannot fail, or whose result is looked at elsewhere.
+/// Time of work that cannot fail, or whose result is checked elsewhere.
 pub(crate) fn time<R>(work: impl FnOnce() -> R) -> (R, Spent) {
     let (wall, cpu) = (Instant::now(), thread_cpu_time());
     let done = work();

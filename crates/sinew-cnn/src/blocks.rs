@@ -42,7 +42,7 @@ impl CellBlocks {
         }
     }
 
-    /// The inverse of each block; directions in which a block is zero stay without effect.
+    /// The inverse of each block; directions in which a block is zero have no effect.
     pub(crate) fn inverse(&self) -> Self {
         let mut inverse = self.clone();
         for block in inverse.entries.chunks_exact_mut(self.layers * self.layers) {

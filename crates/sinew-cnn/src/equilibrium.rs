@@ -5,7 +5,7 @@ use sinew_core::vectors::{add_scaled, dot, norm};
 
 use crate::blocks::CellBlocks;
 
-/// Most products with K.
+/// Largest number of products with K.
 const MOST_PRODUCTS: usize = 20_000;
 
 /// Displacement of a body at rest under forces, with its residual.
@@ -18,7 +18,7 @@ pub struct Equilibrium {
 }
 
 /// The displacement at rest under forces f (N), to a residual of `enough` times their norm, by conjugate gradients with
-/// the cells' own blocks for a preconditioner (Hestenes and Stiefel, J. Res. Natl. Bur. Stand. 49, 1952), which needs
+/// the cells' diagonal blocks as preconditioner (Hestenes and Stiefel, J. Res. Natl. Bur. Stand. 49, 1952), which needs
 /// no factor. The residual is larger if forces move an unsupported component. Motions without resistance do not
 /// contribute otherwise.
 #[must_use]

@@ -1,4 +1,4 @@
-//! Symmetric block Gauss-Seidel iterations, which no program expresses: they visit one cell after the other.
+//! Symmetric block Gauss-Seidel iterations, which no program can express: they process one cell after the other.
 
 use crate::blocks::CellBlocks;
 use crate::majorant::Majorant;

@@ -1,4 +1,4 @@
-//! A block-diagonal matrix that bounds from above the matrix that a large step needs.
+//! A block-diagonal upper bound of the matrix that a large step needs.
 
 use std::sync::Arc;
 
@@ -40,15 +40,14 @@ pub enum Blend {
 /// share of `dt/2 D'` in P moves that share of the damping to the middle of the step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DampingShare {
-    /// The share s, as of `dt^2/4 K`. The rest lags by half a step as it does in central difference.
+    /// The share s, as of `dt^2/4 K`. The rest lags by half a step as in central difference.
     AsStiffness,
-    /// The whole, at every step.
+    /// The whole damping, at every step.
     Whole,
 }
 
-/// `P1 = M' + gamma blockdiag(W)`: one block per cell, above `A = M' + W`, where
-/// `M' = (1 + alpha dt/2) M` and W is the part of `G = dt/2 D' + dt^2/4 K` that is added, D' being the
-/// damping other than alpha M.
+/// `P1 = M' + gamma blockdiag(W)`: one block per cell, an upper bound of `A = M' + W`, where `M' = (1 + alpha dt/2) M`
+/// and W is the part of `G = dt/2 D' + dt^2/4 K` that is added, D' being the damping other than alpha M.
 ///
 /// A step needs `P > dt/2 alpha M + G`. With mu the largest eigenvalue of `M^-1 G`, M' alone
 /// suffices up to mu = 1, the limit of central difference; P1 is then M'. Beyond,
@@ -64,7 +63,7 @@ pub struct Majorant {
     damping_share: f64,
     mass_suffices: bool,
     gamma: f64,
-    /// `gamma blockdiag(W)`; empty where M' suffices.
+    /// `gamma blockdiag(W)`; empty if M' suffices.
     added: CellBlocks,
     inverse: Arc<CellBlocks>,
     floor: f64,
@@ -161,7 +160,7 @@ impl Majorant {
         self.damping_share
     }
 
-    /// The factor gamma in `W <= gamma blockdiag(W)`; 0 where M' suffices.
+    /// The factor gamma in `W <= gamma blockdiag(W)`; 0 if M' suffices.
     #[must_use]
     pub fn gamma(&self) -> f64 {
         self.gamma
@@ -197,7 +196,7 @@ impl Majorant {
         &self.inverse
     }
 
-    /// `gamma blockdiag(W)`; empty where M' suffices.
+    /// `gamma blockdiag(W)`; empty if M' suffices.
     #[must_use]
     pub(crate) fn added(&self) -> &CellBlocks {
         &self.added
@@ -245,7 +244,7 @@ impl Majorant {
         }
     }
 
-    /// `out = (dt/2 D + dt^2/4 K) x`: the matrix that P must exceed.
+    /// `out = (dt/2 D + dt^2/4 K) x`: the matrix below P.
     pub(crate) fn multiply_required(&self, x: &[f64], out: &mut [f64]) {
         out.fill(0.0);
         let damping = self.operators.damping();
@@ -306,9 +305,9 @@ impl Majorant {
     }
 }
 
-/// Rounds a positive number down to 26 binary digits. Eigenvalues found by iteration differ in their
-/// last digits with the order of nodes and the unit of length, and would let the motion differ with
-/// them; if a smaller number is on the safe side those digits are given up.
+/// Rounds a positive number down to 26 binary digits. Eigenvalues found by iteration differ in their last digits with
+/// the order of nodes and the unit of length, and would make the motion depend on these; if a smaller number is on the
+/// safe side, those digits are discarded.
 fn blunted(value: f64) -> f64 {
     f64::from_bits(value.to_bits() & !((1 << 26) - 1))
 }

@@ -16,8 +16,8 @@ const MOST_SWEEPS: usize = 10_000;
 const SWEEPS_A_LOOK: usize = 20;
 
 impl Program {
-    /// One sweep of the power iteration a step: `v <- M^-1 K u`, then `u <- v/scale` (1/s^2). With a
-    /// scale not below any eigenvalue of `M^-1 K` no vector grows.
+    /// One sweep of the power iteration per step: `v <- M^-1 K u`, then `u <- v/scale` (1/s^2). With a scale not below
+    /// any eigenvalue of `M^-1 K` no vector grows.
     #[must_use]
     pub fn power_iteration(scale: f64) -> Self {
         let (u, v) = (Register::U, Register::V);
@@ -28,10 +28,10 @@ impl Program {
     }
 }
 
-/// The largest eigenvalue (1/s^2) of `M^-1 K`, from below, by the power iteration on a machine (Golub
-/// and Van Loan, Matrix Computations, section 8.2): sweeps and dot products, which even a
-/// machine with a memory of its own offers. It is followed until it rises by less than `tolerance`
-/// of itself in 20 sweeps. [`sinew_core::spectrum`] needs far fewer.
+/// The largest eigenvalue (1/s^2) of `M^-1 K`, from below, by the power iteration on a machine (Golub and Van Loan,
+/// Matrix Computations, section 8.2): sweeps and dot products, which even a machine with its own memory provides. The
+/// iteration continues until the estimate rises by less than the share `tolerance` in 20 sweeps.
+/// [`sinew_core::spectrum`] needs far fewer.
 ///
 /// # Errors
 /// [`StepError`] when the machine cannot run.
@@ -71,7 +71,7 @@ pub fn largest_eigenvalue(
 }
 
 /// A bound (1/s^2) of the eigenvalues of `M^-1 K`: the largest row sum (Gershgorin) of the similar matrix
-/// `M^-1/2 K M^-1/2`, which unequal masses do not spoil. Infinite if an entry is not a number.
+/// `M^-1/2 K M^-1/2`, which stays close for unequal masses. Infinite if an entry is not a number.
 fn bound(operators: &LinearOperators) -> f64 {
     let stiffness = operators.stiffness();
     let (mass, layers) = (operators.mass(), stiffness.layers().count());

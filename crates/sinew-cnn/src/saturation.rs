@@ -22,7 +22,7 @@ impl Default for Saturation {
 pub struct SaturationError(f64);
 
 impl Saturation {
-    /// A saturation that never sets in.
+    /// No saturation at any velocity.
     pub const OFF: Self = Self {
         voltage: f64::INFINITY,
     };

@@ -6,15 +6,16 @@ use sinew_core::{FreePart, LinearOperators};
 use crate::blocks::CellBlocks;
 use crate::rigid::{RigidMotions, by_diagonal};
 
-/// Most products that its search takes.
+/// Largest number of products of its search.
 const MOST_PRODUCTS: usize = 400;
 
-/// Products between two checks, and the relative change of the square of its frequency between them at which it is
-/// found.
+/// Number of products between two checks, and the relative change of the squared frequency between them at which it has
+/// converged.
 const LOOK: usize = 10;
 const FOUND: f64 = 1e-4;
 
-/// The slowest motion that strains a body, or one about as slow: to some thousandths of its frequency, or a few hundredths in bodies that are much longer than thick.
+/// The slowest motion that strains a body, or one of nearly the same frequency: to some thousandths of its frequency,
+/// or a few hundredths in bodies that are much longer than thick.
 #[derive(Debug)]
 pub(crate) struct SlowestMode {
     /// Its shape.
@@ -24,9 +25,9 @@ pub(crate) struct SlowestMode {
 }
 
 impl SlowestMode {
-    /// Lowers Rayleigh's quotient of K and M by conjugate gradients (Bradbury and Fletcher, Numer. Math. 9, 1966)
-    /// with the blocks of K for a preconditioner and directions of Polak and Ribiere, orthogonal to the rigid motions
-    /// of these parts; `None` if nothing is strained.
+    /// Lowers Rayleigh's quotient of K and M by conjugate gradients (Bradbury and Fletcher, Numer. Math. 9, 1966) with
+    /// the diagonal blocks of K as preconditioner and directions of Polak and Ribiere, orthogonal to the rigid motions
+    /// of these parts; `None` if there is no strain.
     pub(crate) fn of(operators: &LinearOperators, parts: &[FreePart]) -> Option<Self> {
         let (stiffness, mass) = (operators.stiffness(), operators.mass());
         let mut rigid: Vec<RigidMotions> = parts.iter().cloned().map(RigidMotions::new).collect();

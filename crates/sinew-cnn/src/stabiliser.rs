@@ -1,4 +1,4 @@
-//! The matrix P that takes the place of M, and its inverse by sweeps of the network.
+//! The matrix P that replaces M, and its inverse by sweeps of the network.
 
 use std::sync::Arc;
 
@@ -14,16 +14,17 @@ use crate::rigid::{Deflation, Projection};
 use crate::slowest::SlowestMode;
 use crate::{Machine, ReferenceMachine};
 
-/// Ways in which P is built from a [`Majorant`] P1 and its A. All start cold: truncated iterations that
-/// start from the last step's result are not a fixed P, and blow up.
+/// Ways in which P is built from a [`Majorant`] P1 and its A. All start from zero: truncated iterations that start from
+/// the last step's result are not a fixed P, and diverge.
 ///
-/// One iteration cannot take the whole damping, which would add `gamma blockdiag` of it to the inertia: it takes
-/// [`DampingShare::AsStiffness`]. More iterations take [`DampingShare::Whole`], so that damping is centred in time.
+/// One iteration cannot include the whole damping, because this would add `gamma blockdiag` of the damping to the
+/// inertia: it includes [`DampingShare::AsStiffness`]. More iterations include [`DampingShare::Whole`], so that damping
+/// is centred in time.
 ///
-/// Where M' suffices ([`Majorant::mass_suffices`]) every kind is the Neumann series about M' with as
-/// many products: `P = A (I - (I - M'^-1 A)^p)^-1`. With `X = M'^-1 dt/2 D' < I` each mode of X has
-/// `P = M' (1 + X)/(1 - (-X)^p) >= M'`, and is off from A by X^p where lagging damping is off by X;
-/// iterations about blocks would move the slowest modes by more than that.
+/// If M' suffices ([`Majorant::mass_suffices`]), every kind is the Neumann series about M' with as many products:
+/// `P = A (I - (I - M'^-1 A)^p)^-1`. With `X = M'^-1 dt/2 D' < I` each mode of X has
+/// `P = M' (1 + X)/(1 - (-X)^p) >= M'`, and differs from A by X^p, while lagging damping differs by X; iterations about
+/// blocks would change the slowest modes by more than that.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Inner {
     /// P = P1: one block per cell, no sweep besides the step's own.
@@ -82,13 +83,13 @@ impl Inner {
     }
 }
 
-/// A symmetric positive definite P, above A or above M' where M' suffices, and its inverse.
+/// A symmetric positive definite P above A, or above M' if M' suffices, and its inverse.
 ///
-/// With `P > dt/2 D + dt^2/4 K` the leapfrog step `P (v+ - v-) = dt (F - K u - D v-)`, `u += dt v+`
-/// never gains energy, at any step (see [`Stabiliser::certificate`]).
+/// With `P > dt/2 D + dt^2/4 K` the leapfrog step `P (v+ - v-) = dt (F - K u - D v-)`, `u += dt v+` never gains energy,
+/// at any step (see [`Stabiliser::certificate`]).
 ///
-/// Where parts may move as rigid bodies, which strain nothing, P is M' on these motions ([`Stabiliser::sparing`]): so
-/// an unsupported body falls, flies and turns as it would at any step.
+/// For parts that may move as rigid bodies, P equals M' on these motions, which cause no strain
+/// ([`Stabiliser::sparing`]): so an unsupported body falls, flies and turns as it would at any step.
 #[derive(Clone, Debug)]
 pub struct Stabiliser {
     majorant: Majorant,
@@ -103,31 +104,31 @@ pub struct Stabiliser {
 pub struct Slowing {
     /// Its period (s).
     pub period: f64,
-    /// Its period in the steps that are taken, as a multiple of that.
+    /// Its period in the current steps, as a multiple of [`Slowing::period`].
     pub factor: f64,
 }
 
 /// The slowest elastic motion, which does not depend on the step.
 struct Slowest(Option<SlowestMode>);
 
-/// Rigid motions that P leaves M'.
+/// Rigid motions for which P equals M'.
 #[derive(Clone, Debug)]
 enum Spared {
     None,
     /// Rigid motions deflated from the blocks.
     Blocks(Arc<Deflation>),
-    /// Beside an iteration.
+    /// Rigid motions projected out of an iteration.
     Iteration(Arc<Projection>),
 }
 
-/// Energy of W in a motion, as a share of its energy in the blocks, below which it is a rigid one to rounding.
+/// Energy of W in a motion, as a share of its energy in the blocks, below which it is rigid to rounding.
 const RIGID: f64 = 1e-10;
 
-/// Iterations by which a solution begins and continues.
+/// Iterations of a solution.
 enum Iteration {
     /// No sweep beyond the first.
     Single,
-    /// `P_p = A (I - (I - P1^-1 A)^p)^-1`, above A for every p where P1 is above A.
+    /// `P_p = A (I - (I - P1^-1 A)^p)^-1`, above A for every p if P1 is above A.
     Jacobi(u64),
     /// Chebyshev iteration (Saad, Iterative Methods for Sparse Linear Systems, algorithm 12.1) on
     /// [floor, 1], which contains the spectrum of `P1^-1 A`. The residual polynomial is at most
@@ -154,8 +155,8 @@ impl Stabiliser {
         }
     }
 
-    /// The same with P = M' on the rigid motions of these parts that W does not resist. P stays above A: with the
-    /// blocks by [`Deflation`], with an iteration by [`Projection`].
+    /// The same stabiliser with P = M' on the rigid motions of these parts that W does not resist. P stays above A:
+    /// with the blocks by [`Deflation`], with an iteration by [`Projection`].
     #[must_use]
     pub fn sparing(mut self, parts: Vec<FreePart>) -> Self {
         if self.majorant.adds_nothing() || self.majorant.mass_suffices() {
@@ -223,9 +224,8 @@ impl Stabiliser {
         parts
     }
 
-    /// The slowest elastic motion and by how much steps slow it down, by the inertia that it has in P instead of M;
-    /// `None` if nothing is added or nothing strained.
-    /// Its first request takes some hundred sweeps.
+    /// The slowest elastic motion and the factor by which steps slow it down, due to its inertia in P instead of M;
+    /// `None` if nothing is added or there is no strain. The first call takes some hundred sweeps.
     #[must_use]
     pub fn slowing(&self) -> Option<Slowing> {
         let majorant = &self.majorant;
@@ -268,20 +268,20 @@ impl Stabiliser {
         })
     }
 
-    /// True if rigid motions are spared, so that P takes sums over all cells of a part.
+    /// True if P equals M' on rigid motions, so that P needs sums over all cells of a part.
     #[must_use]
     pub fn spares(&self) -> bool {
         !matches!(self.spared, Spared::None)
     }
 
-    /// True if P consists of one block for each cell, apart from rigid motions that it may spare: a force on a cell
+    /// True if P consists of one block for each cell, apart from rigid motions on which it equals M': a force on a cell
     /// then moves only that cell, or its part as a rigid body.
     #[must_use]
     pub fn is_of_blocks(&self) -> bool {
         self.inner.is_single()
     }
 
-    /// The rigid motions that its blocks leave out, if P consists of blocks alone.
+    /// The rigid motions that its blocks omit, if P consists of blocks alone.
     #[must_use]
     pub fn deflation(&self) -> Option<&Arc<Deflation>> {
         match &self.spared {
@@ -290,14 +290,14 @@ impl Stabiliser {
         }
     }
 
-    /// The block majorant behind it.
+    /// The block majorant from which it is built.
     #[must_use]
     pub fn majorant(&self) -> &Majorant {
         &self.majorant
     }
 
-    /// Sweeps after which each cell knows `P^-1 r`, r being rho of the sweep `right_side`; `None` where
-    /// no program can express it, since it visits one cell after the other, or needs sums over all of them.
+    /// Sweeps after which each cell knows `P^-1 r`, r being rho of the sweep `right_side`; `None` if no program can
+    /// express it, because it processes one cell after the other, or needs sums over all cells.
     pub fn sweeps(&self, program: &mut Program, right_side: Sweep) -> Option<Solution> {
         if self.spares() {
             return None;
@@ -393,7 +393,7 @@ impl Stabiliser {
         )
     }
 
-    /// `P^-1` with scratch space of its own.
+    /// `P^-1` with its own scratch space.
     #[must_use]
     pub fn solver(&self) -> Inverse {
         Inverse::new(self)
@@ -404,7 +404,7 @@ impl Stabiliser {
         self.solver().solve(r, out);
     }
 
-    /// The iteration in the order of the cells, if that is the inner one.
+    /// The iteration in the order of the cells, if this is the inner iteration.
     fn gauss_seidel(&self) -> Option<GaussSeidel> {
         match self.inner {
             Inner::GaussSeidel { sweeps } if !self.majorant.mass_suffices() => {
@@ -469,7 +469,7 @@ fn extend_last<const N: usize>(sweeps: &mut [Sweep], updates: [Update; N]) {
     }
 }
 
-/// The sweep that keeps its rho in `r`.
+/// The sweep that stores its rho in `r`.
 fn first_of_many(right_side: Sweep, r: Register) -> Vec<Sweep> {
     vec![right_side.over(Quotient::Plain).then(r.becomes_q())]
 }

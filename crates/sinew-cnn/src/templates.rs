@@ -9,7 +9,7 @@ pub enum TemplateError {
     /// A cell without mass has no control template.
     #[error("{cell} has a mass of {mass} kg: expected a finite mass above 0")]
     Mass {
-        /// The cell, in the system's words.
+        /// The cell, as the system names it.
         cell: String,
         /// Its mass (kg).
         mass: f64,
@@ -18,9 +18,9 @@ pub enum TemplateError {
 
 /// A = -M^-1 K, C = M^-1 D and B = M^-1 of a linear system (paper, Eq. 7).
 ///
-/// They are kept in factored form: the symmetric matrices M, D and K, shared with the system, so
-/// that a network costs no memory of its own, proportional damping needs no template C, and a
-/// sweep gives the same bits as the system's own force divided by the mass.
+/// They are stored in factored form: the symmetric matrices M, D and K, shared with the system, so that a network needs
+/// no additional memory, proportional damping needs no template C, and a sweep gives the same bits as the system's own
+/// force divided by the mass.
 #[derive(Clone, Debug)]
 pub struct Templates {
     operators: LinearOperators,

@@ -18,10 +18,10 @@ pub struct Batch<'a> {
     loads: Option<[Revision; 2]>,
     steps: usize,
     taken: usize,
-    /// Substeps of a step, and those taken of the current step.
+    /// Number of substeps of a step, and of those already taken in the current step.
     parts: u32,
     parts_taken: u32,
-    /// Substeps of the current step after which it pauses.
+    /// Number of substeps of the current step after which the batch pauses.
     pause: u32,
     /// Work of the current step.
     step_work: StepReport,
@@ -46,16 +46,16 @@ pub struct Step<'a> {
 /// Parts of the state that the host may read or change as a step ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct HostNeeds<'a> {
-    /// True if it reads all of u, v and the acceleration.
+    /// True if the host reads all of u, v and the acceleration.
     pub all: bool,
-    /// Degrees of freedom whose displacement it samples.
+    /// Degrees of freedom whose displacement the host samples.
     pub watched: &'a [u32],
-    /// Cells whose u and v contact may read and change: it requests those near its tools ([`ShowCells`]).
+    /// Cells whose u and v contact may read and change: contact requests those near its tools ([`ShowCells`]).
     pub contact: &'a [u32],
 }
 
 impl HostNeeds<'_> {
-    /// True if it reads and changes nothing.
+    /// True if the host reads and changes nothing.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         !self.all && self.watched.is_empty() && self.contact.is_empty()
@@ -76,7 +76,7 @@ pub struct Stepped {
 }
 
 impl Stepped {
-    /// A step to u and v at the same time that keeps no acceleration.
+    /// Result of a step that gives u and v at the same time and keeps no acceleration.
     #[must_use]
     pub fn at_same_time(work: StepReport) -> Self {
         Self {
@@ -266,7 +266,8 @@ impl<'a> Batch<'a> {
         self.work
     }
 
-    /// The degree of freedom farthest beyond the limit, if any: the last step taken is the first after which it was.
+    /// The degree of freedom farthest beyond the limit, if any. The last step taken is the first one that moved it
+    /// there.
     #[must_use]
     pub fn diverged(&self) -> Option<usize> {
         self.diverged
@@ -285,13 +286,13 @@ impl<'a> Batch<'a> {
         self.taken + 1 >= self.steps && next == self.parts || next == self.pause
     }
 
-    /// Parts of the state that the host may read or change as a step or substep ends, `ahead` of them after the next
-    /// one (0).
+    /// Parts of the state that the host may read or change at the end of a step or substep: of the next one if `ahead`
+    /// is 0, otherwise of the one `ahead` places after it.
     ///
-    /// Known beforehand for a machine with a memory of its own, such as a graphics processor: data that no step needs
-    /// can stay there. The last one of a batch shows all cells, and so does each one if the system reads the state
-    /// after every step. A machine that finds a displacement beyond [`Batch::divergence_limit`], or an error, shows
-    /// all cells as well.
+    /// A machine with its own memory, such as a graphics processor, asks in advance: data that the host does not need
+    /// can stay there. The last step of a batch shows all cells, and so does each step if the system reads the state
+    /// after every step. A machine that finds a displacement beyond [`Batch::divergence_limit`], or an error, shows all
+    /// cells as well.
     #[must_use]
     pub fn host_needs(&self, ahead: usize) -> HostNeeds<'_> {
         let next = self.parts_taken as usize + ahead + 1;
@@ -307,7 +308,7 @@ impl<'a> Batch<'a> {
         }
     }
 
-    /// Number of next steps or substeps at whose ends the host reads and changes nothing.
+    /// Number of coming steps or substeps after which the host reads and changes nothing.
     #[must_use]
     pub fn steps_alone(&self) -> usize {
         // Needs repeat from step to step, but for the end and a pause, which is within a step.
@@ -326,7 +327,7 @@ impl<'a> Batch<'a> {
         }
     }
 
-    /// Limits of the guard that clamps the steps, if there is one.
+    /// Limits of the guard that clamps the steps, if any.
     #[must_use]
     pub fn guarding(&self) -> Option<&Guarding> {
         self.guarding.as_ref()
@@ -370,8 +371,8 @@ impl<'a> Batch<'a> {
         }
     }
 
-    /// Brings a staggered velocity to the displacement's time, for methods whose own is not
-    /// staggered. Only the first step after another method took the state does so.
+    /// Brings a staggered velocity to the displacement's time, for methods that do not stagger velocities. It acts only
+    /// in the first step after another method advanced the state.
     ///
     /// # Errors
     /// [`StepError::Refused`] when the system refuses the state.
@@ -391,8 +392,8 @@ impl<'a> Batch<'a> {
         Ok(())
     }
 
-    /// Takes all steps by calling `step` for each: it advances u, v and all else in the state, and leaves the clock to
-    /// the batch.
+    /// Takes all steps by calling `step` for each. `step` advances u, v and all other data of the state; the batch
+    /// advances the clock.
     ///
     /// # Errors
     /// The error of the first step that fails.
@@ -415,7 +416,8 @@ impl<'a> Batch<'a> {
         Ok(())
     }
 
-    /// Ends a step or substep that has advanced the state and clamped it if necessary. [`Batch::each`] does so itself.
+    /// Ends a step or substep that has advanced the state and clamped it if necessary. [`Batch::each`] calls this
+    /// function automatically.
     ///
     /// # Errors
     /// [`StepError::Refused`] when the system does not accept the state, which is then that of the end of the step.
@@ -520,9 +522,9 @@ impl<'a> Batch<'a> {
         result
     }
 
-    /// Runs `body` on the next step or substep alone, divided into equal substeps of its own: their number may differ
-    /// for the next one. It is a trial until [`Batch::keep_trial`] or [`Batch::discard_trial`] is called: its work
-    /// counts, but it is not taken and not sampled.
+    /// Runs `body` on the next step or substep only, divided into `parts` equal substeps; the step after it may have
+    /// another number. The step is a trial until [`Batch::keep_trial`] or [`Batch::discard_trial`] is called: its work
+    /// counts, but it does not count as taken and is not sampled.
     pub fn try_in_parts<R>(&mut self, parts: u32, body: impl FnOnce(&mut Self) -> R) -> R {
         let whole = (
             self.dt,
@@ -566,7 +568,7 @@ impl<'a> Batch<'a> {
         }
     }
 
-    /// Forgets a trial but for the work that it cost, so that the same step is taken again.
+    /// Discards a trial except the count of its work; the same step is then taken again.
     pub fn discard_trial(&mut self) {
         self.diverged = None;
         self.work += StepReport {
@@ -576,7 +578,7 @@ impl<'a> Batch<'a> {
         };
     }
 
-    /// Runs `body` on steps that are each clamped; the guard is given back.
+    /// Runs `body` on steps that are each clamped, and returns the guard afterwards.
     pub fn guarded<R>(
         &mut self,
         guarding: Guarding,

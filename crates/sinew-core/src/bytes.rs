@@ -22,7 +22,7 @@ pub enum BytesError {
         kind: &'static str,
         /// Bytes given.
         found: usize,
-        /// Bytes that the head announces, or those of the shortest content if the head itself is cut.
+        /// Number of bytes stated in the header, or of the shortest content if the header itself is cut.
         expected: usize,
     },
     /// Too many bytes.
@@ -32,16 +32,16 @@ pub enum BytesError {
         kind: &'static str,
         /// Bytes given.
         found: usize,
-        /// Bytes that the head announces.
+        /// Number of bytes stated in the header.
         expected: usize,
     },
-    /// Bytes that were changed.
+    /// Bytes that were modified.
     #[error("the {kind} is damaged: its checksum is another")]
     Damaged {
         /// Kind of value that was expected.
         kind: &'static str,
     },
-    /// A content that is never written.
+    /// Content that is never written.
     #[error("the {kind} is of another make: its {part} cannot be")]
     Content {
         /// Kind of value that was expected.
@@ -98,7 +98,7 @@ impl Kind {
         BytesError::Content { kind, part }
     }
 
-    /// The content of whole and undamaged bytes.
+    /// Returns the content of complete, undamaged bytes.
     fn open(self, bytes: &[u8]) -> Result<&[u8], BytesError> {
         let Self { name, words: kind } = self;
         let found = bytes.len();

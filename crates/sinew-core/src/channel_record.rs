@@ -15,7 +15,7 @@ pub(crate) struct Record {
 pub enum Between {
     /// Piecewise constant: a value applies from its time until the next. Used for forces.
     Hold,
-    /// Straight lines: positions, whose speed is then known to damping.
+    /// Straight lines: used for positions, so that damping knows their speed.
     Line,
 }
 
@@ -80,7 +80,7 @@ impl Record {
         }
     }
 
-    /// Lines from a value at `t` (s) on.
+    /// A record of lines that begins with a value at `t` (s).
     pub(crate) fn line(t: f64, value: f64) -> Self {
         Self {
             value: Ramp::Table {
@@ -91,7 +91,7 @@ impl Record {
         }
     }
 
-    /// Lines without a beginning, which are 0 until there is a point.
+    /// A record of lines without a first point: 0 until a point is added.
     pub(crate) fn open_line() -> Self {
         Self {
             value: Ramp::Table {
@@ -102,7 +102,7 @@ impl Record {
         }
     }
 
-    /// Factors of a ramp, none yet.
+    /// An empty record of factors of a ramp.
     pub(crate) fn scaling(of: Ramp) -> Self {
         Self {
             value: Ramp::Scaled(Box::new(of), Scaling::default()),
@@ -136,7 +136,7 @@ impl Record {
         Ok(())
     }
 
-    /// Adds a value that [`Record::check`] lets pass.
+    /// Adds a value that [`Record::check`] accepts.
     pub(crate) fn add(&mut self, t: f64, value: f64) {
         // A value that holds has no rate but at its jumps.
         let is_line = matches!(self.value, Ramp::Table { .. });
@@ -161,7 +161,7 @@ impl Record {
         values.push(value);
     }
 
-    /// Forgets the values before the one, or the line, that applies at `t` (s).
+    /// Removes the values before the value or line that applies at `t` (s).
     pub(crate) fn forget_before(&mut self, t: f64) {
         for ramp in [&mut self.value, &mut self.rate] {
             if let Some((times, values)) = points(ramp) {

@@ -2,8 +2,8 @@
 
 /// A time `t = base + n dt`: a base, a step and the number of steps taken since.
 ///
-/// Steps that are added up miss the instants they represent by more with every step; this time is rounded once, however
-/// long the run. A step of another length begins a new base.
+/// A sum of steps gathers rounding errors with every step; this time is rounded only once, however long the run. A step
+/// of another length begins a new base.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Clock {
@@ -13,10 +13,10 @@ pub struct Clock {
 }
 
 impl Clock {
-    /// Share of a time by which multiples of a step may miss the instant that they represent: rounding.
+    /// Relative error, due to rounding, of a multiple of a step as an instant of time.
     pub const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
-    /// Largest number of steps, up to which each is a number of its own in f64.
+    /// Largest number of steps that f64 counts exactly.
     pub const MOST_STEPS: u64 = 1 << f64::MANTISSA_DIGITS;
 
     /// The time `t` (s), before any step.
@@ -41,7 +41,7 @@ impl Clock {
         (self.steps > 0).then_some(self.dt)
     }
 
-    /// False for a clock that no steps lead to, as bytes from elsewhere may give it.
+    /// False for a clock that no sequence of steps gives, as bytes from elsewhere may contain.
     #[cfg(feature = "serde")]
     pub(crate) fn is_sound(self) -> bool {
         let is_step = self.dt > 0.0 || (self.steps == 0 && self.dt == 0.0);
@@ -60,7 +60,7 @@ impl Clock {
 
 #[cfg(test)]
 impl Clock {
-    /// So many steps of `dt` (s) after 0.
+    /// The clock after `steps` steps of `dt` (s) from 0.
     pub(crate) fn after(steps: u64, dt: f64) -> Self {
         Self {
             base: 0.0,

@@ -43,7 +43,7 @@ pub struct Mode {
     pub damping: f64,
 }
 
-/// Half the argument below which sin(x)/x is summed instead of divided.
+/// Half the argument below which sin(x)/x is computed by its series.
 const SMALL: f64 = 1e-4;
 
 impl Mode {

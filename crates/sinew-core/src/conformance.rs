@@ -1,9 +1,8 @@
-//! The laws that every integrator keeps, as a suite that any crate can run on its own method. It comes
-//! with the feature `conformance`, which a crate switches on among its dev-dependencies.
+//! The laws that every integrator obeys, as a test suite that any crate can run on its own method. The feature
+//! `conformance`, which a crate enables among its dev-dependencies, provides the suite.
 //!
-//! The problems are small and have motions known in closed form or by their Taylor series: chains of
-//! masses, a body in space, a hardening spring, a Maxwell element. A method with saturation is given
-//! unsaturated.
+//! The problems are small and have motions known in closed form or by their Taylor series: chains of masses, a body in
+//! space, a hardening spring, a Maxwell element. A method with saturation is tested without saturation.
 //!
 //! ```
 //! use sinew_core::{
@@ -109,8 +108,8 @@ pub use running::every_way_of_running_gives_the_same_bits;
 pub use stability::{energy_behaves_as_declared, stable_step_is_as_declared};
 pub use staggered::a_staggered_state_is_taken_over_at_one_time;
 
-/// Makes a module of tests, one per law, for one integrator; or a module of such modules, one for each
-/// of several option sets, in braces.
+/// Generates a module of tests, one per law, for one integrator; or a module of such modules, one for each of several
+/// option sets, in braces.
 #[macro_export]
 macro_rules! conformance {
     ($name:ident, { $($options:ident: $make:expr),+ $(,)? }) => {

@@ -11,7 +11,7 @@ use crate::{Inputs, State};
 /// the step's own response to them: no stiffness is added, and the stable step is unchanged. The history variables of
 /// contact are stored in [`State::contact`].
 pub trait Contact: Debug + Send + Sync {
-    /// The cells whose displacement and velocity it reads after each step.
+    /// The cells whose displacement and velocity contact reads after each step.
     fn cells(&self) -> &[u32];
 
     /// Rest position (m) of each cell of [`Contact::cells`].
@@ -23,10 +23,10 @@ pub trait Contact: Debug + Send + Sync {
         false
     }
 
-    /// Numbers that it keeps in [`State::contact`].
+    /// Number of history variables in [`State::contact`].
     fn kept(&self) -> usize;
 
-    /// Resolves contact on a trial state: changes u and v of cells, and its own variables in [`State::contact`],
+    /// Resolves contact on a trial state: changes u and v of cells, and its history variables in [`State::contact`],
     /// which are zero before the first step. Asks `cells` for u and v before it reads them, and appends the changed
     /// cells to `pushed`.
     fn meet(
@@ -88,7 +88,7 @@ impl ShowCells for AllShown {
     }
 }
 
-/// A step that ended in a trial state, whose clock still shows the beginning.
+/// A step that ended in a trial state; the state's clock still shows the beginning of the step.
 #[derive(Clone, Copy, Debug)]
 pub struct Meeting<'a> {
     /// Inputs from outside.
@@ -102,7 +102,8 @@ pub struct Meeting<'a> {
     /// The time (s) by which a change of velocity is divided to correct the acceleration that the state keeps; `None`
     /// if it keeps none.
     pub kick: Option<f64>,
-    /// The size (m/s) up to which a component of a velocity moves the displacement: infinite but for a network that saturates.
+    /// The size (m/s) up to which a component of a velocity moves the displacement: infinite except for a network that
+    /// saturates.
     pub saturation: f64,
     /// True if velocities hold in the middle of steps. Obstacles then do work at the mean of their velocities in this
     /// step and the last, instead of their velocity in this step.

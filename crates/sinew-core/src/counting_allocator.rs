@@ -16,11 +16,12 @@ thread_local! {
     static PEAK: Cell<isize> = const { Cell::new(0) };
 }
 
-/// Bytes that all threads have allocated. It wraps round rather than fail if another allocator's block is freed here.
+/// Bytes that all threads have allocated. The count wraps around instead of failing if a block of another allocator is
+/// freed here.
 static LIVE: AtomicUsize = AtomicUsize::new(0);
 
-/// The system's allocator, which counts what each thread allocates: the global allocator of a test
-/// that asks whether steps or cuts allocate.
+/// The system's allocator, which counts what each thread allocates: the global allocator of a test that checks whether
+/// steps or cuts allocate.
 ///
 /// ```
 /// use sinew_core::CountingAllocator;

@@ -33,7 +33,8 @@ pub trait ElasticLaw: Send + Sync {
     /// `out = d2W/du2` (N/m) of a kind, on [`ElasticLaw::pattern`] or one that has its couplings.
     ///
     /// # Errors
-    /// As [`ElasticLaw::elastic_force`], and where `out` has no block for a coupling; its entries are then unspecified.
+    /// Same as [`ElasticLaw::elastic_force`], and if `out` has no block for a coupling; its entries are then
+    /// unspecified.
     fn tangent(
         &self,
         trial: &Trial<'_>,
@@ -44,7 +45,7 @@ pub trait ElasticLaw: Send + Sync {
     /// `out = d2W/du2 w` (N) without a matrix, about two sweeps.
     ///
     /// # Errors
-    /// As [`ElasticLaw::elastic_force`].
+    /// Same as [`ElasticLaw::elastic_force`].
     fn tangent_product(
         &self,
         trial: &Trial<'_>,
@@ -53,12 +54,12 @@ pub trait ElasticLaw: Send + Sync {
         out: &mut [f64],
     ) -> Result<(), EvaluationError>;
 
-    /// `out = S w` (N), S being the symmetric matrix that determines stable steps: the exact tangent with the
-    /// symmetric load stiffness, and with idle parts that may act before the next step, as if active. About two
+    /// `out = S w` (N), S being the symmetric matrix that determines stable steps: the exact tangent with the symmetric
+    /// load stiffness, and with inactive parts that may become active before the next step counted as active. About two
     /// sweeps.
     ///
     /// # Errors
-    /// As [`ElasticLaw::elastic_force`].
+    /// Same as [`ElasticLaw::elastic_force`].
     fn stiffest_product(
         &self,
         trial: &Trial<'_>,
@@ -71,27 +72,28 @@ pub trait ElasticLaw: Send + Sync {
     /// The square (1/s^2) of the largest frequency of plane waves as short as an element, at most half a sweep;
     /// `None` for a law without it.
     ///
-    /// It is not itself a bound of the largest eigenvalue of `M^-1 S`, S being that of
-    /// [`ElasticLaw::stiffest_product`], but grows about as that does when the
-    /// body is deformed: by at least its power 2/3 up to a growth of one half, so that a stable step that was found once can be followed without a product.
+    /// This value is no bound of the largest eigenvalue of `M^-1 S` with S of [`ElasticLaw::stiffest_product`], but it
+    /// grows about like that eigenvalue when the body deforms: by at least the power 2/3 of the eigenvalue's growth, up
+    /// to a growth of one half. Thus a stable step that was found once can be updated without a product.
     ///
     /// # Errors
-    /// As [`ElasticLaw::elastic_force`].
+    /// Same as [`ElasticLaw::elastic_force`].
     fn fastest_wave(&self, _trial: &Trial<'_>) -> Result<Option<f64>, EvaluationError> {
         Ok(None)
     }
 
-    /// The element with the fastest plane waves, for messages on a motion that cannot be computed: about two evaluations of
-    /// [`ElasticLaw::fastest_wave`]. `None` for a law without it, or where the law refuses the trial.
+    /// The element with the fastest plane waves, for messages on a motion that cannot be computed: about two
+    /// evaluations of [`ElasticLaw::fastest_wave`]. `None` for a law without this information, or if the law refuses
+    /// the trial.
     fn stiffest_element(&self, _trial: &Trial<'_>) -> Option<StiffestElement> {
         None
     }
 
-    /// Writes a symmetric positive semidefinite block (N/m, row-major, layers x layers) for every cell: its own block
-    /// of the tangent, or more if that has a negative eigenvalue.
+    /// Writes a symmetric positive semidefinite block (N/m, row-major, layers x layers) for every cell: its diagonal
+    /// block of the tangent, or a larger block if that one has a negative eigenvalue.
     ///
     /// # Errors
-    /// As [`ElasticLaw::elastic_force`].
+    /// Same as [`ElasticLaw::elastic_force`].
     fn node_blocks(&self, trial: &Trial<'_>, out: &mut [f64]) -> Result<(), EvaluationError>;
 
     /// True if loads depend on the displacement, as loads that follow the surface do.
@@ -130,14 +132,14 @@ pub trait ElasticLaw: Send + Sync {
         false
     }
 
-    /// `out = V(u) w` (N): the force of stiffness damping at the trial's displacement for velocities w, of which V is a function of the
-    /// displacement alone, symmetric and positive semidefinite. About a sweep.
+    /// `out = V(u) w` (N): the force of stiffness damping for velocities w at the trial's displacement. V depends on
+    /// the displacement only, and is symmetric and positive semidefinite. About a sweep.
     ///
-    /// Unless a law has another, V is the factor times the tangent at constant rotations, and supports are at rest. A
-    /// law of bodies that turn needs one that does not act on a rigid motion.
+    /// By default V is the factor times the tangent at constant rotations, and supports are at rest. A law for bodies
+    /// that rotate needs a V that does not act on a rigid motion.
     ///
     /// # Errors
-    /// As [`ElasticLaw::elastic_force`].
+    /// Same as [`ElasticLaw::elastic_force`].
     fn viscous_force(
         &self,
         trial: &Trial<'_>,
@@ -155,10 +157,11 @@ pub trait ElasticLaw: Send + Sync {
         Ok(())
     }
 
-    /// `out += factor V(u)` (N s/m, times the factor), on [`ElasticLaw::pattern`]. Allocates a matrix, unless a law has its own.
+    /// `out += factor V(u)` (N s/m, times the factor), on [`ElasticLaw::pattern`]. Allocates a matrix, unless the law
+    /// overrides this function.
     ///
     /// # Errors
-    /// As [`ElasticLaw::elastic_force`].
+    /// Same as [`ElasticLaw::elastic_force`].
     fn add_viscosity(
         &self,
         trial: &Trial<'_>,
@@ -178,11 +181,11 @@ pub trait ElasticLaw: Send + Sync {
         Ok(())
     }
 
-    /// Adds `factor` times the own blocks of V(u), or more, to those of all cells, as [`ElasticLaw::node_blocks`] writes them. Allocates them, unless a
-    /// law has its own.
+    /// Adds `factor` times the diagonal blocks of V(u), or larger blocks, to those of all cells, as
+    /// [`ElasticLaw::node_blocks`] writes them. Allocates them, unless the law overrides this function.
     ///
     /// # Errors
-    /// As [`ElasticLaw::elastic_force`].
+    /// Same as [`ElasticLaw::elastic_force`].
     fn add_viscous_blocks(
         &self,
         trial: &Trial<'_>,
@@ -202,7 +205,7 @@ pub trait ElasticLaw: Send + Sync {
 /// The velocities (m/s) that stiffness damping acts on.
 #[derive(Clone, Copy, Debug)]
 pub enum Velocities<'a> {
-    /// Velocities of the degrees of freedom, with supports at rest.
+    /// Velocities of the degrees of freedom, supports are at rest.
     Cells(&'a [f64]),
     /// Velocities of the degrees of freedom, with those of supports at the trial's time.
     All(&'a [f64]),

@@ -3,8 +3,8 @@
 /// Eigenvalue bounds from single elements (Irons and Treharne 1971), valid for any body assembled from the elements:
 /// also after cuts that split cells, or remove elements with their mass.
 ///
-/// With `K_e` and `M_e` those of an element: the quotient `x'K x / x'M x` is a mean of the elements' own, and `K_e <= gamma blockdiag(K_e)`
-/// for all of them is the same for their sum.
+/// With the matrices `K_e` and `M_e` of an element, the quotient `x'K x / x'M x` is a mean of the elements' quotients,
+/// and `K_e <= gamma blockdiag(K_e)` for all elements implies the same for their sum.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ElementBounds {
     /// No undamped angular frequency (rad/s) is larger.

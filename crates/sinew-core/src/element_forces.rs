@@ -46,8 +46,9 @@ pub struct SweepShape<'a> {
 /// The bits do not depend on the number of parts.
 ///
 /// # Safety
-/// Each of the three is called by several threads, each for disjoint positions or parts, and none begins before the
-/// one before has finished on all threads; nobody else uses the memory that it reads or writes meanwhile.
+/// Each of the three unsafe functions is called by several threads, each for disjoint positions or parts, and none
+/// begins before the one before has finished on all threads; no other code uses the memory that they read or write
+/// meanwhile.
 #[allow(unsafe_code, reason = "one contract for all methods stands above")]
 pub trait ElementSweep<T>: Debug + Send + Sync {
     /// Number of passes.
@@ -59,7 +60,7 @@ pub trait ElementSweep<T>: Debug + Send + Sync {
     /// Begins a sweep at a time.
     ///
     /// # Errors
-    /// [`EvaluationError`] if a support follows an input that the time does not bring.
+    /// [`EvaluationError`] if a support follows an input that is missing from the inputs of the time.
     fn begin(&mut self, when: LoadTime<'_>) -> Result<(), EvaluationError>;
 
     /// Reads the displacement (m) at some positions from a vector.

@@ -1,4 +1,4 @@
-//! The elements behind a stiffness matrix.
+//! Elements from which a stiffness matrix is assembled.
 
 use crate::lanczos::largest_eigenvalue;
 
@@ -45,8 +45,8 @@ impl ElementStiffness {
         }
     }
 
-    /// The square (1/s^2) of the largest frequency at which the element alone would swing the
-    /// masses of its cells: never above omega_max^2 of the whole.
+    /// The square (1/s^2) of the largest frequency at which the element alone would vibrate with the masses of its
+    /// cells: never above omega_max^2 of the whole.
     #[must_use]
     pub fn omega_squared(&self, mass: &[f64]) -> f64 {
         let rows = self.rows();

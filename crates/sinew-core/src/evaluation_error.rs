@@ -7,7 +7,7 @@ use sinew_sparse::AssemblyError;
 /// A force law that cannot be evaluated: outside its domain, or into a matrix that lacks its couplings.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EvaluationError {
-    /// Tag of the element in its mesh; 0 if it is not of one element.
+    /// Tag of the element in its mesh; 0 if no single element causes the error.
     pub element: u64,
     /// The reason, with the numbers.
     pub reason: String,

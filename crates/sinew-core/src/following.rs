@@ -8,22 +8,24 @@ pub const PRODUCTS_OF_BEGINNING: u64 = 16;
 /// Share of the estimate up to which eigenvalues count as too small to be sought.
 const TOO_SMALL: f64 = 0.9;
 
-/// Growth of the estimate by a product up to which it counts as found.
+/// Growth of the estimate by a product up to which the eigenvalue counts as found.
 const SETTLED: f64 = 1.005;
 
-/// Size of the noise that is added with each product, as a share of the field: one that has found its vector would have nothing of another that grows elsewhere.
+/// Size of the noise that is added with each product, as a share of the field: a field that has converged to its
+/// eigenvector would otherwise contain nothing of another one that grows elsewhere.
 const NOISE: f64 = 0.1;
 
-/// An estimate from below, by some thousandths, of the largest eigenvalue of `M^-1 S`, S symmetric and M diagonal,
-/// when S has changed little since the call before: one product improves the two fields, of the length of `mass`
-/// each, that have turned towards its vector. Without such fields it begins from noise that is always the same, by
+/// A lower estimate, to some thousandths, of the largest eigenvalue of `M^-1 S`, S symmetric and M diagonal, for an S
+/// that has changed little since the last call. One product improves the two fields that approximate the eigenvector,
+/// each of the length of `mass`. Without such fields the iteration begins from noise that is always the same, with
 /// [`PRODUCTS_OF_BEGINNING`] products. `multiply(x, out)` writes `out = S x`; `room` is scratch space, of the length of
 /// `mass`.
 ///
 /// Chebyshev's recurrence (Saad, Numerical Methods for Large Eigenvalue Problems, section 7.4), scaled again in each
-/// step: eigenvalues from -.45 to .9 of the estimate are unchanged, those beyond grow, the one that was found by 1.7
-/// and one half as large again by 3.5 in a product. So it turns to another vector within a few products, where the
-/// power iteration, by which they grow as the eigenvalues, would take some ten. Infinite if products are not finite.
+/// step: parts with eigenvalues from -.45 to .9 of the estimate are unchanged, and those beyond grow in a product, the
+/// part of the eigenvalue found by a factor of 1.7 and that of one larger by half by 3.5. So the fields turn to another
+/// eigenvector within a few products; the power iteration, in which parts grow like the eigenvalues, would take some
+/// ten. The result is infinite if products are not finite.
 ///
 /// # Errors
 /// That of `multiply`.
@@ -106,7 +108,7 @@ mod tests {
 
     use super::*;
 
-    /// `out` of a chain of springs between walls, one mass a spring.
+    /// `out`: force of a chain of springs between walls, one mass per spring.
     fn chain(stiffness: impl Fn(usize) -> f64, x: &[f64], out: &mut [f64]) {
         let n = x.len();
         let at = |i: usize| x.get(i).copied().unwrap_or(0.0);

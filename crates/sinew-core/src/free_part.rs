@@ -1,4 +1,4 @@
-//! Connected parts of a body that may move as rigid ones.
+//! Connected parts of a body that may move as rigid bodies.
 
 /// A motion of a rigid body about a point: a cell at the place x (m) from there moves by `translation + rotation x x`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,14 +20,14 @@ impl Twist {
     }
 }
 
-/// A connected part of a body with the rigid motions that its supports leave to it.
+/// A connected part of a body with the rigid motions that its supports allow.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FreePart {
     /// Its cells, increasing.
     pub cells: Vec<u32>,
     /// Rest positions of the cells (m).
     pub rest: Vec<[f64; 3]>,
-    /// Components of them that move.
+    /// Components of each cell that move.
     pub moves: Vec<[bool; 3]>,
     /// The point (m) about which motions turn.
     pub centre: [f64; 3],

@@ -12,7 +12,7 @@ impl Default for Hash {
 }
 
 impl Hash {
-    /// The hash of nothing.
+    /// The hash of empty input.
     #[must_use]
     pub const fn new() -> Self {
         Self(0xcbf2_9ce4_8422_2325)

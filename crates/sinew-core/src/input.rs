@@ -99,7 +99,7 @@ impl Inputs {
     /// Gives several channels their values at the same time, all or none.
     ///
     /// # Errors
-    /// As [`Inputs::set`].
+    /// Same as [`Inputs::set`].
     pub fn set_all(&mut self, t: f64, values: &[(Channel, f64)]) -> Result<(), InputError> {
         for (Channel(number), value) in values {
             let record = self.channels.get(*number as usize);
@@ -129,9 +129,8 @@ impl Inputs {
         self.forces.set(t, entries)
     }
 
-    /// Forgets forces and values of channels that ended before `t` (s): keep two steps for methods that
-    /// look back by one. Later inputs reuse the memory, so that a session that forgets now and then
-    /// stops allocating.
+    /// Forgets forces and values of channels that ended before `t` (s): keep two steps for methods that look back by
+    /// one. Later inputs reuse the memory, so that a session that does so regularly stops allocating.
     pub fn forget_before(&mut self, t: f64) {
         self.forces.forget_before(t);
         for record in &mut self.channels {
@@ -153,8 +152,8 @@ impl Inputs {
         self.forces.all()
     }
 
-    /// The forces that act at some time from `from` to `to` (s), both included, found without
-    /// looking at the others.
+    /// The forces that act at some time from `from` to `to` (s), both included, found without a search through the
+    /// others.
     pub(crate) fn forces_between(
         &self,
         from: f64,

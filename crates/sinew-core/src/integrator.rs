@@ -70,7 +70,7 @@ pub trait Integrator: Send {
     /// same system and step are reused.
     ///
     /// # Errors
-    /// [`SetupError`] when the system lacks what the method needs or the step makes no sense.
+    /// [`SetupError`] when the system lacks what the method needs or the step is not valid.
     fn prepare(&mut self, system: &dyn System, dt: f64) -> Result<StepReport, SetupError>;
 
     /// The largest step at which the method is stable on this system for motions about a state, or
@@ -96,15 +96,15 @@ pub trait Integrator: Send {
     /// one step to [`Batch::each`].
     ///
     /// # Errors
-    /// [`StepError`] when the system refuses a trial state; `state` is then that after the last step, or substep of a
-    /// step that is cut, as its clock says.
+    /// [`StepError`] when the system refuses a trial state; `state` is then that after the last step, or after the last
+    /// substep of a divided step, as its clock shows.
     fn run(&mut self, batch: &mut Batch<'_>, state: &mut State) -> Result<(), StepError>;
 
     /// Takes `state` from t to t + dt: a batch of one, as live code needs it.
     ///
     /// # Errors
     /// [`StepError`] when set-up fails or the system refuses a trial state; `state` is then unchanged, or that after
-    /// the last substep of a step that is cut, as its clock says.
+    /// the last substep of a divided step, as its clock shows.
     fn step(
         &mut self,
         system: &dyn System,
@@ -141,8 +141,8 @@ pub trait Integrator: Send {
         Vec::new()
     }
 
-    /// The machine, precision and instructions by which set-up will have steps taken, for reports; `None`
-    /// for loops of its own.
+    /// The machine, precision and instructions that take the steps after set-up, for reports; `None` for a method with
+    /// its own loops.
     fn kernel(&self) -> Option<String> {
         None
     }
@@ -180,7 +180,7 @@ impl Batch<'_> {
         self.ended(integrator.id(), state)
     }
 
-    /// Refuses a batch of which steps are left, after `by`, an integrator or a machine, said that it took them.
+    /// Refuses a batch with steps left after `by`, an integrator or a machine, reported that it took them.
     ///
     /// # Errors
     /// [`StepError::Stalled`].

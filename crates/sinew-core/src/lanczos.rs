@@ -16,9 +16,9 @@ pub fn largest_eigenvalue(mass: &[f64], multiply: impl FnMut(&[f64], &mut [f64])
     })
 }
 
-/// The largest eigenvalue of `P^-1 S` for a symmetric positive semidefinite S and a symmetric
-/// positive definite P of which only the inverse is at hand, by the Lanczos iteration in P's inner
-/// product (Parlett, The Symmetric Eigenvalue Problem, section 15.11), to about nine digits.
+/// The largest eigenvalue of `P^-1 S` for a symmetric positive semidefinite S and a symmetric positive definite P of
+/// which only the inverse is available, by the Lanczos iteration in P's inner product (Parlett, The Symmetric
+/// Eigenvalue Problem, section 15.11), to about nine digits.
 ///
 /// `multiply(x, out)` writes `out = S x`, `solve(x, out)` writes `out = P^-1 x`; both of length `n`.
 /// The start vector is fixed, so the result reproduces.
@@ -53,8 +53,9 @@ pub fn largest_eigenvalue_of_pencil(
 /// Products of [`estimated_largest_eigenvalue`].
 pub const PRODUCTS_OF_ESTIMATE: u64 = 12;
 
-/// An estimate from below of the largest eigenvalue of `M^-1 S`, S symmetric and M diagonal, by [`PRODUCTS_OF_ESTIMATE`] products: within
-/// a few per cent where S is a stiffness matrix. The start vector is fixed, so that the result reproduces.
+/// A lower estimate of the largest eigenvalue of `M^-1 S`, S symmetric and M diagonal, by [`PRODUCTS_OF_ESTIMATE`]
+/// products: within a few per cent if S is a stiffness matrix. The start vector is fixed, so that the result
+/// reproduces.
 #[must_use]
 pub fn estimated_largest_eigenvalue(
     mass: &[f64],
@@ -79,8 +80,8 @@ pub fn estimated_largest_eigenvalue(
     largest_of_tridiagonal(&iteration.diagonal, &iteration.off_diagonal)
 }
 
-/// The Lanczos iteration for `P^-1 S`: the tridiagonal matrix that `P^-1 S` is in an orthonormal basis of
-/// P's inner product, row by row.
+/// The Lanczos iteration for `P^-1 S`: the tridiagonal matrix of `P^-1 S` in a basis that is orthonormal in P's inner
+/// product, row by row.
 pub(crate) struct Lanczos {
     pub(crate) diagonal: Vec<f64>,
     /// Shorter by one than the diagonal.
@@ -89,7 +90,7 @@ pub(crate) struct Lanczos {
     dual: Vec<f64>,
     primal: Vec<f64>,
     previous_dual: Vec<f64>,
-    /// The next dual vector, and in `primal` the vector itself, both still of this length.
+    /// The next dual vector, not yet normalised, like the next vector in `primal`.
     next: Vec<f64>,
     beta: Option<f64>,
 }
@@ -145,8 +146,8 @@ impl Lanczos {
         self.beta = Some(dot(&self.next, &self.primal).max(0.0).sqrt());
     }
 
-    /// True if the basis spans all that its start vector can reach: the residual norm is at the rounding of an
-    /// eigenvalue of this size. Rounding costs the basis its orthogonality, so that n steps need not be enough.
+    /// True if the basis spans the whole space that its start vector can reach: the residual norm is at the rounding of
+    /// an eigenvalue of this size. Rounding makes the basis lose its orthogonality, so that n steps may not be enough.
     pub(crate) fn is_exhausted(&self, eigenvalue: f64) -> bool {
         let alpha = self.diagonal.last().copied().unwrap_or(0.0);
         self.beta

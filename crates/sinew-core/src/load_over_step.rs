@@ -33,8 +33,8 @@ impl LoadOverStep {
         }
     }
 
-    /// The first instant (s) at which a ramp breaks the condition, between `from` and `to` (s) in
-    /// steps of `dt` (s) from `from` on; `None` if it never does. Allocates nothing.
+    /// The first instant (s) at which a ramp violates the condition, between `from` and `to` (s) in steps of `dt` (s)
+    /// from `from` on; `None` if it never does. Allocates nothing.
     #[must_use]
     pub fn first_broken(self, ramp: &Ramp, from: f64, dt: f64, to: f64) -> Option<f64> {
         if self == Self::Any {
@@ -64,8 +64,8 @@ impl LoadOverStep {
     }
 }
 
-/// The longest step (s), not above `dt`, that meets every jump and kink of the ramps after t = 0 and
-/// before `to` (s); `None` if it would be absurdly short.
+/// The longest step (s), not above `dt`, that has a step end at every jump and kink of the ramps after t = 0 and before
+/// `to` (s); `None` if it would be absurdly short.
 #[must_use]
 pub fn step_that_meets<'a>(
     ramps: impl IntoIterator<Item = &'a Ramp>,

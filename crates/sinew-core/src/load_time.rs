@@ -7,21 +7,20 @@ use crate::gauss::gauss_points;
 use crate::input::Inputs;
 use crate::ramp::Ramp;
 
-/// Windows in half a period of a sine from which on it counts as smooth, the rise of a squared one at both
-/// ends.
+/// Number of windows in half a period from which on a sine counts as smooth; for the rise of a squared sine, smooth at
+/// both ends.
 const LONG_RISE: f64 = 2.0;
 
-/// Phase (rad) that a sine goes through in a piece of time, up to which Gauss' rule integrates it to
-/// rounding.
+/// Phase (rad) of a sine over an interval, up to which Gauss' rule integrates it to rounding.
 const FEW_RADIANS: f64 = 2.0;
 
 /// The instant at which a step takes its loads, with the window of time they act for and the inputs
 /// that are known.
 ///
-/// A load that is smooth over the window is taken at the instant. One that jumps or has a kink
-/// inside is replaced by a mean over the window, weighted so that its impulse arrives however it varies
-/// between two instants, and so that a method keeps the order that it has for smooth loads, up
-/// to order 2. Places of supports ([`Ramp::Position`]) are taken at the instant for any window.
+/// A load that is smooth over the window is taken at the instant. One that jumps or has a kink inside is replaced by a
+/// mean over the window, weighted so that its impulse is kept, whatever its course between two instants, and so that a
+/// method keeps the order that it has for smooth loads, up to order 2. Positions of supports ([`Ramp::Position`]) are
+/// taken at the instant for any window.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LoadTime<'a> {
     t: f64,
@@ -258,8 +257,9 @@ impl Ramp {
         }
     }
 
-    /// The value at the instant, through all jumps and kinks: at either end of a window that inside, and at a jump in the midst of
-    /// one the mean of both sides. For places of supports, which follow no input ([`Ramp::known`]).
+    /// The value at the instant, also at jumps and kinks: at either end of a window the value inside it, and at a jump
+    /// in the middle of one the mean of both sides. Used for positions of supports, which follow no input
+    /// ([`Ramp::known`]).
     #[must_use]
     pub fn place(&self, when: LoadTime<'_>) -> f64 {
         let value = |at: f64| self.derivative_of_piece(0, at, when.t);
@@ -270,9 +270,10 @@ impl Ramp {
         }
     }
 
-    /// The second derivative (1/s^2) at the instant, as [`Ramp::place`]. A kink inside a window adds its change of slope over the
-    /// time, with weights that fall linearly from the instant to 0 at both ends: at the centre of a window of two steps this is the second
-    /// difference of the values, and added up over steps nothing of a change of speed is lost.
+    /// The second derivative (1/s^2) at the instant, taken like [`Ramp::place`]. A kink inside a window adds its change
+    /// of slope over the time, with weights that fall linearly from the instant to 0 at both ends: at the centre of a
+    /// window of two steps this is the second difference of the values, and the sum over steps contains the whole
+    /// change of speed.
     #[must_use]
     pub fn bend(&self, when: LoadTime<'_>) -> f64 {
         let LoadTime { t, .. } = when;
@@ -296,10 +297,10 @@ impl Ramp {
         smooth + sum
     }
 
-    /// True if a step over `from`..`to` (s) may use sampled values: no breakpoint lies between, apart from rounding of
-    /// either instant. A rise of a squared sine that is long compared with the step is smooth at its ends too, where
-    /// value and slope are continuous. A short one is smooth nowhere, so that all steps over it use means of it. Nor is
-    /// a sine of a short period smooth, because samples of it would make a slower sine.
+    /// True if a step over `from`..`to` (s) may use sampled values: no breakpoint is between them, apart from rounding
+    /// of either instant. A rise of a squared sine that is long compared with the step is smooth at its ends too, where
+    /// value and slope are continuous. A short one is smooth nowhere, so that all steps over it use means of it. A sine
+    /// of a short period is not smooth either, because its samples would represent a slower sine.
     #[must_use]
     pub(crate) fn is_smooth_between(&self, from: f64, to: f64) -> bool {
         self.is_smooth_in_steps(from, to, to - from)
@@ -329,9 +330,9 @@ impl Ramp {
         self.breakpoint_between(from + slack, to - slack).is_none()
     }
 
-    /// The integral of the value times a linear weight between two instants (s), by pieces between
-    /// breakpoints: exact but for that of a squared sine, which is to rounding. Breakpoints that only rounding
-    /// keeps from an end cut no piece off, or the bits would depend on what comes after the end.
+    /// The integral of the value times a linear weight between two instants (s), by pieces between breakpoints: exact,
+    /// except that of a squared sine, which is exact to rounding. Breakpoints within rounding of an end give no
+    /// separate piece; otherwise the bits would depend on the course after the end.
     fn integral(&self, from: f64, to: f64, weight: impl Fn(f64) -> f64) -> f64 {
         let slack = Clock::ROUNDING * from.abs().max(to.abs());
         let (mut sum, mut start) = (0.0, from);

@@ -53,12 +53,12 @@ pub enum OperatorError {
         /// The rate.
         value: f64,
     },
-    /// A load's ramp.
+    /// An invalid ramp of a load.
     #[error("ramp of load {load}: {source}")]
     Ramp {
         /// 0-based number of the load.
         load: usize,
-        /// The fault in it.
+        /// The error of the ramp.
         source: RampError,
     },
     /// A load on a degree of freedom that does not exist.
@@ -90,15 +90,15 @@ struct Matrices {
     mass: Vec<f64>,
     stiffness: Arc<BlockMatrix>,
     damping: Damping,
-    /// Bounds that are taken for eigenvalues.
+    /// Bounds used in place of eigenvalues.
     bounds: Option<ElementBounds>,
     revision: Revision,
     derived: Derived,
 }
 
 impl LinearOperators {
-    /// Puts matrices together. `mass` holds the lumped mass of each degree of freedom (kg);
-    /// integrators, which divide by it, check that it is positive.
+    /// Combines matrices into a system. `mass` holds the lumped mass of each degree of freedom (kg); integrators, which
+    /// divide by it, check that it is positive.
     ///
     /// # Errors
     /// [`OperatorError`] when sizes or patterns differ, a rate is negative or a ramp impossible.
@@ -212,7 +212,7 @@ impl LinearOperators {
         &self.matrices.damping
     }
 
-    /// D = alpha M + beta K + extra (N s/m) as one matrix, made on each call.
+    /// D = alpha M + beta K + extra (N s/m) as one matrix, built on each call.
     #[must_use]
     pub fn damping_matrix(&self) -> BlockMatrix {
         let damping = self.damping();
@@ -231,7 +231,7 @@ impl LinearOperators {
         whole
     }
 
-    /// `of_stiffness K + of_dashpots extra` as one matrix, made on each call.
+    /// `of_stiffness K + of_dashpots extra` as one matrix, built on each call.
     #[must_use]
     pub fn stiffness_and_dashpots(&self, of_stiffness: f64, of_dashpots: f64) -> BlockMatrix {
         let mut sum = BlockMatrix::clone(self.stiffness());
@@ -332,8 +332,8 @@ impl LinearOperators {
         any
     }
 
-    /// `out -= K u + D v` (N): one sweep. Damping that a system does not have costs nothing, and
-    /// stiffness-proportional damping shares the product with K.
+    /// `out -= K u + D v` (N): one sweep. Absent damping costs nothing, and stiffness-proportional damping shares the
+    /// product with K.
     pub fn subtract_internal_force(&self, u: &[f64], v: &[f64], out: &mut [f64]) {
         if self.damping().stiffness == 0.0 {
             self.stiffness().subtract_product(u, out);

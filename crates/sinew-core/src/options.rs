@@ -148,7 +148,7 @@ impl Options {
         self.0.insert(key.into(), value);
     }
 
-    /// Takes an option out.
+    /// Removes an option and returns its value.
     pub fn remove(&mut self, key: &str) -> Option<OptionValue> {
         self.0.remove(key)
     }

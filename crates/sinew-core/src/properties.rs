@@ -66,8 +66,8 @@ impl Properties {
 
 /// Accuracy of a method in dt while loads change.
 ///
-/// The impulse of every load arrives, wherever its jumps and kinks fall: one that does so between two
-/// steps is moved within the step, or in leapfrog methods between two neighbouring steps.
+/// The whole impulse of every load acts, wherever its jumps and kinks are: those between two steps shift within the
+/// step, or in leapfrog methods within two neighbouring steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ChangingLoads {
     /// Errors fall as powers of dt.
@@ -201,7 +201,7 @@ pub enum Needs {
     Forces,
     /// The matrices M, D and K.
     Matrices,
-    /// An elastic law with its energy and tangent, which linear systems are too.
+    /// An elastic law with its energy and tangent, which linear systems have too.
     Tangents,
 }
 
@@ -254,8 +254,8 @@ pub enum EnergyBehaviour {
     Falls,
     /// Grows.
     Grows,
-    /// Never rises, for any step, on every system that meets the method's needs: points that its law refuses are
-    /// avoided. Damped or under loads it rises by no more than their work.
+    /// Never rises, for any step, on every system that meets the method's needs: points that the system's law refuses
+    /// are avoided. With damping or loads the energy rises by no more than their work.
     NeverRises,
 }
 

@@ -60,8 +60,8 @@ pub enum Ramp {
     InputRate(Channel),
     /// Another ramp that follows no input, times a factor.
     Scaled(Box<Ramp>, Scaling),
-    /// Another ramp as the position of a support. A step takes its value at the step's own instant, through jumps and
-    /// kinks too: a mean over the step keeps the impulse of a force, but would misplace a support.
+    /// Another ramp as the position of a support. A step takes its value at the step's own instant, also at jumps and
+    /// kinks: a mean over the step keeps the impulse of a force, but would misplace a support.
     Position(Box<Ramp>),
 }
 
@@ -114,7 +114,7 @@ pub enum RampError {
         /// The time (s).
         t: f64,
     },
-    /// The rate of a rate, or of an input in the place of the input's rate.
+    /// The rate of a rate, or of an input instead of the input's rate.
     #[error("the rate of a ramp {of}: expected that of one whose value is known")]
     RateOf {
         /// Description of the ramp.
@@ -177,7 +177,7 @@ impl Ramp {
         }
     }
 
-    /// The factor over time alone, however steps take it.
+    /// The factor over time, without the rule for positions of supports.
     #[must_use]
     pub fn course(&self) -> &Self {
         match self {
@@ -230,9 +230,8 @@ impl Ramp {
         self.derivative_of_piece(0, t, t)
     }
 
-    /// The factor at time `t` (s), continued smoothly from the piece that applies in the middle
-    /// `from`..`to` (s): the piece before a jump at `to`, the piece after a jump at `from`, however
-    /// either was rounded.
+    /// The factor at time `t` (s), continued smoothly from the piece that applies in the middle of `from`..`to` (s):
+    /// the piece before a jump at `to`, the piece after a jump at `from`, for any rounding of the two.
     #[must_use]
     pub fn value_within(&self, from: f64, to: f64, t: f64) -> f64 {
         self.derivative_of_piece(0, 0.5 * (from + to), t)
@@ -290,8 +289,8 @@ impl Ramp {
         }
     }
 
-    /// The sine `size sin(rate t + phase)` that applies at `at` (s), as `[size, rate, phase]` (1, rad/s,
-    /// rad), of a ramp that never ceases to be one.
+    /// The sine `size sin(rate t + phase)` that applies at `at` (s), as `[size, rate, phase]` (1, rad/s, rad), for a
+    /// ramp that remains a sine.
     pub(crate) fn sine_at(&self, at: f64) -> Option<[f64; 3]> {
         match self {
             Self::Sine { frequency, phase } => {

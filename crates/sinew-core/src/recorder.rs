@@ -1,4 +1,4 @@
-//! Recorders, which see states while a simulation runs.
+//! Recorders, which observe states while a simulation runs.
 
 use crate::{EvaluationError, Inputs, LoadTime, State, StepReport, System, Trial};
 
@@ -77,13 +77,13 @@ pub trait Recorder {
     /// state, if any.
     fn next(&mut self, step: usize) -> Option<usize>;
 
-    /// Records a moment it wanted. `state.v` may be staggered: ask [`Moment::velocity`].
+    /// Records a requested moment. `state.v` may be staggered: use [`Moment::velocity`].
     ///
     /// # Errors
     /// [`RecordError`] when it could not store the moment; the simulation ends.
     fn record(&mut self, moment: &Moment<'_>) -> Result<Verdict, RecordError>;
 
-    /// Degrees of freedom whose displacements it wants of every step. Asked once.
+    /// Degrees of freedom whose displacements it wants of every step. Called once.
     fn watches(&self) -> Vec<u32> {
         Vec::new()
     }
@@ -98,7 +98,7 @@ pub trait Recorder {
     }
 }
 
-/// Wants nothing.
+/// Requests no states.
 impl Recorder for () {
     fn next(&mut self, _step: usize) -> Option<usize> {
         None
@@ -109,7 +109,7 @@ impl Recorder for () {
     }
 }
 
-/// Wants every state.
+/// Requests every state.
 impl<F> Recorder for F
 where
     F: FnMut(&Moment<'_>) -> Result<Verdict, RecordError>,

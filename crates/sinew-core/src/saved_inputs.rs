@@ -36,7 +36,7 @@ pub enum InputBytesError {
 pub struct SavedInputs {
     channels: Vec<Ramp>,
     /// Sets of forces (N) on degrees of freedom, with the time (s) from which and until which they act; `None` for the
-    /// last set, which acts on.
+    /// last set, which continues to act.
     forces: Vec<(f64, Option<f64>, Entries)>,
 }
 
@@ -60,7 +60,7 @@ impl SavedInputs {
         }
     }
 
-    /// Gives it to new inputs, which check it again.
+    /// Creates new inputs from these values; the inputs check them again.
     ///
     /// # Errors
     /// [`InputBytesError`] for values that [`Inputs`] refuse.

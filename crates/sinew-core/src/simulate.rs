@@ -6,7 +6,7 @@ use crate::{
     Verdict, Watch,
 };
 
-/// Most steps of a batch, which bounds the memory of watched samples.
+/// Largest number of steps of a batch, which bounds the memory of watched samples.
 const LONGEST_BATCH: usize = 1024;
 
 /// Length, number and limit of the steps of a run.
@@ -21,7 +21,7 @@ pub struct Run {
 }
 
 impl Run {
-    /// Steps that cover `duration` (s); the last may pass it where dt does not divide it.
+    /// Steps that cover `duration` (s); the last may end after it if dt does not divide it.
     #[must_use]
     pub fn covering(duration: f64, dt: f64) -> Self {
         // The subtrahend keeps a quotient like 50.000000000000004 from costing one step more.
@@ -174,8 +174,8 @@ impl<'r, R: Recorder + ?Sized> RecordedSteps<'r, R> {
         self.watch = Watch::new(self.recorder.watches(), LONGEST_BATCH + 1);
     }
 
-    /// Takes `run.steps` more steps, in batches that end where the recorder wants to see a state. Stops early if it
-    /// says so, or if a displacement is not finite or passes `run.divergence_limit`.
+    /// Takes `run.steps` more steps, in batches that end where the recorder wants to see a state. Stops early if the
+    /// recorder says so, or if a displacement is not finite or passes `run.divergence_limit`.
     ///
     /// # Errors
     /// [`SimulateError`] when a step or the recorder fails.

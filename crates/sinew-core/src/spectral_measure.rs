@@ -29,8 +29,8 @@ pub struct SpectralWeight {
 /// integrate polynomials of degrees up to 2 k - 1 exactly. Lost orthogonality splits weights between copies of
 /// an eigenvalue and changes no sum.
 ///
-/// Points are added until the squared response `|(M^-1 K + floor)^-1 M^-1 f|^2` settles to 1e-5, or 600 of
-/// them: each costs a product with K. `floor` (1/s^2) is the size from which eigenvalues matter.
+/// Points are added until the squared response `|(M^-1 K + floor)^-1 M^-1 f|^2` settles to 1e-5, up to 600 points: each
+/// costs a product with K. `floor` (1/s^2) is the size from which eigenvalues matter.
 #[must_use]
 pub fn spectral_measure(
     operators: &LinearOperators,

@@ -42,11 +42,10 @@ pub struct State {
     /// then. Set it to `None` after changing `u` or `v` directly. It is not written with serde.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub start: Option<Start>,
-    /// The substeps into which steps are cut by the current stiffness, for methods that do so.
+    /// The division of steps into substeps by the current stiffness, for methods that use it.
     pub cut: Option<StepCut>,
-    /// Two fields over all degrees of freedom that have turned towards the body's fastest motion, if steps are cut by
-    /// it
-    /// ([`crate::spectrum::follow_largest_eigenvalue`]); empty elsewhere.
+    /// Two fields over all degrees of freedom that approximate the body's fastest mode, if it determines the substeps
+    /// ([`crate::spectrum::follow_largest_eigenvalue`]); empty otherwise.
     pub fastest: Vec<f64>,
 }
 
@@ -66,16 +65,17 @@ pub struct StepCut {
     pub wave: f64,
     /// The square (1/s^2) of the fastest wave at the last check.
     pub seen: f64,
-    /// The largest eigenvalue of `M^-1 D` over that of `M^-1 K` (s), D being the damping but for that by mass, as found then.
+    /// The largest eigenvalue of `M^-1 D` over that of `M^-1 K` (s), D being the damping without the mass-proportional
+    /// part, at that time.
     pub damping: f64,
-    /// The most parts that one of the last steps needed.
+    /// The largest number of substeps that one of the last steps needed.
     pub needed: u32,
     /// Number of these steps.
     pub steps: u32,
 }
 
 impl StepCut {
-    /// False for a cut that no method leaves.
+    /// False for a division that no method produces.
     #[cfg(feature = "serde")]
     pub(crate) fn is_sound(self) -> bool {
         let Self {
@@ -167,12 +167,12 @@ pub enum VelocityTime {
     Same,
     /// The middle of the last step: staggered methods.
     MiddleOfStep,
-    /// The mean over a last step that does not resolve the fastest motions, so that the velocity at any
-    /// instant is unknown.
+    /// The mean over the last step, which does not resolve the fastest motions, so that the velocity at any instant is
+    /// unknown.
     MeanOverStep,
 }
 
-/// Offsets, in steps, of the times at which a method's damping takes velocities when the forces of a state are
+/// Offsets, in steps, of the times at which a method's damping uses velocities when the forces of a state are
 /// evaluated.
 ///
 /// First-order methods combine displacements per time of two steps; the damping force on supports is that of this
@@ -180,8 +180,8 @@ pub enum VelocityTime {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct DampedAt {
-    /// Offset for cells, after the velocity's own time: more than 0 if a state keeps the acceleration of the last
-    /// kick, and damping does not lag by a whole step.
+    /// Offset for cells, after the velocity's own time: more than 0 if a state keeps the acceleration of the last kick
+    /// and damping lags by less than a whole step.
     pub cells: f64,
     /// Offset for moving supports, after the displacement's time: -1/2 means their displacement over the last step, 1/2
     /// that over the next.
@@ -189,7 +189,7 @@ pub struct DampedAt {
 }
 
 impl DampedAt {
-    /// Damping by the velocities at the end of a step, which are its displacement over its time.
+    /// Damping by the velocities at the end of a step, which are the step's displacement over its length.
     pub const WAY_OF_STEP: Self = Self::supports(-0.5);
 
     /// Damping of a leapfrog that keeps the acceleration of its last kick, of which it takes this share at the displacement's time.
@@ -223,7 +223,7 @@ pub enum Acceleration {
     Kick,
 }
 
-/// Start of a motion, by whose energy velocities are bounded.
+/// Start of a motion, whose energy bounds velocities.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Start {
     /// The system in which it began; in another system the motion begins again.
@@ -271,8 +271,8 @@ impl State {
         self.velocity != VelocityTime::Same && self.clock.last_step() == Some(dt)
     }
 
-    /// The displacement (m) and the velocity (m/s) by which damping acts when the method computes the forces of this
-    /// state, with the time for which it takes place and speed of supports.
+    /// The displacement (m) and velocity (m/s) that damping uses when the method computes the forces of this state,
+    /// with the time for the positions and speeds of supports.
     #[must_use]
     pub fn damping(&self) -> (Cow<'_, [f64]>, Cow<'_, [f64]>, LoadTime<'static>) {
         let (u, v) = (Cow::Borrowed(&self.u[..]), Cow::Borrowed(&self.v[..]));

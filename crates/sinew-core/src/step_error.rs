@@ -33,7 +33,7 @@ pub enum SetupError {
         /// Reason and remedy.
         reason: String,
     },
-    /// Contact, with steps that cannot be pushed in closed form.
+    /// Contact, for steps whose response to contact forces has no closed form.
     #[error("`{integrator}`: {reason}; take {methods}")]
     Contact {
         /// Integrator id.
@@ -43,7 +43,7 @@ pub enum SetupError {
         /// Methods that can.
         methods: &'static str,
     },
-    /// A precision that rounds more than the error asked for.
+    /// A precision whose rounding error exceeds the requested error.
     #[error(
         "`{integrator}`: f32 may be off by {expected:.0e}, more than the tolerance of {asked:e}; take \
          precision = \"f64\", or a tolerance from {expected:.0e} on"
@@ -69,12 +69,12 @@ pub enum SetupError {
     Mass {
         /// Integrator id.
         integrator: &'static str,
-        /// The cell, in the system's words.
+        /// The cell, as the system names it.
         cell: String,
         /// Its mass (kg).
         mass: f64,
     },
-    /// Internal variables of another number than the system's.
+    /// A number of internal variables other than the system's.
     #[error("`{integrator}`: the state has {state} internal variables, the system has {system}")]
     Internal {
         /// Integrator id.
@@ -163,7 +163,7 @@ pub enum StepError {
         /// The reason, and the remedy.
         reason: String,
     },
-    /// Steps that were not taken, without an error.
+    /// Steps that were not taken although no error was returned.
     #[error(
         "`{by}` at t = {} s: its `run` ended without an error before all steps were taken; expected each step \
          of the batch, or the reason against it",

@@ -22,14 +22,13 @@ pub struct StepReport {
     pub projected_solves: u64,
     /// Cells whose rows set-up read: all of a new system, afterwards only changed ones.
     pub cells_set_up: u64,
-    /// Degrees of freedom whose velocity was saturated; for a step taken in parts, in the part with
-    /// the most.
+    /// Degrees of freedom whose velocity was saturated; for a step in substeps, in the substep with the most.
     pub saturated: u64,
     /// Steps whose velocity was reduced, because the energy would have risen by more than rounding.
     pub limiter_hits: u64,
-    /// Steps taken again by another formula, because the first one's end has more energy than there was.
+    /// Steps taken again by another formula, because the first formula ends with more energy than before.
     pub fallbacks: u64,
-    /// Steps, or parts of them, taken again in shorter parts, because a law's stiffness grew too much within them.
+    /// Steps or substeps taken again in shorter substeps, because a law's stiffness grew too much within them.
     pub retaken: u64,
 }
 
@@ -50,7 +49,7 @@ impl StepReport {
         retaken: 0,
     };
 
-    /// Adds the work of a part of the same step.
+    /// Adds the work of a substep of the same step.
     pub(crate) fn add_part(&mut self, part: Self) {
         let saturated = self.saturated.max(part.saturated);
         *self += part;

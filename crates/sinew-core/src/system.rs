@@ -17,7 +17,7 @@ use crate::spectrum::Spectrum;
 use crate::state::State;
 use crate::trial::Trial;
 
-/// Sizes by which a guard cuts steps if a method knows no stable one.
+/// Sizes by which a guard divides steps if a method knows no stable one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scales<'a> {
     /// Shortest distance from each cell to a neighbour (m), one entry a cell.
@@ -52,9 +52,9 @@ pub trait System: Send + Sync {
         0
     }
 
-    /// Tells that a step was accepted and the state is its result, `dt` (s) after the one before. Called once per step,
-    /// or per substep of a step that is cut; laws with memory update the state's internal variables here. To call it by
-    /// hand, pass `dt = 0` for an instantaneous change and infinity for full relaxation.
+    /// Notifies the system that a step was accepted; the state is its result, `dt` (s) after the last accepted one.
+    /// Called once per step, or per substep of a divided step; laws with memory update the state's internal variables
+    /// here. To call it by hand, pass `dt = 0` for an instantaneous change and infinity for full relaxation.
     ///
     /// # Errors
     /// [`EvaluationError`] for a state outside the domain of a law with memory; the internal variables are then unspecified.
@@ -78,14 +78,14 @@ pub trait System: Send + Sync {
         None
     }
 
-    /// Its connected parts that supports leave rigid motions, if the system knows them: these strain nothing and must
-    /// cost nothing but their inertia.
+    /// Connected parts that can still move rigidly with their supports, if the system knows them. Such motions cause no
+    /// strain, so only inertia may resist them.
     fn free_parts(&self) -> Vec<FreePart> {
         Vec::new()
     }
 
-    /// The largest stiffness of any material against compression, `lambda + 2 mu`, over the smallest of any against shear,
-    /// mu, if the system knows them: the error of rounded stiffness grows with it.
+    /// The largest stiffness of any material in compression, `lambda + 2 mu`, over the smallest of any material in
+    /// shear, mu, if the system knows them: the error of rounded stiffness grows with it.
     fn stiffness_contrast(&self) -> Option<f64> {
         None
     }
@@ -106,8 +106,8 @@ pub trait System: Send + Sync {
         None
     }
 
-    /// Number of elements that are inside out at a time, with the displacement `u` then; `None` if the
-    /// system has no elements, or moves by inputs that the time does not bring.
+    /// Number of elements that are inside out at a time, with the displacement `u` then; `None` if the system has no
+    /// elements, or follows inputs that are missing from the time.
     fn inverted_elements(&self, _when: LoadTime<'_>, _u: &[f64]) -> Option<usize> {
         None
     }
@@ -225,7 +225,7 @@ impl<'s> dyn System + 's {
         }
     }
 
-    /// `out = f_ext` (N) as a step takes it, with the displacement `u` (m), on which those of linear systems do not depend.
+    /// `out = f_ext` (N) as a step takes it, with the displacement `u` (m), which has no effect in linear systems.
     pub fn external_force(&self, when: LoadTime<'_>, u: &[f64], out: &mut [f64]) {
         match self.equations() {
             Equations::Linear(linear) => linear.operators().external_force(when, out),

@@ -2,9 +2,9 @@
 
 /// Factors `L D L'` of symmetric positive definite blocks, one for each cell, `layers` x `layers`.
 ///
-/// Each block is a positive diagonal and a positive semidefinite part, so that no pivot is below its own entry of
-/// the diagonal (a Schur complement is monotone in the matrix). Where rounding of a stiff part makes one smaller, that entry
-/// takes its place: a light node on stiff springs still moves in every direction.
+/// Each block is the sum of a positive diagonal and a positive semidefinite part, so that no pivot is below its entry
+/// of the diagonal (a Schur complement is monotone in the matrix). Where rounding of a stiff part makes one smaller,
+/// that entry replaces the pivot: a light node on stiff springs still moves in every direction.
 #[derive(Debug)]
 pub(crate) struct CellFactors {
     layers: usize,
@@ -48,7 +48,7 @@ impl CellFactors {
         }
     }
 
-    /// `x'B y` for the blocks B.
+    /// Returns `x'B y` for the blocks B.
     pub(crate) fn product(&self, x: &[f64], y: &[f64]) -> f64 {
         let n = self.layers;
         let cells = x.chunks_exact(n).zip(y.chunks_exact(n));

@@ -13,7 +13,7 @@ use crate::scheme::{Scheme, SetUp};
 
 /// A method that is a program made of a few numbers: coefficients, limits and documentation.
 pub trait Explicit: Default + Send + Sized + 'static {
-    /// The name users type.
+    /// The name that users type.
     const ID: &'static str;
     /// One line for lists and help.
     const SUMMARY: &'static str;
@@ -24,7 +24,7 @@ pub trait Explicit: Default + Send + Sized + 'static {
     /// The energy that it conserves.
     const CONSERVES: ConservedEnergy = ConservedEnergy::Physical;
 
-    /// Builds it.
+    /// Creates the method from its options.
     ///
     /// # Errors
     /// [`OptionError`] for a value that does not fit.

@@ -9,7 +9,7 @@ pub(crate) struct Exponential {
     product: Vec<f64>,
 }
 
-/// Terms of the Taylor series after scaling to a norm below 1/2: 2^-16/16! is far under rounding.
+/// Terms of the Taylor series after scaling to a norm below 1/2: 2^-16/16! is far below rounding.
 const TERMS: u32 = 16;
 
 impl Exponential {
@@ -23,8 +23,8 @@ impl Exponential {
         }
     }
 
-    /// exp of the n x n matrix that `entry` gives, by scaling and squaring (Moler and Van Loan, SIAM
-    /// Review 45, 2003, method 3). The result is row-major; `n` must not pass the capacity.
+    /// exp of the n x n matrix that `entry` gives, by scaling and squaring (Moler and Van Loan, SIAM Review 45, 2003,
+    /// method 3). The result is row-major; `n` must not exceed the capacity.
     pub(crate) fn of(&mut self, n: usize, entry: impl Fn(usize, usize) -> f64) -> &[f64] {
         let n = n.min(self.capacity);
         let len = n * n;

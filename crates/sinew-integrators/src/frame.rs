@@ -67,7 +67,7 @@ impl<M: Scheme> Frame<M> {
         &self.scheme
     }
 
-    /// The method's steps, where set-up made steps that are no program.
+    /// The method's steps, if set-up produced steps that are no program.
     #[must_use]
     pub fn by_hand(&self) -> Option<&M::ByHand> {
         match &self.ready {
@@ -273,7 +273,7 @@ impl<M: Scheme> Frame<M> {
         }
     }
 
-    /// Refuses contact with steps that it cannot push.
+    /// Refuses contact for steps that do not support it.
     fn check_contact(&self, system: &dyn System) -> Result<(), SetupError> {
         let can_be_pushed = match &self.ready {
             Ready::Program(loaded) => loaded.program.inertia().is_some(),
@@ -294,7 +294,7 @@ impl<M: Scheme> Frame<M> {
         }
     }
 
-    /// Refuses an error that rounding exceeds, and rounding that leaves nothing of a motion.
+    /// Refuses an error that rounding exceeds, and rounding errors as large as the motion itself.
     fn check_rounding(&self) -> Result<(), SetupError> {
         if let Some(expected) = self.rounding.filter(|expected| *expected >= 1.0) {
             return Err(SetupError::Machine {
@@ -326,7 +326,7 @@ impl<M: Scheme> Frame<M> {
     }
 }
 
-/// The first instant (s) at which a load breaks a method's condition over a step of the batch.
+/// The first instant (s) at which a load violates a method's condition over a step of the batch.
 fn first_refused(needed: LoadOverStep, batch: &Batch<'_>, state: &State) -> Option<f64> {
     if needed == LoadOverStep::Any {
         return None;

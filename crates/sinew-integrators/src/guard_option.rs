@@ -10,8 +10,8 @@ use crate::option_kind::OptionKind;
 pub enum Guard {
     /// One limit for all cells (m/s).
     At(f64),
-    /// Limits by the energy of the loads and of the start of the motion; steps longer than the method's
-    /// stable one are cut.
+    /// Limits by the energy of the loads and of the start of the motion; steps longer than the method's stable one are
+    /// divided.
     Auto,
 }
 
@@ -33,7 +33,7 @@ impl GuardOption {
     /// The option's key.
     pub const KEY: &'static str = "saturation";
 
-    /// The option of methods that have no saturation of their own.
+    /// The option of methods without their own saturation.
     pub(crate) const HELP: OptionHelp = OptionHelp {
         key: Self::KEY,
         help: "guard: the largest speed of a cell (m/s); \"auto\" cuts steps beyond the stable one and limits speeds by the energy there is",
@@ -50,7 +50,7 @@ impl GuardOption {
         matches!(self, Self::Any).then_some(Self::HELP)
     }
 
-    /// Takes the guard out of the other options; `None` if absent.
+    /// Removes the guard from the other options and returns it; `None` if absent.
     ///
     /// # Errors
     /// [`OptionError::Value`] for anything but a finite number above 0, "auto" or "off".

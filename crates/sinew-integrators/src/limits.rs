@@ -1,8 +1,7 @@
 //! Tools for the largest stable steps of explicit methods.
 //!
-//! With proportional damping every mode is q'' + d q' + w^2 q = 0 with d = alpha + beta w^2, and
-//! the fastest mode decides. A damping matrix of its own enters through its largest eigenvalue;
-//! the limits are then lower bounds.
+//! With proportional damping every mode is q'' + d q' + w^2 q = 0 with d = alpha + beta w^2, and the fastest mode
+//! decides. A separate damping matrix enters through its largest eigenvalue; the limits are then lower bounds.
 
 use sinew_core::StableStep;
 use sinew_core::spectrum::Spectrum;
@@ -100,8 +99,8 @@ mod tests {
         assert!((limit(&|s| CentralDifference.stable_step(s)) - 0.0632).abs() < 5e-5);
     }
 
-    /// Two masses between walls with a dashpot between them: forward Euler is stable up to some step
-    /// or none, depending on the mode that the dashpot leaves alone.
+    /// Two masses between walls with a dashpot between them: forward Euler is stable up to some step or none, depending
+    /// on the mode on which the dashpot does not act.
     #[test]
     fn forward_euler_does_not_guess_what_dashpots_do() {
         let pattern = Arc::new(Pattern::from_elements(2, [[0, 1]]).unwrap());

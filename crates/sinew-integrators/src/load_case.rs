@@ -2,7 +2,7 @@
 
 use sinew_core::{LinearOperators, Load, Ramp};
 
-/// Loads with one ramp, added up.
+/// Loads with one ramp, as their sum.
 #[derive(Clone, Debug)]
 pub(crate) struct LoadCase {
     /// The factor over time.

@@ -1,4 +1,4 @@
-//! `machine`, `precision`, `threads`: where a method's program runs.
+//! `machine`, `precision`, `threads`: options for the machine that runs a method's program.
 
 use std::num::NonZero;
 use std::sync::{Mutex, PoisonError};
@@ -43,10 +43,10 @@ const THREADS: OptionHelp = OptionHelp {
 /// The options of every method that is a program.
 pub const MACHINE_OPTIONS: &[OptionHelp] = &[MACHINE, PRECISION, THREADS];
 
-/// Takes the machine's settings out of the options.
+/// Removes the machine's settings from the options and returns them.
 ///
 /// # Errors
-/// [`OptionError::Value`] for a machine or a precision that there is not.
+/// [`OptionError::Value`] for an unknown machine or precision.
 pub(crate) fn take_settings(
     options: &mut Options,
     integrator: &str,

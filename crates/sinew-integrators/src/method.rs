@@ -19,7 +19,7 @@ pub trait Method: Scheme {
     /// True if the method takes `substeps`: methods with a largest stable step do.
     const SUBSTEPS: bool = false;
 
-    /// True if set-up factorises a matrix of the whole body, which on a large mesh costs more than many runs.
+    /// True if set-up factorises a matrix of the whole body, which on a large mesh takes longer than many runs.
     const FACTORISES: bool = false;
 
     /// Form of its options in the labels of runs; every other option reads `key=value`.
@@ -31,7 +31,7 @@ pub trait Method: Scheme {
     /// True if its steps are programs, so that it takes the options of machines.
     const PROGRAMS: bool = false;
 
-    /// Builds it. Keys outside [`Method::OPTIONS`] have been refused before.
+    /// Creates the method. Keys outside [`Method::OPTIONS`] have been refused before.
     ///
     /// # Errors
     /// [`OptionError`] for a value that does not fit.
@@ -63,12 +63,12 @@ pub trait Method: Scheme {
         ConservedEnergy::Physical
     }
 
-    /// Makes it an integrator.
+    /// Turns it into an integrator.
     fn integrator(self) -> Box<dyn Stepper> {
         self.on_machine(Settings::default())
     }
 
-    /// Makes it an integrator whose programs run on a machine with these settings.
+    /// Turns it into an integrator whose programs run on a machine with these settings.
     fn on_machine(self, machine: Settings) -> Box<dyn Stepper> {
         Box::new(Frame::new(self).on(machine))
     }
@@ -80,12 +80,12 @@ pub trait Method: Scheme {
 /// between them and w their mean.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum ConservedEnergy {
-    /// `v' M v/2 + u' K u/2` at one time, exactly or up to an error that does not grow.
+    /// `v' M v/2 + u' K u/2` at one time, exactly or with an error that does not grow.
     #[default]
     Physical,
     /// `v'(P - dt/2 D - dt^2/4 K) v/2 + w' K w/2` with `P = (1 + alpha dt/2) M`.
     CentralDifference,
-    /// The energy of central difference with a stabilising matrix P in the place of M.
+    /// The energy of central difference with a stabilising matrix P in place of M.
     Stabilised {
         /// Share of the damping other than alpha M that lags by half a step (fraction).
         lagging: f64,

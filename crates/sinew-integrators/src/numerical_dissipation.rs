@@ -1,4 +1,4 @@
-//! Numerical dissipation: energy that a method takes from the motion.
+//! Numerical dissipation: energy that a method removes from the motion.
 
 use sinew_core::vectors::{dot, weighted_dot};
 use sinew_core::{LinearOperators, LoadTime};
@@ -27,8 +27,8 @@ pub enum NumericalDissipation {
         of_mass: f64,
         /// Share of the old forces in the equation of motion.
         of_forces: f64,
-        /// Offset, in steps, of the times at which loads are taken from the ends of the step: their change times that
-        /// is no loss.
+        /// Offset, in steps, of the times at which loads are taken from the ends of the step: their change times this
+        /// offset is no loss.
         load_shift: f64,
     },
     /// The implicit Euler method under the mean of the loads in a step: `(dv' M dv + du' K du)/2`, its equation of motion
@@ -60,7 +60,7 @@ impl NumericalDissipation {
         LoadTime::at_both_ends(t, dt, 0.5 - load_shift)
     }
 
-    /// The energy (J) that is taken in a step of `dt` (s) between these ends.
+    /// The energy (J) that is removed in a step of `dt` (s) between these ends.
     #[must_use]
     pub fn taken(
         &self,

@@ -56,7 +56,7 @@ impl OptionHelp {
         })
     }
 
-    /// The number that is given, if one is.
+    /// The given number, if any.
     ///
     /// # Errors
     /// [`OptionError::Value`] if the value does not fit.

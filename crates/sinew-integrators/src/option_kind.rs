@@ -15,7 +15,7 @@ pub enum OptionKind {
     Words(&'static [&'static str]),
     /// A table with these keys and the values of each. The first must be given.
     Table(&'static [(&'static str, OptionKind)]),
-    /// One of several.
+    /// A value of one of several kinds.
     Either(&'static [OptionKind]),
 }
 

@@ -7,8 +7,8 @@ use crate::explicit::{GuardOption, Guarded, Substepped, Substeps};
 use crate::machine_options::{MACHINE_OPTIONS, take_settings};
 use crate::{ConservedEnergy, Method, OptionHelp, OptionLabel, Stepper};
 
-/// Calls `$then! { name: Type, .. }` with every integrator there is: the one list that the
-/// registry and the conformance tests are made from. A new integrator is one line here.
+/// Calls `$then! { name: Type, .. }` with every integrator: the one list for the registry and the conformance tests. A
+/// new integrator is one line here.
 #[macro_export]
 macro_rules! for_each_integrator {
     ($then:ident) => {
@@ -38,13 +38,13 @@ macro_rules! for_each_integrator {
     };
 }
 
-/// Builds an integrator from its own options, on a machine with these settings.
+/// Builds an integrator from its options, on a machine with these settings.
 type Build = fn(&Options, Settings) -> Result<Box<dyn Stepper>, OptionError>;
 
 /// An integrator that can be built by name.
 #[derive(Clone, Copy)]
 pub struct Entry {
-    /// The name users type.
+    /// The name that users type.
     pub id: &'static str,
     /// One line about it.
     pub summary: &'static str,
@@ -142,8 +142,9 @@ impl Entry {
     }
 }
 
-/// Options with the given largest number of threads, or else the options' own, or else as many as help. Methods
-/// without steps for machines have one thread: they accept it, and "auto", as a request, and refuse more.
+/// Options with the given largest number of threads, if any, otherwise with the options' own number, otherwise with the
+/// best number. Methods without steps for machines have one thread: they accept one thread, and "auto", as a request,
+/// and refuse more.
 #[must_use]
 pub fn with_threads(id: &str, options: &Options, threads: Option<&OptionValue>) -> Options {
     const KEY: &str = "threads";

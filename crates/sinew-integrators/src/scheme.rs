@@ -11,9 +11,9 @@ use sinew_core::{
 
 use crate::numerical_dissipation::NumericalDissipation;
 
-/// A method whose steps are made by set-up and framed by [`crate::Frame`].
+/// A method whose steps come from its set-up and run in a [`crate::Frame`].
 pub trait Scheme: Send + Sized + 'static {
-    /// The name users type.
+    /// The name that users type.
     const ID: &'static str;
 
     /// Steps that no program of sweeps expresses; [`Infallible`] if a program always
@@ -23,8 +23,8 @@ pub trait Scheme: Send + Sized + 'static {
     /// Properties that it declares.
     fn properties(&self) -> Properties;
 
-    /// The error (relative) that the user asked for, if there is such an option: a precision with a larger rounding
-    /// error is refused.
+    /// The relative error that the user requested, if there is such an option: a precision with a larger rounding error
+    /// is refused.
     fn asked_error(&self) -> Option<f64> {
         None
     }
@@ -73,9 +73,8 @@ pub trait Scheme: Send + Sized + 'static {
         StableStep::Unknown
     }
 
-    /// Makes its steps of `dt` (s) on a system. The step and the masses are sound, and the system
-    /// has the parts named by [`Properties::needs`]. Parts of `before`, its last steps on any system, may
-    /// be reused.
+    /// Creates its steps of `dt` (s) on a system. The step and the masses are valid, and the system has the parts named
+    /// by [`Properties::needs`]. Parts of `before`, its last steps on any system, may be reused.
     ///
     /// # Errors
     /// [`SetupError`] when the method cannot run there.
@@ -148,7 +147,7 @@ pub trait StepByHand: Send {
     /// a last step of the same length if steps are staggered.
     ///
     /// # Errors
-    /// [`StepError`] when the system refuses a trial state or the step would be wrong.
+    /// [`StepError`] when the system refuses a trial state or the step would be inaccurate.
     fn step(&mut self, step: &Step<'_>, state: &mut State) -> Result<Stepped, StepError>;
 
     /// Reason why no program of sweeps expresses them.

@@ -25,19 +25,19 @@ pub trait Stepper: Integrator {
     }
 
     /// Divides each automatic substep into `_times` substeps from now on; returns false if steps are as long as its
-    /// caller asks for, or are divided into a given number of substeps. A comparison of a run with one of shorter
-    /// steps needs it: half of a step that is divided in two is the same two substeps.
+    /// caller asks for, or are divided into a given number of substeps. A comparison of a run with one of shorter steps
+    /// needs this function, because halving a step that is divided in two gives the same substeps.
     fn refine(&mut self, _times: u32) -> bool {
         false
     }
 
-    /// Machine that computes its steps, and the error that this costs, one sentence each; empty before set-up and for
-    /// steps that no machine takes.
+    /// Machine that computes its steps, and the resulting error, one sentence each; empty before set-up and for steps
+    /// that do not run on a machine.
     fn computed_by(&self) -> Vec<String> {
         Vec::new()
     }
 
-    /// Reason why there is no program, where set-up made none.
+    /// Reason why there is no program, if set-up made none.
     fn without_program(&self) -> &'static str {
         "its steps are not sweeps with coefficients that are known beforehand"
     }

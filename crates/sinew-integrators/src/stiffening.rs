@@ -2,11 +2,11 @@
 
 use sinew_core::{Inputs, LoadTime, State, StiffestElement, System, Trial};
 
-/// Stiffening from which on it explains that a step fails.
+/// Stiffening above which it explains a failed step.
 const TOLD: f64 = 4.0;
 
-/// The stiffest element of a state, where it is several times as stiff as any at rest: one pressed flat, or one whose law or
-/// fibres stiffen.
+/// The stiffest element of a state, if it is several times as stiff as any element at rest: one pressed flat, or one
+/// whose law or fibres stiffen.
 pub(crate) fn stiffened_element(
     system: &dyn System,
     inputs: &Inputs,

@@ -1,4 +1,4 @@
-//! Every integrator keeps the laws of the core's conformance suite, under all its options.
+//! Tests that every integrator obeys the laws of the core's conformance suite, under all its options.
 
 #![cfg(test)]
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]

@@ -1,4 +1,4 @@
-//! Time of a step on each kernel (s), one line each: what `cargo xtask native` compares between builds.
+//! Time of a step on each kernel (s), one line each, for the comparison of builds by `cargo xtask native`.
 
 #![allow(
     clippy::unwrap_used,
@@ -35,7 +35,7 @@ fn of<T: ElementPrecision>(model: &Model, cells: usize) {
     }
 }
 
-/// The shortest time of a step of symplectic Euler: what other programs take adds, and never less than that.
+/// The shortest time of a step of symplectic Euler: other programs on the computer can only lengthen it.
 fn step(machine: &mut dyn Machine, model: &Model, steps: usize) -> f64 {
     let dt = 0.9 * 2.0 / (model as &dyn System).spectrum(None).unwrap().omega_max;
     let (u, v) = (Register::U, Register::V);

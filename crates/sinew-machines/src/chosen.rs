@@ -7,12 +7,12 @@ use sinew_core::{Batch, CostClock, Equations, Revision, State, StepError, System
 
 use crate::settings::{Kind, Settings};
 
-/// A machine built for each system that it is given, as its settings say ([`crate::KnownMachine`]).
+/// A machine built for each system that it receives, as its settings say ([`crate::KnownMachine`]).
 #[derive(Debug, Default)]
 pub struct Chosen {
     settings: Settings,
     machine: Option<Box<dyn Machine>>,
-    /// Identity of the system that it was built for; `None` once it ran another.
+    /// Identity of the system that it was built for; `None` after it ran another.
     built_for: Option<Revision>,
     /// True if only the reference machine accepts the system, although the settings allow others.
     alone: bool,

@@ -50,21 +50,21 @@ pub(crate) struct Compiled<T> {
     pub(crate) step: Vec<CompiledSweep<T>>,
 }
 
-/// A sweep, in steps that are not the last of a batch and in those that are.
+/// A sweep, for steps that are not the last of a batch and for those that are.
 #[derive(Debug)]
 pub(crate) struct CompiledSweep<T> {
     pub(crate) variants: [Variant<T>; 2],
 }
 
-/// A sweep with the updates that it makes.
+/// A sweep with its updates.
 #[derive(Debug)]
 pub(crate) struct Variant<T> {
     codes: CellMap<T>,
     /// The same with the vectors of the present step.
     map: CellMap<T>,
-    /// Registers whose two vectors change places afterwards.
+    /// Registers whose two vectors are exchanged afterwards.
     pub(crate) swapped: Vec<usize>,
-    /// Weights that are others in each step: update, term, weight.
+    /// Weights that differ from step to step: update, term, weight.
     followed: Vec<(usize, usize, Weight)>,
 }
 

@@ -20,14 +20,16 @@ use crate::forces::Forces;
 use crate::layout::Layout;
 use crate::touched::Touched;
 
-/// The size to which displacements rise unseen, as a share of that of the touched cells.
+/// Limit, as a share of the size of displacements of the touched cells, up to which displacements may grow without a
+/// check.
 const LEAST_REACH: f64 = 1e-3;
 
-/// Margin for displacements to grow unseen, as a factor: if one exceeds it, the whole state is shown and checked again.
+/// Margin for the growth of displacements without a check, as a factor: if one exceeds it, the whole state is shown and
+/// checked again.
 const ROOM: f64 = 1.25;
 
-/// Runs programs on the cells of a system in the order of a [`Layout`], each sweep in one pass over matrices; where forces are sums
-/// over elements, after the passes over these.
+/// Runs programs on the cells of a system in the order of a [`Layout`], each sweep in one pass over matrices; if forces
+/// are sums over elements, after the passes over these.
 #[derive(Debug)]
 pub struct FastMachine<T> {
     layout: Arc<Layout<T>>,
@@ -40,7 +42,7 @@ pub struct FastMachine<T> {
     loaded: Option<Arc<RwLock<Loaded<T>>>>,
 }
 
-/// A program with the vectors that it works on.
+/// A program with its vectors.
 #[derive(Debug)]
 struct Loaded<T> {
     program: Arc<Program>,
@@ -56,16 +58,17 @@ struct Loaded<T> {
     forces_field: usize,
     forces: Forces,
     followed: FollowedLoad,
-    /// Forces of elements, where the system has them, and the number of their vector.
+    /// Forces of elements, if the system has them, and the number of their vector.
     elements: Option<(Box<dyn ElementSweep<T>>, usize)>,
-    /// The sweep under way.
+    /// The current sweep.
     current: Current<T>,
     work: Work,
     /// The cells that contact reads.
     touched: Touched<T>,
     /// Cells that were pushed in the last step.
     pushed: Vec<u32>,
-    /// A size (m) that no component of a displacement exceeded as the last step ended, where contact is asked for what is near.
+    /// A size (m) that no component of a displacement exceeded at the end of the last step, if contact requests the
+    /// cells near its tools.
     largest: f64,
 }
 
@@ -81,7 +84,7 @@ enum Work {
 }
 
 impl Work {
-    /// Numbers that tell apart what takes different times.
+    /// Numbers that distinguish kinds of work with different times.
     fn kind(self) -> usize {
         match self {
             Self::Cells => 0,
@@ -91,7 +94,7 @@ impl Work {
     }
 }
 
-/// A sweep of a program that is under way.
+/// A sweep of a program in progress.
 #[derive(Clone, Copy, Debug)]
 struct Current<T> {
     part: Part,
@@ -124,7 +127,7 @@ impl<T: ElementPrecision> FastMachine<T> {
         }
     }
 
-    /// Uses these instructions, where the machine has them.
+    /// Uses these instructions, if the machine has them.
     #[must_use]
     pub fn with_instructions(mut self, set: InstructionSet) -> Self {
         if set.is_available() {
@@ -145,7 +148,7 @@ impl<T: ElementPrecision> FastMachine<T> {
         &self.layout
     }
 
-    /// Loads the program again for other matrices than those it was loaded for.
+    /// Loads the program again if the matrices differ from those for which it was loaded.
     fn reload(&mut self, system: &dyn System) {
         let Some(loaded) = &self.loaded else {
             return;
@@ -263,7 +266,8 @@ impl<T: ElementPrecision> Machine for FastMachine<T> {
     }
 }
 
-/// The matrices and loads of a system that kernels can run, and the number of its elements where forces are sums over these.
+/// The matrices and loads of a system that kernels can run, and the number of its elements if forces are sums over
+/// these.
 fn matrices(system: &dyn System) -> Option<(&LinearOperators, usize)> {
     match system.equations() {
         Equations::Linear(linear) => Some((linear.operators(), 0)),
@@ -342,7 +346,7 @@ impl<T: ElementPrecision> Loaded<T> {
         loaded
     }
 
-    /// Writes what stays the same from step to step.
+    /// Writes the data that stay the same from step to step.
     fn write_constants(&mut self, layout: &Layout<T>, mass: &[f64]) {
         let layers = self.fields.layers();
         let constants = &self.sweeps.constants;
@@ -386,7 +390,7 @@ impl<T: ElementPrecision> Loaded<T> {
     }
 }
 
-/// A batch under way.
+/// A batch in progress.
 struct Running<'a, T> {
     loaded: &'a RwLock<Loaded<T>>,
     layout: &'a Layout<T>,
@@ -404,11 +408,11 @@ enum Part {
 }
 
 impl<T: ElementPrecision> Running<'_, T> {
-    /// Takes all steps, or parts of them, of a batch.
+    /// Takes all steps, or substeps, of a batch.
     ///
     /// # Errors
-    /// [`StepError::Refused`] where the system refuses a motion; the state is then that before the step, as far as the program's
-    /// sweeps before have not moved it.
+    /// [`StepError::Refused`] if the system refuses a motion; the state is then that before the step, unless earlier
+    /// sweeps of the program have moved it.
     fn steps(
         mut self,
         program: &Program,
@@ -519,7 +523,7 @@ impl<T: ElementPrecision> Running<'_, T> {
         Ok(())
     }
 
-    /// Makes one sweep, where the step needs it.
+    /// Runs one sweep, if the step needs it.
     fn sweep(
         &mut self,
         sweep: &Sweep,
@@ -552,7 +556,7 @@ impl<T: ElementPrecision> Running<'_, T> {
         outcome
     }
 
-    /// Makes the work that has been prepared.
+    /// Does the prepared work.
     fn sweep_over(&mut self, chunks: usize) -> Outcome {
         let kind = read(self.loaded).work.kind();
         self.host.sweep(kind, chunks)
@@ -610,7 +614,7 @@ impl<T: ElementPrecision> Loaded<T> {
         self.take(layout, state);
     }
 
-    /// Takes the loads of a sweep, and the weights that follow one.
+    /// Takes the loads of a sweep, and the weights that depend on one.
     fn take_loads(
         &mut self,
         layout: &Layout<T>,
@@ -635,7 +639,7 @@ impl<T: ElementPrecision> Loaded<T> {
         variant.resolve(&self.table, |weight| followed.weight(weight));
     }
 
-    /// Does the work that was prepared, on a range of chunks, or of parts, that no other thread makes.
+    /// Does the prepared work on a range of chunks, or of parts, that no other thread processes.
     fn make(&self, chunks: Range<usize>) -> Outcome {
         if let Some((elements, field)) = &self.elements {
             let (done, is_defined) = self.of_elements((&**elements, *field), chunks.clone());
@@ -657,7 +661,8 @@ impl<T: ElementPrecision> Loaded<T> {
         run(&sweep, self.set, chunks)
     }
 
-    /// Does what is to be done for elements before the cells are swept; whether that was all, and whether the law is defined.
+    /// Does the work for elements before the sweep over the cells; returns whether this was all, and whether the law is
+    /// defined.
     #[allow(unsafe_code, reason = "a machine hands out each chunk once")]
     fn of_elements(
         &self,
@@ -686,14 +691,14 @@ impl<T: ElementPrecision> Loaded<T> {
         }
     }
 
-    /// Ends the sweep that was prepared.
+    /// Ends the prepared sweep.
     fn swap(&mut self) {
         for register in &self.current.variant(&self.sweeps).swapped {
             self.table.swap(2 * register, 2 * register + 1);
         }
     }
 
-    /// Takes u, v and, where there is one, the acceleration of a state.
+    /// Takes u, v and, if present, the acceleration of a state.
     fn take(&mut self, layout: &Layout<T>, state: &State) {
         for (register, values) in [&state.u, &state.v, &state.a].into_iter().enumerate() {
             if !self.sweeps.registers[register] || values.len() != state.u.len() {
@@ -711,7 +716,7 @@ impl<T: ElementPrecision> Loaded<T> {
         }
     }
 
-    /// Writes u, v and, where the program has one, the acceleration of a state.
+    /// Writes u, v and, if the program has one, the acceleration of a state.
     fn show(&mut self, layout: &Layout<T>, state: &mut State) {
         let values = [&mut state.u, &mut state.v, &mut state.a];
         for (register, values) in values.into_iter().enumerate() {
@@ -751,7 +756,8 @@ impl<T: ElementPrecision> Loaded<T> {
         !all.all(|u| u.abs() <= limit)
     }
 
-    /// Takes u and v of the cells that were pushed, rounds them in the state, too, and takes what follows from them.
+    /// Takes u and v of the cells that were pushed, also rounds them in the state, and updates all values that depend
+    /// on them.
     fn take_pushed(&mut self, layout: &Layout<T>, state: &mut State) {
         let layers = self.fields.layers();
         let program = Arc::clone(&self.program);
@@ -872,7 +878,7 @@ fn write<T>(lock: &RwLock<T>) -> RwLockWriteGuard<'_, T> {
     lock.write().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Makes a sweep on a range of chunks.
+/// Runs a sweep on a range of chunks.
 #[allow(unsafe_code, reason = "a machine hands out each chunk once")]
 fn run<T: Precision>(
     sweep: &kernel::Sweep<'_, T>,

@@ -4,12 +4,12 @@ use sinew_cnn::{Loads, StepTime};
 use sinew_core::{Inputs, LinearOperators, Load, Revision};
 use sinew_sparse::sweep::{CHUNK, Fields, Numbering, Precision};
 
-/// The forces of a sweep: written again only when a load's factor changes.
+/// The forces of a sweep: rewritten only when a load's factor changes.
 #[derive(Debug, Default)]
 pub(crate) struct Forces {
     /// Address of each load that is in the field, and its factor. Loads do not move during a batch.
     present: Vec<(usize, f64)>,
-    /// Identity of the loads in the field; `None` if some are no system's own.
+    /// Identity of the loads in the field; `None` if some are not the system's.
     of: Option<[Revision; 2]>,
     wanted: Vec<(usize, f64)>,
     /// Positions and layers that are not 0.
@@ -32,8 +32,8 @@ impl Forces {
         }
     }
 
-    /// Begins a batch. Forgets which loads are in the field, so that the next ones are written, unless they are the system's own and the same as in the
-    /// batch before.
+    /// Begins a batch. Marks the field as outdated, so that the next loads are written, unless they are the system's
+    /// own and the same as in the previous batch.
     pub(crate) fn begin(&mut self, operators: &LinearOperators, inputs: &Inputs) {
         let revisions = [operators.revision(), operators.loads_revision()];
         let of = (inputs.forces().len() == 0).then_some(revisions);

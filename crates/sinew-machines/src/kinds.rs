@@ -71,10 +71,10 @@ pub(crate) const OURS: &[KnownMachine] = &[
     },
 ];
 
-/// Cells below which a sweep is too short for kernels.
+/// Number of cells below which a sweep is too short for kernels.
 const FEWEST_CELLS: usize = 16;
 
-/// Refuses single precision for laws that no kernels run.
+/// Refuses single precision for laws without kernels.
 fn in_double_precision(settings: &Settings) -> Result<(), Unfit> {
     match settings.precision {
         PrecisionName::F64 => Ok(()),

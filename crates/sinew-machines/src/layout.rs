@@ -28,25 +28,25 @@ struct BesideElements<T>(Arc<Layout<T>>);
 /// The layout of a lattice, if any.
 struct Repeated<T>(Option<Arc<Layout<T>>>);
 
-/// Work of a batch (microseconds, about) below which sleeping threads are not woken.
+/// Approximate work of a batch (microseconds) below which sleeping threads are not woken.
 const WAKE: usize = 400;
 
-/// Work of a sweep (microseconds, about) that is worth a thread.
+/// Approximate work of a sweep (microseconds) that is worth a thread.
 const SHARE: usize = 30;
 
-/// Elements that a microsecond, about, is enough for.
+/// Approximate number of elements per microsecond.
 const ELEMENTS: usize = 150;
 
 /// Bytes of matrices that stay in a second cache, and in a third.
 const SECOND_CACHE: usize = 2 << 20;
 const THIRD_CACHE: usize = 32 << 20;
 
-/// Time of a cell's map for a vector of positions, about, in that of the product of a vector with a template's block. A
-/// block that is read takes 4 of these in the second cache, 8 in the third and 12 in memory.
+/// Approximate time of a cell's map for a vector of positions, relative to that of the product of a vector with a
+/// template's block. Reading a block takes 4 of these in the second cache, 8 in the third and 12 in memory.
 const MAP: usize = 8;
 
 impl<T: Precision> Layout<T> {
-    /// The rows of any matrix, each stored separately; made once for all clones of the operators.
+    /// The rows of any matrix, each stored separately; built once for all clones of the operators.
     #[must_use]
     pub fn general(operators: &LinearOperators) -> Arc<Self> {
         let of = |operators: &LinearOperators| {
@@ -66,7 +66,7 @@ impl<T: Precision> Layout<T> {
         Arc::clone(&operators.derived::<General<T>>(of).0)
     }
 
-    /// The matrices used together with the elements of a force law, in the order of its forces; made once for all
+    /// The matrices used together with the elements of a force law, in the order of its forces; built once for all
     /// clones of the operators.
     #[must_use]
     pub fn beside_elements(forces: &dyn ElementForces) -> Arc<Self> {
@@ -92,8 +92,8 @@ impl<T: Precision> Layout<T> {
         Arc::clone(&forces.operators().derived::<BesideElements<T>>(of).0)
     }
 
-    /// Templates on a lattice, if cells are on one and few templates make all rows; made once for all
-    /// clones of the operators.
+    /// Templates on a lattice, if cells are on one and few templates make all rows; built once for all clones of the
+    /// operators.
     #[must_use]
     pub fn repeated(system: &dyn LinearSystem) -> Option<Arc<Self>> {
         let of = |operators: &LinearOperators| {
@@ -121,8 +121,8 @@ impl<T: Precision> Layout<T> {
         })
     }
 
-    /// True if templates take less time than rows that are read from memory. Short runs, which free surfaces and holes
-    /// cause, fill vectors badly, and the rows of a small body stay in a cache.
+    /// True if templates take less time than rows read from memory. Short runs, which free surfaces and holes cause,
+    /// use vectors poorly, and the rows of a small body stay in a cache.
     pub(crate) fn pays(&self) -> bool {
         let Rows::Lattice(lattice) = &self.stiffness else {
             return true;
@@ -174,8 +174,8 @@ impl<T: Precision> Layout<T> {
         self.stiffness.bytes() + self.dashpots.as_ref().map_or(0, Rows::bytes)
     }
 
-    /// The number of threads that pays for sweeps over this number of chunks and elements: as many as each get work for
-    /// some tens of microseconds in a sweep, and one where a batch ends before others are awake.
+    /// The best number of threads for sweeps over this number of chunks and elements: each has work for some tens of
+    /// microseconds in a sweep; one thread if a batch ends before others are awake.
     pub(crate) fn threads_for(&self, chunks: usize, elements: usize, sweeps: usize) -> usize {
         // Microseconds, about: rows of blocks are read from memory, templates are not.
         let (work, vectors) = match self.stiffness {

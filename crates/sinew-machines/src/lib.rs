@@ -1,12 +1,12 @@
 //! Machines that run the programs of cellular networks as fast as the hardware allows.
 //!
 //! A program ([`sinew_cnn::Program`]) states the operations of every cell in a step; the reference machine of
-//! `sinew-cnn` defines its meaning. The machines here do the same to rounding: [`FastMachine`] takes
-//! the cells in an order of its own, as structures of arrays, makes each sweep in one pass and uses
-//! the best available instructions, in `f64` or `f32`, with the rows of any matrix or, if they repeat
-//! on a lattice, with a few templates that are stored once. [`Chosen`] takes what fits a system.
+//! `sinew-cnn` defines its meaning. The machines here do the same to rounding: [`FastMachine`] stores the cells in its
+//! own order, as structures of arrays, runs each sweep in one pass and uses the best available instructions, in `f64`
+//! or `f32`, with the rows of any matrix or, if they repeat on a lattice, with a few templates that are stored once.
+//! [`Chosen`] uses the machine that fits a system.
 //!
-//! A program outside adds a machine of its own by [`register`], and scenes know it by its id from then on:
+//! Another program can add its own machine by [`register`]; scenes then know it by its id:
 //!
 //! ```
 //! use sinew_cnn::ReferenceMachine;

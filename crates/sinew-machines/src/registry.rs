@@ -1,5 +1,5 @@
-//! Registry of the kinds of machines that [`Settings`] and scenes know by their ids: ours, and those that a program
-//! adds.
+//! Registry of the kinds of machines that [`Settings`] and scenes know by their ids: those of this crate, and those
+//! that a program adds.
 
 use std::sync::{PoisonError, RwLock};
 
@@ -53,7 +53,7 @@ static ADDED: RwLock<Vec<&'static KnownMachine>> = RwLock::new(Vec::new());
 /// Adds a kind of machine, so that scenes and [`Settings`] know it by its id, for as long as the program runs.
 ///
 /// # Errors
-/// [`RegisterError`] for an id that is taken.
+/// [`RegisterError`] for an id that is in use.
 pub fn register(machine: KnownMachine) -> Result<Kind, RegisterError> {
     let id = machine.id;
     let mut added = ADDED.write().unwrap_or_else(PoisonError::into_inner);

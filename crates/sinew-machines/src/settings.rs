@@ -10,16 +10,16 @@ use sinew_sparse::simd::InstructionSet;
 pub struct Kind(pub(crate) &'static str);
 
 impl Kind {
-    /// The fastest that takes the system.
+    /// The fastest kind that supports the system.
     pub const AUTO: Self = Self("auto");
-    /// Plain loops, the meaning of a program.
+    /// Plain loops: the reference meaning of a program.
     pub const REFERENCE: Self = Self("reference");
     /// Kernels for any matrix.
     pub const GENERAL: Self = Self("general");
     /// Kernels for rows that repeat on a lattice.
     pub const REPEATED: Self = Self("repeated");
 
-    /// The name users type.
+    /// The name that users type.
     #[must_use]
     pub const fn id(self) -> &'static str {
         self.0
@@ -43,7 +43,7 @@ pub enum PrecisionName {
 }
 
 impl PrecisionName {
-    /// The name users type.
+    /// The name that users type.
     #[must_use]
     pub fn id(self) -> &'static str {
         match self {
@@ -60,7 +60,7 @@ pub struct Settings {
     pub kind: Kind,
     /// The precision that it computes in.
     pub precision: PrecisionName,
-    /// Its instructions; `None` for the best there are.
+    /// Its instructions; `None` for the best available.
     pub instructions: Option<InstructionSet>,
     /// The largest number of threads.
     pub threads: Threads,
@@ -72,7 +72,7 @@ pub enum Threads {
     /// The calling thread alone.
     #[default]
     One,
-    /// At most this many, and no more than the processors available to this process.
+    /// This number at most, and no more than the processors available to this process.
     UpTo(NonZero<u32>),
     /// All processors that the system gives to this process.
     All,

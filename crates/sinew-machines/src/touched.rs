@@ -4,10 +4,10 @@ use sinew_core::{Meeting, State};
 use sinew_sparse::simd::{InstructionSet, Number, Real, WithReal};
 use sinew_sparse::sweep::{Fields, Numbering, Precision};
 
-/// Coordinate (m) of a position at which no cell is touched: outside of any box.
+/// Coordinate (m) for a position without a touched cell: outside of any box.
 const NOWHERE: f64 = 1e30;
 
-/// A position at which no cell is touched.
+/// Value for a position without a touched cell.
 const NONE: u32 = u32::MAX;
 
 /// The cells that contact reads, and the blocks of positions that contain any, so that a box is compared with whole
@@ -22,7 +22,7 @@ pub(crate) struct Touched<T> {
     blocks: Vec<u32>,
     /// Coordinates (m) at rest of the positions of all blocks, along each axis.
     at_rest: [Vec<T>; 3],
-    /// Places of their cells.
+    /// Positions of their cells.
     places: Vec<u32>,
     /// The lowest and the highest coordinates (m) at rest in each block, along each axis, for whole vectors of blocks.
     ends: [[Vec<T>; 3]; 2],
@@ -31,7 +31,7 @@ pub(crate) struct Touched<T> {
 }
 
 impl<T: Precision> Touched<T> {
-    /// None.
+    /// Returns an empty set.
     pub(crate) fn none() -> Self {
         Self {
             cells: Vec::new(),
@@ -45,7 +45,7 @@ impl<T: Precision> Touched<T> {
         }
     }
 
-    /// Sets the cells and their rest places (m), unless they are the same already.
+    /// Sets the cells and their rest positions (m), unless they are the same already.
     pub(crate) fn take(&mut self, numbering: &Numbering, cells: &[u32], rest: &[[f64; 3]]) {
         if self.cells == cells && self.rest == rest {
             return;
@@ -78,7 +78,7 @@ impl<T: Precision> Touched<T> {
         self.find_ends();
     }
 
-    /// Finds how far blocks reach at rest, from their cells.
+    /// Finds the extent of blocks at rest, from their cells.
     fn find_ends(&mut self) {
         let whole = self.blocks.len().next_multiple_of(T::LANES);
         for of_axis in self.ends.as_flattened_mut() {
@@ -106,12 +106,12 @@ impl<T: Precision> Touched<T> {
         edges.into_iter().fold(0.0, f64::max)
     }
 
-    /// Writes u and v of all of them into a state, from these vectors.
+    /// Writes u and v of all touched cells from these vectors into a state.
     pub(crate) fn show_all(&self, fields: &mut Fields<T>, vectors: [usize; 2], state: &mut State) {
         self.show_these(fields, vectors, 0..self.cells.len(), state);
     }
 
-    /// Writes u and v of those at these places into a state.
+    /// Writes u and v of the cells with these indices into a state.
     pub(crate) fn show_listed(
         &self,
         fields: &mut Fields<T>,
@@ -135,8 +135,8 @@ impl<T: Precision> Touched<T> {
     }
 
     /// Lists the indices of the cells whose paths in the step may meet a box (m), increasing. No component of a
-    /// displacement is larger than `largest` (m) at either end of a path: if a whole block stays away from the box
-    /// then, its paths are not checked.
+    /// displacement is larger than `largest` (m) at either end of a path: if a whole block is then outside the box, its
+    /// paths are not checked.
     pub(crate) fn list_near(
         &self,
         set: InstructionSet,
@@ -170,8 +170,8 @@ impl<T: Precision> Touched<T> {
         }
     }
 
-    /// A box widened by more than the rounding of paths in this precision; contact ignores cells that are listed in
-    /// vain.
+    /// A box widened by more than the rounding of paths in this precision; contact ignores cells that are listed
+    /// unnecessarily.
     fn with_roundings(&self, [low, high]: [[f64; 3]; 2]) -> [[f64; 3]; 2] {
         let sizes = self.extent.iter().chain([&low, &high]).flatten();
         let largest = sizes.fold(0.0_f64, |largest, x| largest.max(x.abs()));
@@ -268,7 +268,7 @@ fn lanes_met<N: Number>([low, high]: [[f64; 3]; 2], ends: impl Fn(usize) -> (N, 
     met
 }
 
-/// The lanes of which a bit is set, increasing.
+/// The lanes whose bit is set, in increasing order.
 #[inline(always)]
 fn lanes_of(mut bits: u32) -> impl Iterator<Item = usize> {
     std::iter::from_fn(move || {
@@ -284,7 +284,7 @@ mod tests {
 
     use super::*;
 
-    /// Every path that meets a box is listed, in every precision and by all instructions, and few others.
+    /// Every path that meets a box is listed, in every precision and with all instruction sets, and few other paths.
     fn lists_what_meets_a_box<T: Precision>() {
         let mut seed = 3_u64;
         let mut random = || {

@@ -1,4 +1,4 @@
-//! Settings that a system does not fit.
+//! Reasons why settings do not fit a system.
 
 /// Reasons why a machine with the given settings cannot run a system.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -14,7 +14,7 @@ pub enum Unfit {
         "machine = {0:?} runs matrices alone, and the forces of this system follow from a law; take \"auto\""
     )]
     Law(&'static str),
-    /// Single precision was requested although forces follow from a law that no kernels run.
+    /// Single precision was requested although forces follow from a law without kernels.
     #[error(
         "precision = \"f32\" is for matrices, and for hyperelastic bodies without stiffness damping and memory on any machine but the \
          reference; leave `precision` out"

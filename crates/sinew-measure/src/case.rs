@@ -16,8 +16,8 @@ use crate::row::CaseInfo;
 /// Displacement over the reference's largest at which an oscillator counts as diverged.
 const OSCILLATOR_LIMIT: f64 = 1e6;
 
-/// Tetrahedra from which on a reference is solved by Faber series: by the Taylor series it would take
-/// minutes of CPU time for a tenth of a second.
+/// Number of tetrahedra from which on a reference is solved by Faber series: the Taylor series would take minutes of
+/// CPU time for a tenth of a second.
 const LARGE: usize = 100_000;
 
 /// A scene with its reference solution.
@@ -66,7 +66,7 @@ impl Span {
     }
 }
 
-/// Reasons why a scene is no case.
+/// Reasons why a scene cannot be a case.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum CaseError {
@@ -100,7 +100,7 @@ pub enum CaseError {
     },
 }
 
-/// The course of a scene's reference: at a pace of the Taylor series, unless the body is large or shows no matrices.
+/// The method of a scene's reference: the Taylor series at a pace, unless the body is large or shows no matrices.
 pub(crate) fn course(simulation: &Simulation, pace: Pace) -> Course {
     match simulation.model() {
         _ if simulation.system().as_linear().is_none() => Course::Extrapolated,
@@ -120,7 +120,7 @@ impl Case {
         Self::new(Self::id_of(path), simulation)
     }
 
-    /// The id of the case that a scene file makes.
+    /// The id of the case of a scene file.
     #[must_use]
     pub fn id_of(path: &Path) -> String {
         let stem = path.file_stem().unwrap_or(path.as_os_str());
@@ -136,7 +136,7 @@ impl Case {
         Self::over(id, simulation, span)
     }
 
-    /// A case of a part of a built scene, for where a reference of all of it costs too much.
+    /// A case of a part of a built scene, for scenes whose full reference costs too much.
     ///
     /// # Errors
     /// [`CaseError`].
@@ -148,7 +148,8 @@ impl Case {
         Self::at_pace(Pace::Short, id, simulation, span)
     }
 
-    /// Like [`Case::over`], with the reference of large bodies for every size: for rows that are compared over sizes.
+    /// Like [`Case::over`], with the reference of large bodies for every size, for rows that are compared between
+    /// sizes.
     ///
     /// # Errors
     /// [`CaseError`].
@@ -250,7 +251,7 @@ impl Case {
         self.span.duration >= self.whole().duration
     }
 
-    /// 2/omega_max (s) at rest, if something vibrates.
+    /// 2/omega_max (s) at rest, if there is any vibration.
     #[must_use]
     pub fn critical_step(&self) -> Option<f64> {
         self.critical_step
@@ -276,12 +277,11 @@ impl Case {
         run.with_divergence_limit(limit.unwrap_or(OSCILLATOR_LIMIT * self.samples.max_u))
     }
 
-    /// The reference for a run in steps of `dt` (s): the one at the case's instants and
-    /// the number of steps between them where dt meets them all, otherwise the reference after
-    /// every step.
+    /// The reference for a run in steps of `dt` (s): the one at the case's instants and the number of steps between
+    /// them if dt meets them all, otherwise the reference after every step.
     ///
     /// # Errors
-    /// As [`Case::reference_at_every_step`].
+    /// Same as [`Case::reference_at_every_step`].
     pub fn reference_for(&mut self, dt: f64) -> Result<(Arc<Track>, usize), ReferenceError> {
         let per_instant = self.span.interval() / dt;
         let whole = per_instant.round();
@@ -291,7 +291,7 @@ impl Case {
         Ok((self.reference_at_every_step(dt)?, 1))
     }
 
-    /// The reference after every step of `dt` (s). Kept, as several methods take the same step.
+    /// The reference after every step of `dt` (s). It is stored, because several methods use the same step.
     ///
     /// # Errors
     /// [`ReferenceError`] when it fails its check.

@@ -10,7 +10,7 @@ pub enum Cost {
     /// Measured CPU time of a run on this machine.
     #[default]
     CpuTime,
-    /// Counted work at fixed prices: rough, but the same on every machine and in every repeat.
+    /// Counted work at fixed prices: rough, but the same on every machine and in every repetition.
     Work,
 }
 
@@ -18,9 +18,9 @@ pub enum Cost {
 const SWEEP: f64 = 1e-6;
 /// Price (s) of a step in addition to its sweeps.
 const STEP: f64 = 0.05 * SWEEP;
-/// A solution by a factor, which has several times as many entries as the matrix.
+/// Price (s) of a solution by a factor, which has several times as many entries as the matrix.
 const SOLUTION: f64 = 5.0 * SWEEP;
-/// A factor.
+/// Price (s) of a factor.
 const FACTORIZATION: f64 = 500.0 * SWEEP;
 
 impl Cost {

@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use sinew_core::CostClock;
 
-/// An instant on all clocks by which a run may be measured.
+/// An instant on all clocks that may measure a run.
 #[derive(Clone, Copy, Debug)]
 pub struct CostSince {
     thread: Duration,
@@ -23,7 +23,7 @@ impl CostSince {
         }
     }
 
-    /// Time since then on the clock named by the integrator ([`sinew_core::Integrator::cost_clock`]).
+    /// Time since this instant on the clock named by the integrator ([`sinew_core::Integrator::cost_clock`]).
     #[must_use]
     pub fn elapsed(&self, clock: CostClock) -> Duration {
         match clock {

@@ -6,11 +6,11 @@ use sinew_scene::Simulation;
 
 /// Watches the energy of a motion and its smallest element.
 ///
-/// The work of loads is taken by the mean of both ends of a step, as the balance of a run does. Damping, which takes energy away, is left
-/// out, so that under damping a rise is found late.
+/// The work of loads is computed with the mean of both ends of a step, as in the energy balance of a run. Damping,
+/// which removes energy, is not included, so that a rise under damping is found late.
 pub(crate) struct DeformationWatch<'a> {
     law: &'a dyn ElasticLaw,
-    /// True if all energy comes from the start and from loads: no part of the body is moved.
+    /// True if all energy comes from the start and from loads: no support moves.
     knows_energy: bool,
     smallest_volume_ratio: f64,
     /// Work (J) of contact on the body, until the last step.
@@ -48,7 +48,7 @@ impl<'a> DeformationWatch<'a> {
         })
     }
 
-    /// Checks the state after a step. States that the law refuses are passed over: the run ends there automatically.
+    /// Checks the state after a step. States that the law refuses are ignored: the run ends there automatically.
     pub(crate) fn look(&mut self, moment: &Moment<'_>) {
         let state = moment.state;
         let trial = Trial::of(state, LoadTime::at(state.t()));
@@ -90,7 +90,7 @@ impl<'a> DeformationWatch<'a> {
     }
 
     /// Largest excess so far of the energy over the supplied energy (that of the start and the work of loads), as a
-    /// share of its maximum; `None` if supports in motion supply more.
+    /// share of its maximum; `None` if moving supports supply energy too.
     pub(crate) fn energy_rise(&self) -> Option<f64> {
         (self.knows_energy && self.largest_allowed > 0.0).then(|| self.rise / self.largest_allowed)
     }

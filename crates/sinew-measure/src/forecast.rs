@@ -21,7 +21,7 @@ pub struct Forecast {
     pub solves_per_step: f64,
     /// Wall time (s) of set-up; almost 0 if the integrator was set up already.
     pub setup_s: f64,
-    /// Time (s) of a step by the clock on the wall.
+    /// Wall time (s) of a step.
     pub step_s: f64,
     /// CPU time (s) of a step, that of all threads.
     pub step_cpu_s: f64,
@@ -41,20 +41,21 @@ pub enum ForecastError {
     Run(#[from] SimulateError),
 }
 
-/// Steps that are not representative: they find caches empty, and some methods check the body before the first of them.
+/// Number of first steps that are not representative: caches are empty, and some methods check the body before the
+/// first step.
 const COLD: usize = 2;
 
-/// Steps from which the others are predicted: as many as methods take from one check of the stiffness to the next, and
-/// more.
+/// Number of steps from which the others are predicted: more than methods take from one check of the stiffness to the
+/// next.
 const ENOUGH: usize = 40;
 
-/// Time (s) that they take at least, if steps are short.
+/// Minimum time (s) of these steps, if steps are short.
 const LEAST: f64 = 0.03;
 
-/// The same for force laws, of which steps take more work as the motion continues.
+/// The same for force laws, whose steps take more work as the motion continues.
 const LEAST_OF_LAWS: f64 = 0.25;
 
-/// Time (s) by which they end if steps are long.
+/// Maximum time (s) of these steps, if steps are long.
 const MOST: f64 = 0.25;
 
 /// Time (s) of a run under force laws up to which all of its steps are taken: their work changes as tissue stiffens
@@ -65,9 +66,9 @@ const WHOLE: f64 = 5.0;
 const AGAIN: usize = 4;
 
 impl Forecast {
-    /// Sets an integrator up and takes some of the scene's first steps with it, for some hundredths of a second or,
-    /// if steps are long, up to a quarter of a second and a step. Under force laws it continues to the end if
-    /// that takes a few seconds only.
+    /// Sets an integrator up and takes some of the scene's first steps with it, for some hundredths of a second or, if
+    /// steps are long, up to a quarter of a second and a step. Under force laws all steps are taken if they take only a
+    /// few seconds.
     ///
     /// # Errors
     /// [`ForecastError`].
@@ -161,7 +162,7 @@ impl Forecast {
         Ok((forecast.run_s() > seconds).then_some(forecast))
     }
 
-    /// The part of the motion (s) that was measured; `None` if that is all of it.
+    /// The part of the motion (s) that was measured; `None` if it is the whole motion.
     #[must_use]
     pub fn seen_s(&self) -> Option<f64> {
         (self.seen < self.steps).then_some(self.seen as f64 * self.dt)

@@ -1,6 +1,6 @@
-//! The error to expect beyond the part of a scene that was compared.
+//! The expected error beyond the compared part of a scene.
 
-/// Sizes of error and displacement at the instants of a comparison, equally far apart from t = 0 on.
+/// Sizes of error and displacement at the instants of a comparison, equally spaced from t = 0 on.
 #[derive(Clone, Debug)]
 pub(crate) struct ErrorHistory {
     damped: bool,
@@ -17,11 +17,11 @@ struct Instant {
     difference: f64,
     /// Sum of squared displacements of the reference (m^2).
     reference: f64,
-    /// Sum of squared changes of the reference since the instant before (m^2).
+    /// Sum of squared changes of the reference since the previous instant (m^2).
     motion: f64,
 }
 
-/// Fewest instants of which quarters are compared too.
+/// Smallest number of instants for which quarters are compared too.
 const FOR_QUARTERS: usize = 16;
 
 /// Factor by which one or two periods may show too little growth of a squared error.
@@ -60,10 +60,10 @@ impl ErrorHistory {
     /// the history.
     ///
     /// A wrong frequency shifts an undamped motion by an angle that grows as t, so that the squared error grows at most
-    /// as t^2. Its growth between the first and the last half, or the first and the last quarter, is continued so, with
-    /// a margin; a falling error is taken as constant after the last half, and so is the size of the motion. If the
-    /// motion continues, the error of the start may still hide that of the phase: all of the error of the last half
-    /// then grows as t^2. No error grows beyond that of a motion that is out of phase.
+    /// as t^2. Its growth between the first and the last half, or the first and the last quarter, is extrapolated in
+    /// this way, with a margin; a decreasing error is assumed constant after the last half, and so is the size of the
+    /// motion. If the motion continues, the error of the start may still hide that of the phase: the whole error of the
+    /// last half then grows as t^2. No error grows beyond that of a motion that is out of phase.
     pub(crate) fn expected_over(&self, duration: f64) -> f64 {
         let all = &self.instants;
         let (first, last) = all.split_at(all.len().div_ceil(2));
@@ -109,8 +109,8 @@ impl ErrorHistory {
         (difference / reference).sqrt()
     }
 
-    /// The time (s) until which a phase error grows. In a motion that dies out as exp(-s t) it is as
-    /// t exp(-s t), largest at 1/s; the last half of the history against the first shows s.
+    /// The time (s) until which a phase error grows. In a motion that dies out as exp(-s t) the error behaves as t
+    /// exp(-s t), with its maximum at 1/s; comparing the last half of the history with the first gives s.
     fn motion_lasts_until(&self, duration: f64) -> f64 {
         let all = &self.instants;
         // The first instant has none before it to move from.
@@ -136,8 +136,7 @@ impl ErrorHistory {
     }
 }
 
-/// The mean of the smaller of t^2 and `until`^2 (s^2) for t from `end` to `duration` (s), of which
-/// `until` is between.
+/// The mean of the smaller of t^2 and `until`^2 (s^2) for t from `end` to `duration` (s), `until` being between them.
 fn mean_square(end: f64, duration: f64, until: f64) -> f64 {
     if duration <= end {
         return end * end;

@@ -1,9 +1,9 @@
 //! One run on a scene, measured: its error against a reference, its verdicts, its work and its cost.
 //!
-//! A [`Case`] is a scene with its reference solution; [`measure()`] makes one [`Row`] of a run on it,
-//! [`measure_with()`] the same of an integrator that is not in the list of the workspace.
-//! [`search`] finds the cheapest runs for an error without measuring them all; [`advise()`] answers
-//! with it which method and step a scene should take; [`converge()`] estimates the error of its mesh.
+//! A [`Case`] is a scene with its reference solution; [`measure()`] produces one [`Row`] of a run on it,
+//! [`measure_with()`] the same for an integrator that is not in the list of the workspace. [`search`] finds the
+//! cheapest runs for an error without measuring them all; [`advise()`] uses it to find the method and step that a scene
+//! should take; [`converge()`] estimates the error of its mesh.
 
 pub mod advice;
 mod case;

@@ -53,13 +53,12 @@ pub fn measure(
     })
 }
 
-/// Runs an integrator, of this workspace or not, on a case in steps of `dt` (s). The row has `name`
-/// in the place of an integrator's id, and no options.
+/// Runs an integrator, of this workspace or not, on a case in steps of `dt` (s). The row has `name` in place of an
+/// integrator's id, and no options.
 ///
-/// Times are measured by the clock that the integrator names ([`Integrator::cost_clock`]).
-/// Set-up, the run that is compared with the reference and the runs that are timed are separate,
-/// so that neither set-up nor comparison is in the times. An integrator that is set up for the
-/// case and the step already has no set-up left to time.
+/// Times are measured by the clock that the integrator names ([`Integrator::cost_clock`]). Set-up, the run that is
+/// compared with the reference and the runs that are timed are separate, so that neither set-up nor comparison is in
+/// the times. For an integrator that is already set up for the case and the step, no set-up is timed.
 ///
 /// # Errors
 /// [`MeasureError`] when the integrator cannot run on this case at all.
@@ -184,7 +183,7 @@ pub fn measure_with(
     })
 }
 
-/// The reason for which a step was refused, if that ended the run.
+/// The reason for which a step was refused, if this ended the run.
 fn refusal(error: &SimulateError) -> Option<String> {
     match error {
         SimulateError::Step(
@@ -218,16 +217,16 @@ fn work(report: &RunReport, setup_factorizations: u64) -> Work {
     }
 }
 
-/// Most checks of a run for overlapping surfaces: a check costs as much as some steps.
+/// Largest number of checks of a run for overlapping surfaces: a check costs as much as some steps.
 const LOOKS: usize = 10;
 
-/// Compares each state with the reference as it comes; keeps no copies.
+/// Compares each state with the reference when it is computed; stores no copies.
 struct Comparison<'a> {
     track: &'a Track,
     stride: usize,
     steps: usize,
     step: usize,
-    /// Steps after which the last state came.
+    /// Number of steps up to the last state.
     reached: usize,
     norm: ErrorNorm,
     /// Error norm of the impulses between two instants.

@@ -36,7 +36,7 @@ impl MethodChoice {
         Self::of_scene(case.simulation(), integrator)
     }
 
-    /// Like [`MethodChoice::on`], before there is a case.
+    /// Like [`MethodChoice::on`], before a case exists.
     #[must_use]
     pub fn of_scene(simulation: &Simulation, integrator: &str) -> Self {
         let mut method = Self::new(integrator);
@@ -47,7 +47,7 @@ impl MethodChoice {
         method.showing_defaults()
     }
 
-    /// Adds options, in the place of its own under the same keys.
+    /// Adds options, which replace its own options under the same keys.
     #[must_use]
     pub fn with_options(mut self, options: &Options) -> Self {
         for (key, value) in options.iter() {

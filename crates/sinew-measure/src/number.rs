@@ -1,12 +1,12 @@
-//! Numbers as people read them.
+//! Numbers in a form for readers.
 
-/// Three significant digits, trailing zeros kept: they are digits too.
+/// Three significant digits, trailing zeros kept, because they are significant.
 #[must_use]
 pub fn three(x: f64) -> String {
     significant(x, 3)
 }
 
-/// Two significant digits: for figures that were noted with no more.
+/// Two significant digits: for figures that were recorded with two digits.
 #[must_use]
 pub fn two(x: f64) -> String {
     significant(x, 2)

@@ -44,7 +44,7 @@ pub struct CaseInfo {
     /// Half the range of the reference's worst dof over the last fifth of the run (m).
     #[serde(deserialize_with = "gaps::null_is_nan")]
     pub late_amplitude_m: f64,
-    /// Critical step `2 / omega_max` of the undamped system (s); none if there is no omega_max.
+    /// Critical step `2 / omega_max` of the undamped system (s); none if omega_max is absent.
     #[serde(default)]
     pub critical_step_s: Option<f64>,
     /// The largest stable step of each method that ran and has one (s), by its label.
@@ -56,8 +56,8 @@ pub struct CaseInfo {
     pub stable_steps_s: BTreeMap<String, f64>,
 }
 
-/// One run: a case, an integrator with its options, a step. A number that could not be shown is NaN;
-/// [`Row::gaps`] names them.
+/// One run: a case, an integrator with its options, a step. A number that cannot be represented is NaN; [`Row::gaps`]
+/// names them.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Row {
     /// Id of the case.
@@ -70,7 +70,7 @@ pub struct Row {
     /// Options that differ from the integrator's defaults.
     #[serde(default)]
     pub options: BTreeMap<String, Value>,
-    /// The machine, precision and instructions by which its program ran; none for loops of its own.
+    /// The machine, precision and instructions that ran its program; none for a method with its own loops.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub kernel: Option<String>,
     /// Step (s).
@@ -83,7 +83,7 @@ pub struct Row {
     pub sweeps_per_s: f64,
     /// End of the run.
     pub outcome: RowOutcome,
-    /// Simulated time at which the run was given up (s); only when diverged or refused.
+    /// Simulated time at which the run was stopped (s); only when diverged or refused.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub diverged_at_s: Option<f64>,
     /// The reason for which a step was refused; only when refused.
@@ -91,21 +91,21 @@ pub struct Row {
     pub refusal: Option<String>,
     /// Every displacement is finite and at most ten times the largest of the reference.
     pub bounded: bool,
-    /// The motion dies out as the reference's does.
+    /// The motion dies out if that of the reference does.
     pub settles: bool,
     /// Relative L2 error of the displacement (fraction, 1 = as wrong as returning zero); none only
     /// when diverged or refused.
     pub error: Option<f64>,
-    /// Bound (fraction) below which the error lies, if the reference cannot measure one so small:
-    /// a hundred times its own error. `error` is then the difference from it and no figure to quote.
+    /// Bound (fraction) below which the error lies, if the reference cannot measure one so small: a hundred times its
+    /// own error. `error` is then the difference from the reference and should not be quoted.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub error_is_below: Option<f64>,
-    /// Relative L2 error (fraction) of the forces on tools, means over the time between two instants; of bodies that tools touch.
+    /// Relative L2 error (fraction) of the forces on tools, means over the time between two instants; for bodies in
+    /// contact with tools.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub force_error: Option<f64>,
-    /// Relative L2 error to expect over the whole scene (fraction), with phase errors that grow on
-    /// and without loads that change later, never less than the measured one; only where a first part
-    /// of the scene was compared.
+    /// Relative L2 error to expect over the whole scene (fraction), with phase errors that continue to grow and without
+    /// later changes of loads, never less than the measured error; only if just a first part of the scene was compared.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub expected_error: Option<f64>,
     /// Largest |component| of the displacement over the run (m); `None` if not finite.
@@ -115,13 +115,13 @@ pub struct Row {
     /// Share of the (dof, step) pairs that were saturated (fraction).
     #[serde(deserialize_with = "gaps::null_is_nan")]
     pub saturated: f64,
-    /// Some cells were saturated: bounded by the guard, not by the physics.
+    /// Some cells were saturated: limited by the guard, not by the physics.
     #[serde(default)]
     pub guarded: bool,
     /// Inverted elements in the last state.
     pub inverted: u64,
-    /// Depth (m) to which parts or surfaces of the body were in each other at instants spread over the run; none if
-    /// they were not.
+    /// Largest depth (m) to which parts or surfaces of the body penetrated each other at instants spread over the run;
+    /// none without penetration.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub overlap: Option<f64>,
     /// Work counts over the run; they reproduce, seconds do not.
@@ -132,7 +132,7 @@ pub struct Row {
     /// CPU time per step (microseconds).
     #[serde(deserialize_with = "gaps::null_is_nan")]
     pub us_per_step: f64,
-    /// CPU time of the set-up (s), in none of the other times.
+    /// CPU time of the set-up (s), not included in the other times.
     #[serde(default, deserialize_with = "gaps::null_is_nan")]
     pub setup_cpu_s: f64,
     /// Figures that the method's set-up found, by name: the certificate of a stabilised network, the
@@ -146,19 +146,19 @@ pub struct Row {
     /// Step over the critical step 2/omega_max; of hard cases only.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub step_over_critical: Option<f64>,
-    /// Relative distance of the last displacement from equilibrium under the last loads, where the
-    /// reference comes to rest; of hard cases only.
+    /// Relative distance of the last displacement from equilibrium under the last loads, if the reference comes to
+    /// rest; for hard cases only.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub static_error: Option<f64>,
     /// Relative change of the method's energy in 1000 steps, if nothing damps or loads the
     /// system; of hard cases only.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub energy_drift: Option<f64>,
-    /// Largest excess of the energy over that of the start and the work of loads since, over all the energy they
-    /// supplied; of bodies that follow a force law and of which no part is moved.
+    /// Largest excess of the energy over that of the start and the work of loads since, over all energy that these
+    /// supplied; for bodies that follow a force law, without moving supports.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub energy_rise: Option<f64>,
-    /// The smallest ratio of an element's volume to that at rest, over all steps; of bodies that follow a force law.
+    /// The smallest ratio of an element's volume to that at rest, over all steps; for bodies that follow a force law.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub smallest_volume_ratio: Option<f64>,
     /// Relative L2 error (fraction) of the mesh and its element, without any error in time, if known.
@@ -179,7 +179,7 @@ pub enum RowOutcome {
     /// The run took all its steps.
     #[default]
     Finished,
-    /// The run was given up early: not finite, or far beyond the size of the body.
+    /// The run was stopped early: not finite, or far beyond the size of the body.
     Diverged,
     /// A step was refused: by the body's law, or by a method that did not solve its equations.
     Refused,
@@ -225,9 +225,9 @@ pub enum RowVerdict {
     Wrong,
     /// Finished and bounded with saturated cells, for any error.
     Guarded,
-    /// Finished, but passed the bound.
+    /// Finished, but exceeded the bound.
     Unbounded,
-    /// The run was given up early.
+    /// The run was stopped early.
     Diverged,
     /// A step was refused.
     Refused,
@@ -287,8 +287,8 @@ impl Row {
         }
     }
 
-    /// The error in per cent without the sign, as in `1.23`, or as in `< 4.5e-8` if the reference can
-    /// say no more; none if there is no error.
+    /// The error in per cent without the sign, as in `1.23`, or as in `< 4.5e-8` if the reference only gives a bound;
+    /// none if there is no error.
     #[must_use]
     pub fn error_in_percent(&self) -> Option<String> {
         match self.error_is_below {
@@ -297,13 +297,13 @@ impl Row {
         }
     }
 
-    /// The largest error (fraction) that the run may have, within the reference's accuracy.
+    /// The largest error (fraction) that the run may have, within the accuracy of the reference.
     #[must_use]
     pub fn error_at_most(&self) -> Option<f64> {
         self.error_is_below.or(self.error)
     }
 
-    /// The error, if it is meaningful: of a run that finished bounded with nothing saturated.
+    /// The error, if it is meaningful: for a run that finished within bounds and without saturation.
     #[must_use]
     pub fn sound_error(&self) -> Option<f64> {
         match self.verdict() {

@@ -7,13 +7,13 @@ use sinew_core::{Integrator, Run, SimulateError, State, System, simulate};
 
 use crate::cpu_time::CostSince;
 
-/// The repeats and the time that go into measuring the cost of a run.
+/// The number of repetitions and the time for measuring the cost of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Effort {
-    /// Repeats that are aimed at, of which the median counts: fewer if they would exceed the
-    /// budget, but always one; more if they take less than a quarter of it. 0: nothing is timed.
+    /// Intended number of repetitions, whose median counts: fewer if they would exceed the budget, but always one; more
+    /// if they take less than a quarter of it. With 0, nothing is timed.
     pub repeats: usize,
-    /// CPU time (s) after which no further repeat is begun.
+    /// CPU time (s) after which no further repetition starts.
     pub budget: f64,
 }
 
@@ -56,7 +56,7 @@ pub(crate) fn time_run(
     })
 }
 
-/// Median time (s) of a run, given the time of a number of them in a row.
+/// Median time (s) of a run, from a function that returns the time of several consecutive runs.
 fn median_time<E>(
     effort: Effort,
     mut batch: impl FnMut(u32) -> Result<Duration, E>,
@@ -93,7 +93,7 @@ fn median_time<E>(
 mod tests {
     use super::*;
 
-    /// The batches made of runs that take `run` each, and the time of a run that they give.
+    /// The batches for runs that take `run` each, and the time of a run according to them.
     fn batches(effort: Effort, run: Duration) -> (Vec<u32>, f64) {
         let mut batches = Vec::new();
         let time: Result<f64, ()> = median_time(effort, |runs| {

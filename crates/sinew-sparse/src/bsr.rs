@@ -1,4 +1,4 @@
-//! Block sparse rows, the arrays in which other programs take matrices.
+//! Block sparse rows: arrays in which other programs accept matrices.
 
 use std::borrow::Cow;
 
@@ -8,7 +8,7 @@ use crate::matrix::{BlockMatrix, Layers};
 /// indptr))`.
 ///
 /// Block `k` of row `i`, with `indptr[i] <= k < indptr[i + 1]`, is in block column `indices[k]`, and its entries are
-/// `blocks[k * layers * layers..]`, row-major. Columns of a row increase, and each row has its own.
+/// `blocks[k * layers * layers..]`, row-major. Columns of a row increase, and each row includes its own diagonal block.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bsr<'a> {
     /// Entries of a block: `layers` x `layers`.

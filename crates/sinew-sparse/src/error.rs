@@ -12,7 +12,7 @@ pub enum AssemblyError {
         /// Number of cells.
         cells: usize,
     },
-    /// More elements than 32-bit numbers.
+    /// More elements than 32-bit numbers can count.
     #[error("{elements} elements: at most {} can be numbered", u32::MAX)]
     TooManyElements {
         /// Number of elements.
@@ -26,7 +26,7 @@ pub enum AssemblyError {
         /// Column cell.
         column: u32,
     },
-    /// A row whose columns do not increase, or that lacks its own cell.
+    /// A row whose columns do not increase, or without its own cell.
     #[error("the columns of row {row} must increase, the row's own cell among them")]
     Row {
         /// Row cell.

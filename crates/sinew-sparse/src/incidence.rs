@@ -57,7 +57,7 @@ impl Incidence {
         Ok(incidence)
     }
 
-    /// Writes each element behind those before it at its cells.
+    /// Writes each element after the earlier ones at its cells.
     fn fill(&mut self) {
         let mut free = self.starts.clone();
         for element in 0..self.ends.len() as u32 {

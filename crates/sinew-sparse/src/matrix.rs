@@ -10,7 +10,7 @@ use crate::vectors;
 /// Degrees of freedom of a cell, that is, layers of the network.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Layers {
-    /// One degree of freedom a cell.
+    /// One degree of freedom per cell.
     One,
     /// Three coupled layers: the x, y and z components of a displacement.
     Three,
@@ -37,7 +37,7 @@ impl Layers {
 ///
 /// Rows and columns are cells; each stored block has `layers` x `layers` entries, row-major.
 ///
-/// Two are equal that have equal blocks on equal patterns.
+/// Two matrices are equal if they have equal blocks on equal patterns.
 #[derive(Clone, Debug)]
 pub struct BlockMatrix {
     pattern: Arc<Pattern>,
@@ -150,10 +150,11 @@ impl BlockMatrix {
         Ok(())
     }
 
-    /// Takes the entries of a matrix of the same layers whose pattern is a part of this one's, and 0 elsewhere.
+    /// Takes the entries of a matrix of the same layers whose pattern is a part of this one's; all other entries become
+    /// 0.
     ///
     /// # Errors
-    /// [`AssemblyError::NotNeighbours`] if it has a block that is not in the pattern of this one, and
+    /// [`AssemblyError::NotNeighbours`] if the other matrix has a block outside the pattern of this one, and
     /// [`AssemblyError::CellOutOfRange`] if it has more cells. The entries are unspecified then.
     pub fn set_to(&mut self, other: &Self) -> Result<(), AssemblyError> {
         if Arc::ptr_eq(&self.pattern, &other.pattern) && self.layers == other.layers {
@@ -169,8 +170,8 @@ impl BlockMatrix {
         Ok(())
     }
 
-    /// Takes over rows; the matrix must be symmetric afterwards. Returns true if all rows were laid out
-    /// again, which reserves space for `spare_cells` more than these: without it nothing is allocated.
+    /// Takes over rows; the matrix must be symmetric afterwards. Returns true if all rows were laid out again, which
+    /// reserves space for `spare_cells` more cells; otherwise nothing is allocated.
     ///
     /// # Errors
     /// [`AssemblyError::Row`] and [`AssemblyError::CellOutOfRange`] if rows have invalid columns; nothing is changed
@@ -204,15 +205,15 @@ impl BlockMatrix {
         Ok(!has_room)
     }
 
-    /// The same matrix on a pattern of its own, with space for `cells` more cells: [`BlockMatrix::take_rows`] allocates
-    /// nothing until it is used up.
+    /// The same matrix on its own copy of the pattern, with space for `cells` more cells: [`BlockMatrix::take_rows`]
+    /// allocates nothing until this space is used up.
     #[must_use]
     pub fn with_room(&self, cells: usize) -> Self {
         self.packed(0, 0, cells)
     }
 
     /// The same with space for `cells` cells and `blocks` blocks, and for `spare` more cells with as many blocks as
-    /// others have.
+    /// other cells have.
     fn packed(&self, cells: usize, blocks: usize, spare: usize) -> Self {
         let (cells, blocks) = (
             cells + spare,
@@ -280,7 +281,7 @@ impl BlockMatrix {
             .zip(self.values[range.start * len..range.end * len].chunks_exact(len))
     }
 
-    /// The blocks of one row with their columns, in increasing column order, to be changed.
+    /// The blocks of one row with their columns, in increasing column order; the blocks can be changed.
     pub fn row_blocks_mut(&mut self, row: usize) -> impl Iterator<Item = (usize, &mut [f64])> {
         let len = self.layers.block_len();
         let range = self.pattern.row(row);
@@ -316,7 +317,7 @@ impl BlockMatrix {
     /// Adds a multiple of a matrix of the same layers whose pattern is a part of this one's.
     ///
     /// # Errors
-    /// As [`Self::set_to`].
+    /// Same as [`Self::set_to`].
     pub fn add_scaled(&mut self, factor: f64, other: &Self) -> Result<(), AssemblyError> {
         if Arc::ptr_eq(&self.pattern, &other.pattern) && self.layers == other.layers {
             vectors::add_scaled(factor, &other.values, &mut self.values);
@@ -336,8 +337,8 @@ impl BlockMatrix {
 
     /// Sets the scalar rows and columns of the marked degrees of freedom to zero.
     ///
-    /// `pinned` has length [`BlockMatrix::dofs`]. A fixed component of a cell whose other
-    /// components move keeps its place in the vectors and simply never feels a force.
+    /// `pinned` has length [`BlockMatrix::dofs`]. A fixed component of a cell whose other components move keeps its
+    /// position in the vectors, and no force acts on it.
     pub fn clear_pinned(&mut self, pinned: &[bool]) {
         let layers = self.layers.count();
         let len = self.layers.block_len();

@@ -5,8 +5,8 @@ use crate::incidence::Incidence;
 
 /// A symmetric neighbourhood relation on cells, each cell being its own neighbour.
 ///
-/// Neighbours of a cell are listed in increasing order, so equal graphs give equal patterns
-/// in any order of the elements they came from, and are equal wherever their rows lie.
+/// Neighbours of a cell are listed in increasing order, so equal graphs give equal patterns for any order of their
+/// elements, and for any storage order of their rows.
 #[derive(Clone, Debug)]
 pub struct Pattern {
     /// Position of each row's first block.
@@ -15,7 +15,7 @@ pub struct Pattern {
     counts: Vec<u32>,
     /// Column of the block at each position; positions that rows have left are not read.
     columns: Vec<u32>,
-    /// Place of the cell itself among its neighbours.
+    /// Index of the cell itself among its neighbours.
     diagonal: Vec<u32>,
     /// Blocks of all rows.
     blocks: usize,
@@ -68,8 +68,8 @@ impl Pattern {
         Ok(pattern)
     }
 
-    /// The pattern of the cells that `keep` chooses, renumbered in the same order: that of the submatrix of their
-    /// rows and columns.
+    /// The pattern of the cells for which `keep` returns true, renumbered in the same order: that of the submatrix of
+    /// their rows and columns.
     #[must_use]
     pub fn restricted(&self, keep: impl Fn(u32) -> bool) -> Self {
         let mut number = vec![None; self.cells()];
@@ -139,7 +139,8 @@ impl Pattern {
             && has(self.columns.capacity(), self.columns.len(), blocks)
     }
 
-    /// Positions that a cell which is split off takes: those of its own row, and of neighbours' rows that become longer.
+    /// Number of positions for a cell that is split off: those of its own row, and of neighbours' rows that become
+    /// longer.
     pub(crate) fn blocks_of_new_cell(&self) -> usize {
         2 * self.blocks.div_ceil(self.cells().max(1)) + 4
     }
@@ -151,8 +152,8 @@ impl Pattern {
             .is_some_and(|count| blocks <= *count as usize)
     }
 
-    /// Gives a cell, or the one after the last, these neighbours: increasing, itself among them. A row that has become longer goes
-    /// behind all others. Returns the position of its first block.
+    /// Sets the neighbours of a cell, or of a new cell after the last: increasing, itself among them. A row that has
+    /// become longer moves behind all others. Returns the position of its first block.
     pub(crate) fn set_row(&mut self, cell: usize, neighbours: &[u32]) -> usize {
         let fits = self.fits(cell, neighbours.len());
         if cell == self.cells() {

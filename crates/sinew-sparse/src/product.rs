@@ -1,9 +1,8 @@
-//! Products. Each row is summed in column order by one thread, so results do not depend on how
-//! many threads there are.
+//! Products. Each row is summed in column order by one thread, so results do not depend on the number of threads.
 
 use crate::{BlockMatrix, Layers, Pattern};
 
-/// Blocks below which a product stays on the calling thread: forking costs several microseconds.
+/// Number of blocks below which a product stays on the calling thread: forking costs several microseconds.
 #[cfg(feature = "rayon")]
 const SERIAL_BLOCKS: usize = 200_000;
 

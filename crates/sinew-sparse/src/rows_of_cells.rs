@@ -3,8 +3,8 @@
 use crate::error::AssemblyError;
 use crate::pattern::Pattern;
 
-/// Rows of cells for [`crate::BlockMatrix::take_rows`]: others for cells that a matrix has, and new ones for cells that are appended. Used
-/// again, it allocates nothing.
+/// Rows of cells for [`crate::BlockMatrix::take_rows`]: replacements for rows of existing cells, and rows of cells that
+/// are appended. A reused object allocates nothing.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RowsOfCells {
     cells: Vec<u32>,
@@ -43,8 +43,8 @@ impl RowsOfCells {
         self.entries.clear();
     }
 
-    /// Adds the row of a cell: its neighbours, increasing and itself among them, and the block (row-major) of each. Cells beyond the last
-    /// come in their order.
+    /// Adds the row of a cell: its neighbours, increasing and itself among them, and the block (row-major) of each. New
+    /// cells after the last are added in their order.
     pub fn push<'a>(&mut self, cell: u32, blocks: impl IntoIterator<Item = (u32, &'a [f64])>) {
         for (column, block) in blocks {
             self.columns.push(column);
@@ -75,7 +75,8 @@ impl RowsOfCells {
         })
     }
 
-    /// Checks that a matrix with blocks of `len` entries can take them over; the number of its cells afterwards.
+    /// Checks that a matrix with blocks of `len` entries can take them over; returns the number of its cells
+    /// afterwards.
     pub(crate) fn check(&self, pattern: &Pattern, len: usize) -> Result<usize, AssemblyError> {
         let mut cells = pattern.cells();
         if self.entries.len() != len * self.columns.len() {

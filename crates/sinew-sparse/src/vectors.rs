@@ -1,8 +1,7 @@
 //! Sums over vectors, in one order of additions.
 //!
-//! Every sum over all degrees of freedom that a result depends on is taken here, so that changes of
-//! its order (lanes, threads, parts on several computers) are made in one place. The order
-//! depends on the length only.
+//! Every sum over all degrees of freedom that affects a result is computed here, so that changes of its order (lanes,
+//! threads, parts on several computers) are made in one place. The order depends on the length only.
 
 /// Numbers summed side by side, so that sums can be kept in vector registers.
 const LANES: usize = 8;
@@ -23,7 +22,7 @@ pub fn dot(a: &[f64], b: &[f64]) -> f64 {
     sums.iter().sum::<f64>() + rest
 }
 
-/// `sum_i w_i a_i b_i`, as with the masses for weights, over the shortest length.
+/// `sum_i w_i a_i b_i`, for example with the masses as weights, over the shortest length.
 #[must_use]
 pub fn weighted_dot(weights: &[f64], a: &[f64], b: &[f64]) -> f64 {
     let n = weights.len().min(a.len()).min(b.len());
@@ -41,7 +40,8 @@ pub fn weighted_dot(weights: &[f64], a: &[f64], b: &[f64]) -> f64 {
     sums.iter().sum::<f64>() + rest
 }
 
-/// `sum_i (a_i - b_i) x_i` over the shortest length: to the rounding of the differences, where two products would leave their own.
+/// `sum_i (a_i - b_i) x_i` over the shortest length: exact to the rounding of the differences, while two products would
+/// have their own rounding errors.
 #[must_use]
 pub fn dot_of_difference(a: &[f64], b: &[f64], x: &[f64]) -> f64 {
     let n = a.len().min(b.len()).min(x.len());
@@ -89,8 +89,8 @@ pub fn add_scaled(factor: f64, a: &[f64], out: &mut [f64]) {
     }
 }
 
-/// A fixed vector with parts in every direction, between -1/2 and 1/2, another for each seed: the
-/// start of iterations for eigenvalues.
+/// A fixed vector with components in every direction, between -1/2 and 1/2, different for each seed: the start of
+/// iterations for eigenvalues.
 #[must_use]
 pub fn noise(n: usize, seed: u64) -> Vec<f64> {
     let mut seed = 0x9E37_79B9_7F4A_7C15_u64.wrapping_mul(2 * seed + 1);

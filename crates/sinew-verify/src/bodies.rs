@@ -17,7 +17,7 @@ pub fn body(youngs_modulus: f64, poissons_ratio: f64, element: Element) -> Probl
     of_law(Law::linear(youngs_modulus, poissons_ratio), element)
 }
 
-/// Undamped springs along the edges, by a rule for the modulus of soft tissue.
+/// Undamped springs along the edges, with a rule, for the modulus of soft tissue.
 #[must_use]
 pub fn springs(rule: SpringRule) -> Law {
     Law::Springs {

@@ -9,7 +9,7 @@ use crate::inputs::Inputs;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum Asked {
-    /// A value, and how far from it a figure may be.
+    /// A value, and the allowed distance from it.
     Value {
         /// The value.
         value: f64,
@@ -94,7 +94,7 @@ type Compute = Box<dyn Fn(&Inputs) -> Result<Vec<f64>, LabError> + Send + Sync>;
 /// One computation and the figures that it gives, each a row of the verification.
 pub(crate) struct Check {
     pub(crate) case: String,
-    /// Name and demand of each figure, in the order in which they are computed.
+    /// Name and requirement of each figure, in the order in which they are computed.
     pub(crate) figures: Vec<(String, Asked)>,
     pub(crate) source: Source,
     /// A remark.
@@ -142,7 +142,7 @@ impl Check {
         Self { note, ..self }
     }
 
-    /// The check on demand only.
+    /// The check, to be run on demand only.
     pub(crate) fn long(self, is_long: bool) -> Self {
         Self { is_long, ..self }
     }

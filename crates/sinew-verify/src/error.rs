@@ -3,7 +3,7 @@
 use std::error::Error;
 use std::fmt;
 
-/// A reason for which there is no figure: the error of a call, or a sentence. Reasons are for reading; no code
+/// A reason for which there is no figure: the error of a call, or a sentence. Reasons are for readers; no code
 /// distinguishes them.
 pub struct LabError(Box<dyn Error + Send + Sync>);
 
@@ -14,7 +14,7 @@ impl LabError {
         Self(reason.into().into())
     }
 
-    /// An error whose kinds are not known here.
+    /// An error of an unknown kind.
     #[must_use]
     pub fn boxed(error: Box<dyn Error + Send + Sync>) -> Self {
         Self(error)

@@ -6,7 +6,7 @@ use sinew_mesh::{TetMesh, read_msh_file};
 
 use crate::error::LabError;
 
-/// Places of the files that checks read.
+/// Locations of the files that checks read.
 #[derive(Clone, Debug)]
 pub(crate) struct Inputs {
     /// Root of the repository.

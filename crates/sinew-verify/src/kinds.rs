@@ -4,7 +4,7 @@ use std::fmt;
 
 use sinew_fem::Element;
 
-/// An element without the size of its patches, which is a matter of the mesh.
+/// An element without the size of its patches, which depends on the mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Kind {
     /// [`Element::P1`].
@@ -16,7 +16,7 @@ pub(crate) enum Kind {
 }
 
 impl Kind {
-    /// All that tables have.
+    /// All kinds in the tables.
     pub(crate) const ALL: [Self; 4] = [Self::P1, Self::Fbar, Self::Edge(1.0), Self::Edge(0.9)];
 
     /// The element; `patch` is the number of tetrahedra per patch, for elements that have patches.

@@ -1,5 +1,5 @@
-//! Every required figure of the library: closed forms, figures in print, independent computations. Each has
-//! a tolerance and a source, computed in each run, and passes or fails.
+//! Every required figure of the library: closed forms, figures in print, independent computations. Each has a tolerance
+//! and a source, is computed in each run, and passes or fails.
 //!
 //! A subject is a file under `subjects` with a list of checks, each a function that computes one or more figures.
 //! [`VerifyPlan`] computes them. The bench builds on the same bodies ([`bodies`], [`tissue`]), reference elements

@@ -1,4 +1,4 @@
-//! The machine and the revision of the source that figures belong to.
+//! The machine and the revision of the source with which figures were computed.
 
 use std::path::Path;
 use std::process::Command;

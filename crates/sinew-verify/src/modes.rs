@@ -6,7 +6,7 @@ use sinew_integrators::{Combination, Factor};
 
 use crate::error::LabError;
 
-/// The lowest angular frequency (rad/s) of a system with supports, with a mass matrix of its own: `multiply(x, out)`
+/// The lowest angular frequency (rad/s) of a system with supports, with a separate mass matrix: `multiply(x, out)`
 /// writes `out = M x`.
 ///
 /// # Errors

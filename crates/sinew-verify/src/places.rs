@@ -1,18 +1,18 @@
-//! Parts of a mesh by their place.
+//! Parts of a mesh by their position.
 
 use sinew_mesh::{GroupMembers, TetMesh};
 
 use crate::error::LabError;
 use crate::vector::{difference, norm};
 
-/// The nodes at places for which `belongs` is true.
+/// The nodes at positions for which `belongs` is true.
 pub(crate) fn nodes_where(mesh: &TetMesh, belongs: impl Fn([f64; 3]) -> bool) -> Vec<u32> {
     let nodes = (0..).zip(&mesh.points);
     let nodes = nodes.filter_map(|(node, point)| belongs(*point).then_some(node));
     nodes.collect()
 }
 
-/// The node at a place (m).
+/// The node at a position (m).
 pub(crate) fn node_at(points: &[[f64; 3]], place: [f64; 3]) -> Result<u32, LabError> {
     let is_there = |point: &[f64; 3]| norm(difference(*point, place)) <= 1e-9;
     let node = points.iter().position(is_there);
@@ -20,7 +20,7 @@ pub(crate) fn node_at(points: &[[f64; 3]], place: [f64; 3]) -> Result<u32, LabEr
         .ok_or_else(|| LabError::new(format!("the mesh has no node at {place:?}")))
 }
 
-/// The triangles of a group with all corners at places for which `belongs` is true.
+/// The triangles of a group with all corners at positions for which `belongs` is true.
 ///
 /// # Errors
 /// [`LabError`].

@@ -51,7 +51,7 @@ impl Pressed {
         })
     }
 
-    /// The body of a problem under a tool that touches all nodes, and the triangles of the surface as well.
+    /// The body of a problem under a tool that touches all nodes, and also the triangles of the surface.
     pub(crate) fn with_triangles(
         mesh: &TetMesh,
         problem: &Problem,
@@ -141,7 +141,7 @@ impl Pressed {
     }
 }
 
-/// `cnn-energy` by the potential of implicit Euler's step, with this many sweeps.
+/// `cnn-energy` with the potential of implicit Euler's step and this number of sweeps.
 pub(crate) fn energy_sweeps(sweeps: u32) -> (&'static str, Options) {
     let options = Options::new().with_text("kind", "ie");
     (
@@ -169,7 +169,7 @@ pub(crate) fn tool(convex: Convex, motion: Motion, friction: f64) -> Tool {
     }
 }
 
-/// A motion through positions (m) at times (s), turned by a rotation vector (rad) throughout.
+/// A motion through positions (m) at times (s), with a constant rotation vector (rad).
 pub(crate) fn through(
     rows: &[(f64, [f64; 3])],
     rotation_vector: [f64; 3],

@@ -5,16 +5,16 @@ use std::path::PathBuf;
 /// Progress of a verification or a bench.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Progress {
-    /// A scene is read and its reference solved.
+    /// A scene is read and its reference is solved.
     Reference {
         /// The scene's file.
         scene: PathBuf,
     },
     /// A run begins.
     Run {
-        /// Runs done before.
+        /// Number of completed runs.
         done: usize,
-        /// Runs in all.
+        /// Number of all runs.
         of: usize,
         /// Description of the run.
         what: String,

@@ -21,7 +21,7 @@ pub struct Verification {
     pub machine: Machine,
     /// The subjects, in the order of the page.
     pub subjects: Vec<VerifiedSubject>,
-    /// Rows that were left out because they take long.
+    /// Rows that were skipped because they take long.
     pub left_out: usize,
 }
 
@@ -36,7 +36,7 @@ pub struct VerifiedSubject {
     pub says: &'static str,
     /// A row for each figure.
     pub rows: Vec<VerifiedRow>,
-    /// Figures of others, which are not computed.
+    /// Figures from other sources, which are not computed.
     #[serde(skip_serializing_if = "<[Quoted]>::is_empty")]
     pub quoted: &'static [Quoted],
 }
@@ -52,7 +52,7 @@ pub struct VerifiedRow {
     pub asked: Asked,
     /// The figure; none if it could not be computed or is not finite.
     pub got: Option<f64>,
-    /// Reason why there is none.
+    /// Reason why the figure is absent.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub missing: Option<String>,
     /// The source of the required figure.
@@ -62,7 +62,7 @@ pub struct VerifiedRow {
     /// A remark.
     #[serde(skip_serializing_if = "str::is_empty")]
     pub note: &'static str,
-    /// Wall time (s) of the computation, which may have given other figures too.
+    /// Wall time (s) of the computation, which may also have given other figures.
     pub seconds: f64,
 }
 

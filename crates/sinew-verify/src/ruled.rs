@@ -2,11 +2,11 @@
 
 use comfy_table::{CellAlignment, ContentArrangement, LineStyle, Table, TableStyle};
 
-/// A rule beneath the head and no other line: lines cost width, which a terminal lacks.
+/// A rule below the header and no other line: lines cost width, which a terminal lacks.
 pub const RULED_HEAD: TableStyle =
     TableStyle::new().header_separator(LineStyle::new('─', '─', '─', '─'));
 
-/// A table of these rows; columns from `numbers` on are numbers, which end at the same place.
+/// A table of these rows; columns from `numbers` on contain numbers, aligned on the right.
 pub fn table<const N: usize>(
     head: [&str; N],
     rows: impl Iterator<Item = [String; N]>,

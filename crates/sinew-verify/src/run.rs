@@ -15,14 +15,14 @@ use crate::subject::Subject;
 use crate::subjects::SUBJECTS;
 use crate::verdict::MarkVerdict;
 
-/// A verification to be made.
+/// A verification to be run.
 #[derive(Clone, Debug)]
 pub struct VerifyPlan {
     /// Root of the repository, whose meshes and scenes checks read.
     pub root: PathBuf,
     /// Subjects by their short names; all if it is empty.
     pub only: Vec<String>,
-    /// True if rows that take long run too.
+    /// True if rows that take long are also run.
     pub long: bool,
     /// Checks that run at the same time.
     pub threads: usize,

@@ -1,4 +1,4 @@
-//! Origins that several subjects share.
+//! Sources that several subjects share.
 
 use crate::check::Source;
 

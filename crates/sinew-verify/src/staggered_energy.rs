@@ -1,9 +1,10 @@
-//! The energy that a staggered step keeps or lowers.
+//! The energy that a staggered step conserves or lowers.
 
 use sinew_core::{LinearSystem, State, System, vectors};
 use sinew_fem::Model;
 
-/// `(v' (P - dt^2/4 K) v + u' K u)/2` (J), u being the displacement in the middle of the last step, by the blocks of `P^-1`, or with the mass.
+/// `(v' (P - dt^2/4 K) v + u' K u)/2` (J), u being the displacement in the middle of the last step; P is given by the
+/// blocks of `P^-1`, or is the mass.
 pub(crate) fn staggered_energy(
     model: &Model,
     state: &State,

@@ -6,7 +6,7 @@ use crate::check::Check;
 
 /// Checks that belong together, as one section of the page.
 pub(crate) struct Subject {
-    /// A short name, by which it is chosen.
+    /// A short name, by which it is selected.
     pub(crate) id: &'static str,
     /// Its heading.
     pub(crate) title: &'static str,

@@ -1,4 +1,4 @@
-//! A verification as people read it on a terminal.
+//! A verification as text for a terminal.
 
 use std::fmt;
 
@@ -22,7 +22,7 @@ impl fmt::Display for Asked {
     }
 }
 
-/// A number in as many significant digits as it needs, up to some.
+/// A number with the necessary significant digits, up to `digits`.
 pub(crate) fn shown(x: f64, digits: usize) -> String {
     let rounded: f64 = format!("{x:.*e}", digits - 1).parse().unwrap_or(x);
     match rounded.abs() {
@@ -33,7 +33,7 @@ pub(crate) fn shown(x: f64, digits: usize) -> String {
 }
 
 impl VerifiedRow {
-    /// The figure as text, or the reason why there is none.
+    /// The figure as text, or the reason why it is absent.
     pub(crate) fn got_in_words(&self) -> String {
         match (&self.missing, self.got) {
             (Some(reason), _) => reason.clone(),

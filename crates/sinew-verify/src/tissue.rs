@@ -1,4 +1,4 @@
-//! Blocks of tissue under large deformation, which the verification and the hard cases move.
+//! Blocks of tissue under large deformation, for the verification and the hard cases.
 
 use crate::error::LabError;
 use std::f64::consts::{PI, TAU};
@@ -22,8 +22,8 @@ pub const EDGE: f64 = 0.1;
 /// Size (m) of the slender column.
 pub const COLUMN: [f64; 3] = [0.02, 0.02, 0.12];
 
-/// A hyperelastic law with these moduli at small strain, and example values of its other parameters; one that does not
-/// exist is refused by the model.
+/// A hyperelastic law with these moduli at small strain, and example values of its other parameters; the model refuses
+/// an unknown law.
 pub fn law(id: &'static str, youngs_modulus: f64, poissons_ratio: f64) -> Law {
     let parameters = Hyperelastic::parameters(id, youngs_modulus, poissons_ratio);
     let parameters = parameters.unwrap_or_else(|_| Parameters::new(youngs_modulus, poissons_ratio));
@@ -54,11 +54,11 @@ pub fn of_mass(mass: f64) -> Rayleigh {
     Rayleigh::new(mass, 0.0)
 }
 
-/// A body with the state that it starts from.
+/// A body and the state from which it starts.
 pub struct Specimen {
     /// The body.
     pub model: Model,
-    /// The state that it starts from.
+    /// The state from which it starts.
     pub start: State,
 }
 
@@ -73,13 +73,13 @@ impl Specimen {
         Ok(Self { model, start })
     }
 
-    /// The body at rest with these displacements (m) by the place of each node.
+    /// The body at rest with these displacements (m), given by the position of each node.
     pub fn displaced(mut self, by: impl Fn([f64; 3]) -> [f64; 3]) -> Self {
         self.start.u = self.field(by);
         self
     }
 
-    /// The body undeformed with these velocities (m/s) by the place of each node.
+    /// The body undeformed with these velocities (m/s), given by the position of each node.
     pub fn thrown(mut self, at: impl Fn([f64; 3]) -> [f64; 3]) -> Self {
         self.start.v = self.field(at);
         self
@@ -130,7 +130,7 @@ impl Specimen {
         Ok(self.track(&mut integrator, dt, steps, instants)?.0)
     }
 
-    /// A vector at each free node by its place (m); fixed components are 0.
+    /// A vector at each free node given by its position (m); fixed components are 0.
     pub fn field(&self, of: impl Fn([f64; 3]) -> [f64; 3]) -> Vec<f64> {
         let points = &self.model.mesh().points;
         let nodes = self.model.nodes().iter();
@@ -144,7 +144,7 @@ impl Specimen {
     }
 }
 
-/// Error of displacements at all instants over the size of exact ones; infinite if there are fewer.
+/// Error of displacements at all instants over the size of exact ones; infinite if there are fewer instants.
 pub fn relative_error(found: &[Vec<f64>], exact: &[Vec<f64>]) -> f64 {
     if found.len() != exact.len() {
         return f64::INFINITY;
@@ -166,9 +166,8 @@ pub fn release(cells: usize, law: Law, element: Element) -> Result<Specimen, Lab
     }))
 }
 
-/// A column that is spun about its axis, with this rate (1/s) at the top, after Bonet, Gil, Lee and others (Comput.
-/// Methods Appl. Mech. Eng. 283,
-/// 2015).
+/// A column that rotates about its axis, with this rate (1/s) at the top, after Bonet, Gil, Lee and others (Comput.
+/// Methods Appl. Mech. Eng. 283, 2015).
 ///
 /// # Errors
 /// [`LabError`].
@@ -205,7 +204,8 @@ pub fn pressed(
     Specimen::new(&mesh, &problem)
 }
 
-/// A vertical force (N) on the top of a cube, as the trapezoidal rule spreads a traction: nodes at the rim bear half, at corners a quarter.
+/// A vertical force (N) on the top of a cube, as the trapezoidal rule spreads a traction: nodes at the rim receive
+/// half, those at corners a quarter.
 fn trapezoid(mesh: &TetMesh, cells: usize, force: f64, ramp: &Ramp) -> Vec<LoadSpec> {
     let within = 1e-9..EDGE - 1e-9;
     let rims = |x: f64| usize::from(!within.contains(&x));
@@ -222,8 +222,8 @@ fn trapezoid(mesh: &TetMesh, cells: usize, force: f64, ramp: &Ramp) -> Vec<LoadS
     (0..3).map(of_rims).collect()
 }
 
-/// The angle (rad) by which the nodes at the top of a column turned about its axis, the best fit to all of them, nearest to `near`:
-/// angles beyond half a turn follow from those before.
+/// The angle (rad) by which the nodes at the top of a column rotated about its axis: the best fit to all of them,
+/// nearest to `near`. Angles beyond half a turn thus follow from previous angles.
 pub fn rotation_of_top(specimen: &Specimen, u: &[f64], near: f64) -> f64 {
     let mesh = specimen.model.mesh();
     let (low, high) = mesh.bounding_box();

@@ -1,4 +1,4 @@
-//! Bodies under uniform deformations, which every element has exactly.
+//! Bodies under uniform deformations, which every element represents exactly.
 
 use sinew_core::vectors::{largest, noise};
 use sinew_core::{ElasticLaw, LoadTime, System, Trial};
@@ -11,7 +11,7 @@ use crate::error::LabError;
 use crate::places::on_surface;
 use crate::vector::{cross, dot};
 
-/// An element of each kind, with patches of the default size and of others.
+/// An element of each kind, with patches of the default size and of other sizes.
 pub(crate) const ELEMENTS: [Element; 5] = [
     Element::P1,
     Element::Fbar { patch: None },
@@ -40,7 +40,7 @@ pub(crate) fn name(element: Element) -> String {
 /// Edge (m) of the cubes.
 pub(crate) const EDGE: f64 = 0.1;
 
-/// A cube whose inner nodes are moved about.
+/// A cube whose inner nodes are displaced at random.
 pub(crate) fn uneven_cube(cells: usize, split: Split, seed: u64) -> Result<TetMesh, LabError> {
     let mut mesh = cube(cells, EDGE, split)?;
     let surface = on_surface(&mesh);
@@ -87,7 +87,7 @@ impl Uniform {
         Ok((found.energy, force))
     }
 
-    /// The sum of an axis' forces (N) at the end of another one.
+    /// The sum of the forces (N) along an axis at the end of another axis.
     pub(crate) fn at_end(&self, force: &[f64], end: usize, axis: usize) -> f64 {
         let nodes = self
             .model
@@ -107,8 +107,8 @@ impl Uniform {
         inner.fold(0.0, |most: f64, (force, _)| most.max(largest(force)))
     }
 
-    /// The largest difference of any tetrahedron's stress from the one of a first Piola-Kirchhoff stress, over the size
-    /// of that.
+    /// The largest difference between any tetrahedron's stress and that of a first Piola-Kirchhoff stress, over the
+    /// size of the latter.
     pub(crate) fn off(&self, h: Tensor<f64>, p: Tensor<f64>) -> Result<f64, LabError> {
         let f = h + Tensor::identity();
         let [a, b, c] = f.0;

@@ -1,4 +1,4 @@
-//! CHOLMOD's factors, made in a program of its own.
+//! CHOLMOD's factors, computed in a separate program.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;

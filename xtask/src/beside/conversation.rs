@@ -1,4 +1,4 @@
-//! A program that answers each line with a line.
+//! A program that answers each input line with one line.
 
 use std::io::{BufRead, BufReader, Read, Write};
 use std::path::Path;
@@ -6,7 +6,7 @@ use std::process::{Child, ChildStderr, ChildStdin, ChildStdout, Command, Stdio};
 
 use sinew_bench::beside::RivalError;
 
-/// The running program; it ends with this.
+/// The running program; it ends when this value is dropped.
 pub(super) struct Conversation {
     /// Name of the program in messages.
     name: &'static str,

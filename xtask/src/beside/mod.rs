@@ -40,7 +40,7 @@ pub(crate) enum Program {
     Newton,
 }
 
-/// Runs programs in turn with ours and prints ratios of CPU time; simulators share a table.
+/// Runs programs alternately with ours and prints ratios of CPU time; simulators share a table.
 pub(crate) fn run(programs: &[Program], bench: &Bench) -> Result<(), Failure> {
     if programs.contains(&Program::Scipy) {
         beside_scipy(bench)?;
@@ -61,7 +61,7 @@ pub(crate) fn run(programs: &[Program], bench: &Bench) -> Result<(), Failure> {
     }
 }
 
-/// Factorises and solves in turn with CHOLMOD, if it is installed.
+/// Factorises and solves alternately with CHOLMOD, if it is installed.
 fn beside_cholmod(bench: &Bench) -> Result<(), Failure> {
     let folder = root().join("target").join("beside").join("cholmod");
     let driver = match Driver::build(&folder) {
@@ -88,7 +88,7 @@ fn beside_cholmod(bench: &Bench) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Runs scipy and our cheapest methods in turn on the peers' cube.
+/// Runs scipy and our cheapest methods alternately on the peers' cube.
 fn beside_scipy(bench: &Bench) -> Result<(), Failure> {
     let integrators = bench.methods().map_err(Failure::input)?;
     let target = root().join("target");

@@ -1,4 +1,4 @@
-//! scipy's central difference, run step by step in a program of its own.
+//! scipy's central difference, run step by step in a separate program.
 
 use serde_json::Value;
 use sinew_bench::beside::{Exported, Rival, RivalError};

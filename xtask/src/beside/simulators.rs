@@ -1,4 +1,4 @@
-//! MuJoCo and Newton on the same cube, each in a script of its own.
+//! MuJoCo and Newton on the same cube, each in its own script.
 
 use std::path::{Path, PathBuf};
 use std::process::Stdio;
@@ -50,7 +50,7 @@ pub(super) const NEWTON: Simulator = Simulator {
     },
 };
 
-/// Runs the simulators that pip can have, then ours under their laws; says and writes the table.
+/// Runs the simulators that pip can install, then ours under their laws; prints and writes the table.
 pub(super) fn run(wanted: &[&Simulator], quick: bool) -> Result<(), Failure> {
     let kind = if quick {
         "bench-beside-quick"
@@ -96,7 +96,7 @@ pub(super) fn run(wanted: &[&Simulator], quick: bool) -> Result<(), Failure> {
     }
 }
 
-/// Says and writes the results.
+/// Prints and writes the results.
 fn write(
     results: &SimulatorResults,
     files: &OutputFolder,

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::time::Instant;
 
-/// Time that passed and, on Linux, CPU time of all programs that were run and ended meanwhile (s).
+/// Elapsed time and, on Linux, CPU time of all programs that were run and ended in the meantime (s).
 #[derive(Debug)]
 pub(super) struct Cost {
     wall: f64,
@@ -44,7 +44,7 @@ impl Stopwatch {
     }
 }
 
-/// CPU time of programs that this one has run and waited for, and of those that they have (s).
+/// CPU time of programs that this one has run and waited for, and of their own such programs (s).
 fn cpu_of_children() -> Option<f64> {
     seconds_in(&std::fs::read_to_string("/proc/self/stat").ok()?)
 }

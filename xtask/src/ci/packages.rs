@@ -1,5 +1,5 @@
-//! The packages as others get them: every published crate is packed, and a program outside the workspace is built against the
-//! packed crates and run.
+//! The packages as users get them: every published crate is packed, and a program outside the workspace is built with
+//! the packed crates and run.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -11,7 +11,7 @@ use crate::failure::Failure;
 use crate::repository::root;
 use crate::rules;
 
-/// The program: a scene through the facade, with a figure that is known.
+/// The program: a scene through the facade, with a known figure.
 const PROGRAM: &str = include_str!("../../consumer/main.rs");
 
 /// Packs, unpacks, builds and runs.

@@ -102,7 +102,7 @@ fn line(label: &str, values: impl Iterator<Item = f64>) -> String {
     format!("{label}{values}\n")
 }
 
-/// Compares line by line, numbers to the last bit; returns how many lines there are.
+/// Compares line by line, numbers to the last bit; returns the number of lines.
 pub(super) fn compare(read: &str, expected: &str) -> Result<usize, Difference> {
     let mut place = "before the first file";
     for (read, expected) in read.lines().zip(expected.lines()) {

@@ -1,4 +1,4 @@
-//! The mesh that is compared, and the files that it is written to.
+//! The mesh that is compared, and the files to which it is written.
 
 use sinew_mesh::structured::{Split, StructuredError, cube};
 use sinew_mesh::vtu::{

@@ -29,7 +29,7 @@ pub(crate) fn run() -> Result<(), Failure> {
 ///
 /// # Errors
 ///
-/// [`Failure::Input`] if there is no Python 3 or no pip, [`Failure::Chore`] where pip fails.
+/// [`Failure::Input`] if there is no Python 3 or no pip, [`Failure::Chore`] if pip fails.
 pub(crate) fn python() -> Result<Python, Failure> {
     Python::with(&PACKAGES, &root().join("target"))
 }

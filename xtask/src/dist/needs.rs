@@ -41,7 +41,7 @@ pub(super) fn of(program: &Path, target: &str) -> Result<Needs, Failure> {
     Ok(of_elf(&bytes))
 }
 
-/// A program that loads libraries names the loader; its symbols carry the version of glibc that brought them.
+/// A program that loads libraries names the loader; its symbols contain the version of glibc that introduced them.
 fn of_elf(bytes: &[u8]) -> Needs {
     const LOADER: &[u8] = b"/ld-";
     const VERSION: &[u8] = b"GLIBC_";

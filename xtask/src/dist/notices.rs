@@ -1,4 +1,4 @@
-//! The licences of all that the command links, for the archive.
+//! The licences of all packages that the command links, for the archive.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -11,10 +11,10 @@ use super::programs::text_of;
 use crate::failure::Failure;
 use crate::repository::root;
 
-/// Beginnings of the names of files in which licences and notices stand.
+/// Beginnings of the names of files that contain licences and notices.
 const FILES: [&str; 5] = ["license", "licence", "copying", "copyright", "notice"];
 
-/// Their file in the archive.
+/// Name of the file with the notices in the archive.
 pub(super) const NAME: &str = "THIRD-PARTY-LICENSES.txt";
 
 /// The C library, if it is part of the command.
@@ -30,7 +30,8 @@ struct Package {
     folder: String,
 }
 
-/// The text of all notices for a target, whose C library is linked or not, and the number of packages: each licence text once, with the packages that have it.
+/// The text of all notices for a target, with or without the C library, and the number of packages: each licence text
+/// once, with the packages that use it.
 ///
 /// # Errors
 /// [`Failure::Chore`] if cargo fails, and for a package without any licence.
@@ -88,8 +89,8 @@ pub(super) fn of(target: &str, has_libc: bool) -> Result<(String, usize), Failur
     Ok((notices, packages.len()))
 }
 
-/// The packages that a package links, of cargo's metadata: those of the registry that it reaches without development and build dependencies, and macros, which
-/// leave their code in it.
+/// The packages that a package links, from cargo's metadata: those of the registry that it reaches without development
+/// and build dependencies, and procedural macros, whose generated code is part of it.
 fn linked(metadata: &Value, from: &str) -> Vec<Package> {
     let list = |value: &Value| value.as_array().cloned().unwrap_or_default();
     let text = |value: &Value| value.as_str().unwrap_or_default().to_owned();

@@ -1,4 +1,4 @@
-//! Programs that archives and packages are made with.
+//! Programs for building archives and packages.
 
 use std::process::Command;
 

@@ -1,4 +1,4 @@
-//! The archive as a user meets it: unpacked somewhere else, without the repository.
+//! Test of the archive as a user receives it: unpacked in another place, without the repository.
 
 use std::env::consts::EXE_SUFFIX;
 use std::fs;

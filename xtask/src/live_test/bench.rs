@@ -34,7 +34,7 @@ impl Bench {
     }
 }
 
-/// A failure with a sentence if `holds` is false.
+/// Fails with a sentence if `holds` is false.
 pub(super) fn require(holds: bool, what: impl FnOnce() -> String) -> Result<(), Failure> {
     match holds {
         true => Ok(()),
@@ -42,7 +42,7 @@ pub(super) fn require(holds: bool, what: impl FnOnce() -> String) -> Result<(), 
     }
 }
 
-/// A sentence where scripts of a page have failed.
+/// Fails with a sentence if scripts of a page have failed.
 pub(super) fn complaints(tab: &Tab) -> Result<(), Failure> {
     require(tab.errors.is_empty(), || {
         format!("the page complains: {}", tab.errors.join("; "))

@@ -12,10 +12,10 @@ use super::served::Served;
 use crate::failure::Failure;
 use crate::repository::root;
 
-/// A slab at rest, for the same cut by all methods.
+/// A slab at rest, for the same cut with all methods.
 pub(super) const SLAB: &str = include_str!("slab.toml");
 
-/// Tissue is cut by a drag and by keys in two panes, made whole again, and cut by the strokes of a scene.
+/// A drag and keys cut tissue in two panes, the tissue is restored, and the strokes of a scene cut it again.
 pub(super) fn cuts(bench: &Bench) -> Result<(), Failure> {
     let scene = bench.folder.path().join("slab.toml");
     std::fs::write(&scene, SLAB).map_err(Failure::chore)?;
@@ -127,7 +127,7 @@ fn both(tab: &mut Tab, name: &str) -> Result<[f64; 2], Failure> {
     ])
 }
 
-/// Drags from one place (m) to another in the first pane.
+/// Drags from one position (m) to another in the first pane.
 fn drag(tab: &mut Tab, from: [f64; 3], to: [f64; 3]) -> Result<(), Failure> {
     let (from, to) = (on_page(tab, from)?, on_page(tab, to)?);
     tab.mouse(Mouse::Press, from)?;
@@ -140,7 +140,7 @@ fn drag(tab: &mut Tab, from: [f64; 3], to: [f64; 3]) -> Result<(), Failure> {
     tab.mouse(Mouse::Release, to)
 }
 
-/// Position on the page of a place (m) in the first pane (CSS pixels).
+/// Position on the page (CSS pixels) of a point (m) in the first pane.
 pub(super) fn on_page(tab: &mut Tab, place: [f64; 3]) -> Result<[f64; 2], Failure> {
     let place = format!("window.sinew.onPage({place:?})");
     Ok([

@@ -17,7 +17,7 @@ pub(super) struct Tab {
     socket: WebSocket<TcpStream>,
     session: String,
     last: u64,
-    /// Complaints of the page's scripts.
+    /// Errors of the page's scripts.
     pub(super) errors: Vec<String>,
 }
 
@@ -30,7 +30,7 @@ pub(super) enum Mouse {
 }
 
 impl Tab {
-    /// A new tab of a browser that listens there, of this size.
+    /// Opens a new tab of this size in a browser that listens there.
     pub(super) fn open(address: &str, width: u32, height: u32) -> Result<Self, Failure> {
         let place = address.trim_start_matches("ws://");
         let host = place.split('/').next().unwrap_or_default();
@@ -59,7 +59,7 @@ impl Tab {
         Ok(tab)
     }
 
-    /// Another size of the page.
+    /// Changes the size of the page.
     pub(super) fn resize(&mut self, width: u32, height: u32) -> Result<(), Failure> {
         let metrics =
             json!({ "width": width, "height": height, "deviceScaleFactor": 1, "mobile": false });
@@ -91,7 +91,7 @@ impl Tab {
         })
     }
 
-    /// The number that is the value of an expression; NaN if it is none.
+    /// The numeric value of an expression on the page; NaN if it is no number.
     pub(super) fn number(&mut self, expression: &str) -> Result<f64, Failure> {
         Ok(self.value(expression)?.as_f64().unwrap_or(f64::NAN))
     }
@@ -114,7 +114,7 @@ impl Tab {
         Ok(())
     }
 
-    /// A mouse event at a place (CSS pixels).
+    /// Sends a mouse event at a position (CSS pixels).
     pub(super) fn mouse(&mut self, what: Mouse, [x, y]: [f64; 2]) -> Result<(), Failure> {
         let (kind, button, buttons) = match what {
             Mouse::Press => ("mousePressed", "left", 1),
@@ -126,7 +126,7 @@ impl Tab {
         Ok(())
     }
 
-    /// Lets the page believe that it has a touch screen.
+    /// Makes the page assume a touch screen.
     pub(super) fn has_fingers(&mut self) -> Result<(), Failure> {
         self.call(
             "Emulation.setTouchEmulationEnabled",
@@ -148,14 +148,14 @@ impl Tab {
         Ok(())
     }
 
-    /// A picture of the page, as a PNG file.
+    /// Takes a picture of the page, as a PNG file.
     pub(super) fn picture(&mut self) -> Result<Vec<u8>, Failure> {
         let answer = self.call("Page.captureScreenshot", json!({ "format": "png" }))?;
         let text = answer["data"].as_str().unwrap_or_default();
         BASE64.decode(text.as_bytes()).map_err(Failure::chore)
     }
 
-    /// A key, pressed and released.
+    /// Presses and releases a key.
     pub(super) fn key(&mut self, key: &str) -> Result<(), Failure> {
         for kind in ["rawKeyDown", "keyUp"] {
             self.call(

@@ -1,4 +1,4 @@
-//! Fingers on the page.
+//! Touch input on the page.
 
 use std::time::Duration;
 
@@ -11,11 +11,11 @@ use super::hand::{PATIENCE, grip, open};
 use super::served::Served;
 use crate::failure::Failure;
 
-/// Pull of the hand's loads (N).
+/// Size of the hand's loads (N).
 const PULLS: &str =
     "window.sinew.scenery.hand.loads.map((load) => window.sinew.settings.factors[load])";
 
-/// Moves the first of some fingers by a vector (CSS pixels) in equal parts; all stay down.
+/// Moves the first one of some fingers by a vector (CSS pixels) in equal parts; all remain on the screen.
 fn slide(tab: &mut Tab, from: [f64; 2], by: [f64; 2]) -> Result<[f64; 2], Failure> {
     let mut at = from;
     for number in 1..=20 {
@@ -27,7 +27,7 @@ fn slide(tab: &mut Tab, from: [f64; 2], by: [f64; 2]) -> Result<[f64; 2], Failur
     Ok(at)
 }
 
-/// A finger presses, pulls and cuts; a second one turns the view, and ends a pull.
+/// A finger presses, pulls and cuts; a second finger turns the view, and ends a pull.
 pub(super) fn press_pull_and_cut(bench: &Bench) -> Result<(), Failure> {
     let scene = bench.scene(6, "symplectic-euler", 0.001)?;
     let served = Served::start(&bench.sinew, &[scene])?;

@@ -149,7 +149,7 @@ pub(super) fn press_hold_and_switch(bench: &Bench) -> Result<(), Failure> {
     complaints(&tab)
 }
 
-/// The page without a scene: two panes under the same pointer, reloaded once.
+/// The page without a scene: two panes with the same pointer, reloaded once.
 pub(super) fn side_by_side(bench: &Bench) -> Result<(), Failure> {
     let served = Served::start(&bench.sinew, &[])?;
     let mut tab = open(bench, &served)?;
@@ -177,7 +177,7 @@ pub(super) fn side_by_side(bench: &Bench) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Commands at random, among them many that make no sense.
+/// Sends random commands, many of them invalid.
 pub(super) fn random_input(bench: &Bench, seconds: u64) -> Result<(), Failure> {
     let scene = bench.scene(10, "symplectic-euler", 0.001)?;
     let text = std::fs::read_to_string(&scene).map_err(Failure::chore)?;
@@ -213,7 +213,7 @@ pub(super) fn random_input(bench: &Bench, seconds: u64) -> Result<(), Failure> {
     })
 }
 
-/// Restarts with one pane and one method, once few enough commands are queued.
+/// Restarts with one pane and one method, when sufficiently few commands are queued.
 fn begin_anew(tab: &mut Tab) -> Result<(), Failure> {
     let begun = Instant::now();
     loop {
@@ -232,7 +232,7 @@ fn begin_anew(tab: &mut Tab) -> Result<(), Failure> {
     }
 }
 
-/// Numbers at random (xorshift64*, S. Vigna, ACM Trans. Math. Softw. 42, 2016).
+/// Random numbers (xorshift64*, S. Vigna, ACM Trans. Math. Softw. 42, 2016).
 struct Chance(u64);
 
 impl Chance {

@@ -24,19 +24,19 @@ use crate::program;
 /// Options of the test.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// Ten minutes of input, after which memory must be what it was
+    /// Ten minutes of input, after which memory must be unchanged
     #[arg(long)]
     long: bool,
-    /// Seconds of random input, at least 30: memory is compared with what it was after 20
+    /// Seconds of random input, at least 30: memory is compared with its value after 20
     #[arg(long, value_name = "S", default_value_t = 60, value_parser = clap::value_parser!(u64).range(30..))]
     seconds: u64,
     /// A sinew that is built already, instead of a release build of this one
     #[arg(long, value_name = "PROGRAM")]
     sinew: Option<PathBuf>,
-    /// Fail where a mark of speed is missed, instead of saying so
+    /// Fail if a mark of speed is missed, instead of only reporting it
     #[arg(long)]
     strict: bool,
-    /// Nothing but a picture of the page, with the tool pressed in: that of the README is docs/live.png
+    /// Only a picture of the page, with the tool pressed in: that of the README is docs/live.png
     #[arg(long, value_name = "FILE", conflicts_with_all = ["long", "seconds", "strict"])]
     picture: Option<PathBuf>,
 }

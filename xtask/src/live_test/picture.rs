@@ -11,7 +11,7 @@ use super::hand::{PATIENCE, drag};
 use super::served::Served;
 use crate::failure::Failure;
 
-/// Presses a ball into a cube with a trusted run, lets it rest, and writes a picture of the page.
+/// Presses a ball into a cube with a trusted run, waits until it is at rest, and writes a picture of the page.
 pub(super) fn write(bench: &Bench, path: &Path) -> Result<(), Failure> {
     let scene = bench.scene(10, "symplectic-euler", 0.001)?;
     let served = Served::start(&bench.sinew, &[scene])?;

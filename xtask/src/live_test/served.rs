@@ -13,7 +13,7 @@ use tungstenite::{Error, WebSocket, client};
 
 use crate::failure::Failure;
 
-/// Time after which a server that was asked to end is ended.
+/// Time after which a server that was asked to end is killed.
 const LONGEST_END: Duration = Duration::from_secs(30);
 
 /// A server, which ends with this value.
@@ -54,7 +54,7 @@ impl Served {
         Ok(served)
     }
 
-    /// Its end without a page, as where its port is taken.
+    /// Runs it until it ends without a page, for example because its port is in use.
     pub(super) fn try_to(sinew: &Path, arguments: &[PathBuf]) -> Result<Output, Failure> {
         command(sinew, arguments).output().map_err(Failure::chore)
     }
@@ -65,7 +65,7 @@ impl Served {
         place.split('/').next().unwrap_or_default()
     }
 
-    /// A connection of a page of this origin.
+    /// Connects as a page of this origin.
     pub(super) fn connect(&self, origin: &str) -> Result<WebSocket<TcpStream>, Error> {
         let stream = TcpStream::connect(self.host()).map_err(Error::Io)?;
         let url = format!("{}socket", self.url.replacen("http", "ws", 1));
@@ -80,7 +80,7 @@ impl Served {
         Ok(socket)
     }
 
-    /// A connection of its own page.
+    /// Connects as its own page.
     pub(super) fn connect_as_page(&self) -> Result<WebSocket<TcpStream>, Error> {
         self.connect(&format!("http://{}", self.host()))
     }
@@ -94,13 +94,13 @@ impl Served {
         number.map_or(f64::NAN, |number| number / 1024.0)
     }
 
-    /// True if it still runs.
+    /// True if it is still running.
     pub(super) fn runs(&mut self) -> bool {
         matches!(self.child.try_wait(), Ok(None))
     }
 
-    /// Presses Ctrl-C, or requests the end differently if this program was started to ignore that, as background jobs
-    /// are.
+    /// Presses Ctrl-C, or requests the end in another way if this program was started to ignore it, like background
+    /// jobs.
     pub(super) fn interrupt(mut self) -> Result<Ended, Failure> {
         let id = self.child.id().to_string();
         let signal = if ignores_interrupts() {
@@ -138,7 +138,7 @@ impl Served {
     }
 }
 
-/// Signal 2 among those that this process, and so its children, ignore.
+/// True if this process, and thus its children, ignore signal 2.
 fn ignores_interrupts() -> bool {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));

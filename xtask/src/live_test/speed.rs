@@ -17,9 +17,9 @@ struct Case {
     cells: usize,
     method: &'static str,
     dt: f64,
-    /// Pictures in a second, at least.
+    /// Minimum number of pictures per second.
     rate: f64,
-    /// Time (ms) from a drag to its picture, of half and of 95 % of drags, at most.
+    /// Maximum time (ms) from a drag to its picture, for half and for 95 % of drags.
     latency: [f64; 2],
 }
 
@@ -45,7 +45,7 @@ const CASES: [Case; 2] = [
 /// Runs of each case.
 const RUNS: usize = 3;
 
-/// Share of a rate that is lost to the clock of the screen.
+/// Share of the rate that must remain in spite of the clock of the screen.
 const SHORT_OF: f64 = 0.97;
 
 pub(super) fn measure(bench: &Bench, strict: bool) -> Result<(), Failure> {
@@ -99,7 +99,7 @@ pub(super) fn measure(bench: &Bench, strict: bool) -> Result<(), Failure> {
     })
 }
 
-/// Three seconds of dragging: pictures in a second, latencies (ms) of half and of 95 %, pace.
+/// Three seconds of dragging: pictures per second, latencies (ms) of half and of 95 %, pace.
 fn wiggle(tab: &mut Tab) -> Result<[f64; 4], Failure> {
     let from = grip(tab)?;
     tab.mouse(Mouse::Press, from)?;

@@ -13,7 +13,7 @@ use super::hand::{PATIENCE, open};
 use super::served::Served;
 use crate::failure::Failure;
 
-/// Others' origins, hosts and tokens.
+/// Tests with foreign origins, hosts and tokens.
 pub(super) fn are_refused(bench: &Bench) -> Result<(), Failure> {
     let served = Served::start(&bench.sinew, &[])?;
     for origin in [
@@ -74,7 +74,7 @@ pub(super) fn are_refused(bench: &Bench) -> Result<(), Failure> {
     Ok(())
 }
 
-/// A second page, one that reads nothing, nonsense, and messages that are too long.
+/// A second page, a page that reads nothing, invalid messages, and messages that are too long.
 pub(super) fn do_no_harm(bench: &Bench) -> Result<(), Failure> {
     let scene = bench.scene(10, "symplectic-euler", 0.001)?;
     let mut served = Served::start(&bench.sinew, &[scene])?;
@@ -157,7 +157,7 @@ pub(super) fn do_no_harm(bench: &Bench) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The end by Ctrl-C with a page open, and a port that is taken.
+/// The end by Ctrl-C with an open page, and a port that is in use.
 pub(super) fn ctrl_c_and_taken_port(bench: &Bench) -> Result<(), Failure> {
     let served = Served::start(&bench.sinew, &[])?;
     let mut tab = open(bench, &served)?;

@@ -1,4 +1,4 @@
-//! The paths that ARCHITECTURE.md names exist.
+//! Rule: the paths in ARCHITECTURE.md exist.
 
 use std::path::Path;
 

@@ -61,7 +61,7 @@ pub(crate) enum Breach {
     },
 }
 
-/// Reasons why the rules are not known to be kept.
+/// Reasons why the rules cannot be checked.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum RuleError {
     #[error("`cargo {command}` failed: {reason}")]

@@ -1,10 +1,10 @@
-//! The code of a Rust file as tokens, without code for tests only.
+//! The code of a Rust file as tokens, without code that is only for tests.
 
 use proc_macro2::{Delimiter, Group, Spacing, TokenStream, TokenTree};
 
 /// The tokens of a source text without comments, items under `#[cfg(test)]` and attributes.
 ///
-/// A file that is for tests as a whole has none. The attribute `#[path = ".."]` stays.
+/// A file that is only for tests gives no tokens. The attribute `#[path = ".."]` stays.
 pub(super) fn code(text: &str) -> Result<Vec<TokenTree>, proc_macro2::LexError> {
     Ok(without_tests(text.parse()?))
 }
@@ -148,7 +148,7 @@ pub(super) fn path(tokens: &[TokenTree], mut at: usize) -> (Vec<String>, usize) 
 pub(super) struct Import {
     /// The imported path.
     pub(super) path: Vec<String>,
-    /// The name that it gets; `None` for all names in `path` (`*`).
+    /// Its new name; `None` for all names in `path` (`*`).
     pub(super) name: Option<String>,
     /// True if others may import it from here (`pub use`, of any visibility).
     pub(super) is_public: bool,

@@ -1,4 +1,4 @@
-//! No crate's tests need a crate that itself needs, for any purpose, the first one.
+//! Rule: no crate's tests need a crate that needs, for any purpose, the tested crate.
 
 use std::collections::BTreeSet;
 
@@ -51,7 +51,8 @@ mod tests {
         )
     }
 
-    /// The rule's findings in a workspace in which b needs a and c nothing, and the tests of a need these.
+    /// The rule's findings in a workspace in which b needs a, c needs nothing, and the tests of a need the given
+    /// crates.
     fn said(tests_of_a_need: &str) -> Vec<String> {
         let a = manifest("a", "", tests_of_a_need);
         let b = manifest("b", "a = { path = \"../a\" }", "");

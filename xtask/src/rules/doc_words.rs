@@ -1,4 +1,4 @@
-//! Doc comments begin with a noun or a verb, and use the terms of the field.
+//! Rule: doc comments begin with a noun or a verb, and use the terms of the field.
 
 use std::path::Path;
 
@@ -22,7 +22,7 @@ const FIRST_WORDS: &[(&str, &str)] = &[
     ("As", "`Same as ..`"),
 ];
 
-/// Phrases of no textbook, with the terms that replace them.
+/// Phrases that are in no textbook, with the terms that replace them.
 const PHRASES: &[(&str, &str)] = &[
     ("anew", "`again` or `rebuilt`"),
     ("goes on", "`continues`"),
@@ -105,7 +105,7 @@ fn doc(line: &str) -> Option<(&'static str, &str)> {
     text("///").or_else(|| text("//!"))
 }
 
-/// A doc comment that is read line by line.
+/// A doc comment during its reading, line by line.
 #[derive(Default)]
 struct Comment {
     marker: &'static str,

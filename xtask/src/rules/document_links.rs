@@ -1,11 +1,11 @@
-//! The files that documents link to exist.
+//! Rule: the files to which documents link exist.
 
 use std::path::Path;
 
 use super::breach::{Breach, RuleError};
 use super::files::{entries, shown, source};
 
-/// Folders with documents, and those without folders in them.
+/// Folders with documents, without their subfolders.
 const FOLDERS: [&str; 3] = ["docs", "docs/book/src", "docs/decisions"];
 
 /// Looks for the file of every relative link in the documents of `root` and of its crates.

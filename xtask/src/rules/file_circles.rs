@@ -1,4 +1,4 @@
-//! No two files of a crate, and no two modules at its top, import each other, directly or indirectly.
+//! Rule: no two files of a crate, and no two modules at its top, import each other, directly or indirectly.
 
 use std::path::Path;
 
@@ -7,7 +7,7 @@ use super::components::{Edges, components, shortest_circle};
 use super::files::{entries, shown};
 use super::modules::Modules;
 
-/// Finds the circles of files and of modules: two modules may need each other though none of their files does.
+/// Finds the circles of files and of modules: two modules may need each other although none of their files does.
 pub(super) fn check(root: &Path) -> Result<Vec<Breach>, RuleError> {
     let files = imports(root)?;
     let found = circles(&files);

@@ -1,4 +1,4 @@
-//! Reading the sources that the rules are about.
+//! Reading of the sources for the rules.
 
 use std::path::{Path, PathBuf};
 

@@ -1,18 +1,18 @@
-//! Crates that must stay cheap to depend on.
+//! Crates that must remain cheap as dependencies.
 
 use std::path::Path;
 
 use super::breach::{Breach, RuleError};
 use super::workspace::cargo;
 
-/// A crate whose tree of dependencies is kept small.
+/// A crate whose dependency tree is kept small.
 pub(super) struct Light {
     name: &'static str,
-    /// True if its default features are on.
+    /// True if its default features are enabled.
     with_features: bool,
-    /// Libraries, and features of any crate, that have no place in its tree.
+    /// Libraries, and features of any crate, that are not allowed in its tree.
     banned: &'static [&'static str],
-    /// The most crates in its tree, itself included, if bounded.
+    /// The largest number of crates in its tree, itself included, if limited.
     most: Option<usize>,
 }
 
@@ -48,7 +48,7 @@ const HEAVY: &[&str] = &["faer", "nalgebra", "rayon"];
 /// Libraries of the `sinew` command, on which the library of that name must not depend.
 const COMMAND: &[&str] = &["clap", "comfy-table", "annotate-snippets", "axum", "tokio"];
 
-/// Checks for tests, which a release has no use for.
+/// Checks for tests, which a release does not need.
 const CHECKS: &[&str] = &["\"conformance\"", "sinew-testkit", "proptest"];
 
 /// Checks the trees of the light crates, without dependencies of their tests.

@@ -23,7 +23,7 @@ use breach::{Breach, RuleError};
 ///
 /// # Errors
 ///
-/// Every breach that was found, or the first thing that could not be read.
+/// Every breach that was found, or the first file that could not be read.
 pub(crate) fn check(root: &Path) -> Result<(), RuleError> {
     let packages = workspace::packages(root)?;
     let breaches: Vec<Breach> = [
@@ -50,7 +50,7 @@ pub(crate) fn check(root: &Path) -> Result<(), RuleError> {
 ///
 /// # Errors
 ///
-/// [`RuleError`] if cargo cannot tell.
+/// [`RuleError`] if cargo cannot list them.
 pub(crate) fn published(root: &Path) -> Result<Vec<String>, RuleError> {
     let packages = workspace::packages(root)?.into_iter();
     let published = packages.filter(|package| package.is_published);

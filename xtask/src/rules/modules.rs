@@ -12,7 +12,7 @@ use super::code::{
 use super::components::Edges;
 use super::files::source;
 
-/// Longest chain of imports that is followed. Imports that lead back to themselves end here.
+/// Longest chain of imports that is followed. Circular imports end here.
 const DEEPEST: usize = 32;
 
 /// All modules that are reached from the root file of a crate.
@@ -22,16 +22,16 @@ pub(super) struct Modules {
     macros: BTreeMap<String, usize>,
 }
 
-/// A module, in a file of its own or in braces.
+/// A module, in its own file or in braces.
 struct Module {
     file: PathBuf,
     parent: Option<usize>,
-    /// Several under one name where `cfg` chooses between files.
+    /// Several modules have one name if `cfg` chooses between files.
     children: BTreeMap<String, Vec<usize>>,
     /// Names of the items defined here.
     items: BTreeSet<String>,
     imports: Vec<Import>,
-    /// Paths in code outside imports, those of a single name as well.
+    /// Paths in code outside imports, including single names.
     paths: BTreeSet<Vec<String>>,
 }
 
@@ -62,7 +62,7 @@ impl Modules {
         Ok(modules)
     }
 
-    /// Adds the module in a file, whose own modules are looked for in `folder`.
+    /// Adds the module in a file, whose submodules are searched in `folder`.
     fn file(
         &mut self,
         file: &Path,
@@ -97,7 +97,7 @@ impl Modules {
         Ok(index)
     }
 
-    /// Takes in the tokens of a module, or of a group in it.
+    /// Reads the tokens of a module, or of a group in it.
     fn scan(
         &mut self,
         module: usize,
@@ -183,7 +183,7 @@ impl Modules {
         Ok(())
     }
 
-    /// The file of the module `name` and the folder of its own modules.
+    /// The file of the module `name` and the folder of its submodules.
     fn place(
         &self,
         parent: usize,
@@ -206,7 +206,7 @@ impl Modules {
         }
     }
 
-    /// For each file the others of the crate whose names its code uses.
+    /// Other files of the crate whose names the code of each file uses.
     ///
     /// A re-export counts only if the code of the same module uses the name as well.
     pub(super) fn imports_of_files(&self) -> Edges<PathBuf> {

@@ -1,4 +1,4 @@
-//! Sources that can run anywhere, and whose public signatures show no library of others.
+//! Sources that can run anywhere, and whose public signatures contain no third-party library.
 
 use std::path::Path;
 
@@ -8,7 +8,7 @@ use super::breach::{Breach, RuleError};
 use super::code::{code, group, ident, imports, is_punct, path};
 use super::files::{rust_files, shown, source};
 
-/// Folders of sources that read no clock and no file.
+/// Folders of sources that use no clock and no file.
 pub(super) const PURE: &[&str] = &[
     "crates/sinew-sparse/src",
     "crates/sinew-core/src",
@@ -25,14 +25,15 @@ pub(super) const PURE: &[&str] = &[
 /// Modules of the standard library that reach outside the program.
 const IMPURE: &[&str] = &["fs", "net", "process", "time"];
 
-/// The files that may read a clock: one measures whether threads help, the other runs a device and a simulation in
+/// The files that may read a clock: one measures the benefit of threads, the other runs a device and a simulation in
 /// real time.
 const CLOCKS: &[&str] = &[
     "crates/sinew-machines/src/crew/mod.rs",
     "crates/sinew-haptics/src/real_time.rs",
 ];
 
-/// Libraries that must not appear in a public signature, so that a new major version of theirs is none of ours.
+/// Libraries that must not appear in a public signature, so that their new major versions do not require a new major
+/// version of ours.
 const FOREIGN: &[&str] = &["faer", "nalgebra"];
 
 /// Checks all files in `folders`.
@@ -73,7 +74,7 @@ pub(super) fn check(root: &Path, folders: &[&str]) -> Result<Vec<Breach>, RuleEr
     Ok(breaches)
 }
 
-/// The names and signatures of a file that the rule is about.
+/// The names and signatures in a file to which the rule applies.
 #[derive(Default)]
 struct Seen {
     /// Impure modules that it names, e.g. `std::fs`.

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::breach::Breach;
 use super::workspace::Package;
 
-/// The crates of the workspace that each may depend on. Dependencies go in one direction only.
+/// The crates of the workspace on which each crate may depend. Dependencies go in one direction only.
 pub(super) const ROOMS: &[(&str, &[&str])] = &[
     ("sinew-sparse", &[]),
     ("sinew-mesh", &[]),
@@ -172,7 +172,7 @@ pub(super) const ROOMS: &[(&str, &[&str])] = &[
     ),
 ];
 
-/// The laboratory: crates that measure and verify the product, and are no part of it.
+/// The laboratory: crates that measure and verify the product, and are not part of it.
 const LABORATORY: &[&str] = &["sinew-bench", "sinew-verify", "sinew-testkit", "xtask"];
 
 /// The only crate of the laboratory that the product's tests may use.
@@ -186,7 +186,7 @@ pub(super) const PRIVATE: &[(&str, &str)] = &[
     ("tokio", "sinew-live"),
 ];
 
-/// Checks that every crate is listed and depends on no other than it may.
+/// Checks that every crate is listed and depends only on allowed crates.
 pub(super) fn check(packages: &[Package]) -> Vec<Breach> {
     let rooms: BTreeMap<&str, &[&str]> = ROOMS.iter().copied().collect();
     let mut breaches = Vec::new();

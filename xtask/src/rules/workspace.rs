@@ -19,7 +19,8 @@ pub(super) struct Package {
     pub(super) is_published: bool,
 }
 
-/// The crates of the workspace in a folder, without the examples, which are written as if they stood elsewhere.
+/// The crates of the workspace in a folder, without the examples, which are written as if they were outside the
+/// repository.
 pub(super) fn packages(root: &Path) -> Result<Vec<Package>, RuleError> {
     let text = cargo(root, &["metadata", "--no-deps", "--format-version", "1"])?;
     let metadata: Value = serde_json::from_str(&text).map_err(|error| RuleError::Cargo {

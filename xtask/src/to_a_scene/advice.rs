@@ -35,7 +35,7 @@ pub(super) fn try_all(place: &Place<'_>) -> Result<(), Failure> {
     )?)
 }
 
-/// The command in an error that begins so.
+/// The command in an error that begins with this text.
 fn command(said: &str, begin: &str) -> Result<String, Failure> {
     let quoted = said.split('`').skip(1).step_by(2);
     let mut found = quoted.filter(|quoted| quoted.starts_with(begin));

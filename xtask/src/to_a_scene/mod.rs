@@ -16,7 +16,7 @@ use crate::program;
 use crate::python::{Packages, Python};
 use crate::repository::root;
 
-/// The packages of the page, and that of the advice.
+/// The packages for the page, and that for the advice.
 const PACKAGES: Packages = Packages {
     needed_by: "to-a-scene",
     folder: "to-a-scene",
@@ -31,7 +31,7 @@ pub(crate) fn run() -> Result<(), Failure> {
 /// A Python that has the packages.
 ///
 /// # Errors
-/// [`Failure::Input`] if there is no Python 3 or no pip, [`Failure::Chore`] where pip fails.
+/// [`Failure::Input`] if there is no Python 3 or no pip, [`Failure::Chore`] if pip fails.
 pub(crate) fn python() -> Result<Python, Failure> {
     Python::with(&PACKAGES, &root().join("target"))
 }
@@ -56,7 +56,7 @@ pub(crate) fn run_with(python: &Python) -> Result<(), Failure> {
     advice::try_all(&place)
 }
 
-/// Runs a line of the page. What it installs is there already.
+/// Runs a line of the page. Packages that it would install are already there.
 fn step(place: &Place, line: &str) -> Result<(), Failure> {
     say(&format!("$ {line}"))?;
     let Some(packages) = line.strip_prefix("pip install ") else {

@@ -7,14 +7,14 @@ pub(super) struct Page<'a> {
 
 #[derive(Debug, PartialEq)]
 pub(super) enum Block<'a> {
-    /// A text that is saved under the name in its first line, a comment.
+    /// A text to be saved under the name in its first line, a comment.
     File { name: &'a str, text: &'a str },
     /// Lines for a shell.
     Commands(Vec<&'a str>),
 }
 
 impl<'a> Page<'a> {
-    /// The blocks of a page; the error names one that cannot be tried.
+    /// The blocks of a page; the error names a block that cannot be run.
     pub(super) fn of(text: &'a str) -> Result<Self, String> {
         let mut blocks = Vec::new();
         let mut rest = text;

@@ -57,7 +57,7 @@ impl<'p> Place<'p> {
         }
     }
 
-    /// Standard output of a line for a shell that succeeds.
+    /// Runs a shell line that must succeed; returns its standard output.
     pub(super) fn shell(&self, line: &str) -> Result<String, Failure> {
         let output = self.outcome(line)?;
         match output.status.success() {
@@ -71,7 +71,7 @@ impl<'p> Place<'p> {
         }
     }
 
-    /// Standard error of a line for a shell that is refused.
+    /// Runs a shell line that must be refused; returns its standard error.
     pub(super) fn refusal(&self, line: &str) -> Result<String, Failure> {
         let output = self.outcome(line)?;
         match output.status.success() {

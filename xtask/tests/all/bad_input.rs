@@ -39,7 +39,7 @@ $Elements
 $EndElements
 ";
 
-/// The command's message about a scene. Nothing is written.
+/// The command's message about a scene. Checks that nothing is written.
 fn refusal(scene: &str, more: &[&str]) -> String {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("scene.toml");

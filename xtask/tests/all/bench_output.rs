@@ -1,4 +1,4 @@
-//! Output of `cargo xtask bench`: the answer in few lines, and everything on demand.
+//! Output of `cargo xtask bench`: the summary in few lines, and everything on demand.
 
 use std::path::Path;
 
@@ -16,7 +16,7 @@ integrator = \"newmark\"
 dt = 0.01
 ";
 
-/// Standard output of a quick bench of all methods; nothing is said beside it.
+/// Standard output of a quick bench of all methods; nothing else is printed.
 fn said(folder: &Path, more: &[&str]) -> String {
     let scene = folder.join("scene.toml");
     std::fs::write(&scene, OSCILLATOR).unwrap();

@@ -1,4 +1,4 @@
-//! The chores of the repository, as a developer meets them.
+//! The chores of the repository, as a developer uses them.
 
 #![cfg(test)]
 

@@ -1,4 +1,4 @@
-//! A case as plain arrays, for programs that are not ours.
+//! A case as plain arrays, for other programs.
 
 use std::path::PathBuf;
 
@@ -18,8 +18,8 @@ const FILES: [&str; 6] = [
     "system.json",
 ];
 
-/// Files of an exported case: little-endian arrays without heads, and `system.json` with
-/// their lengths, the duration (s) and the number of samples.
+/// Files of an exported case: little-endian arrays without headers, and `system.json` with their lengths, the duration
+/// (s) and the number of samples.
 ///
 /// | file | content |
 /// | --- | --- |
@@ -45,7 +45,7 @@ pub enum ExportError {
     Unfit {
         /// Id of the case.
         case: String,
-        /// The thing that the format has no place for.
+        /// The property that the format cannot represent.
         what: &'static str,
     },
     /// A file cannot be written.
@@ -115,8 +115,7 @@ pub fn export(case: &Case, folder: &OutputFolder) -> Result<Exported, ExportErro
     })
 }
 
-/// K by scalar rows. Zeros inside blocks are left out: the other program is to have no more work
-/// than the matrix needs.
+/// K by scalar rows. Zeros inside blocks are left out: the other program should not do unnecessary work.
 struct CompressedRows {
     starts: Vec<i32>,
     columns: Vec<i32>,

@@ -1,4 +1,4 @@
-//! Laps in turn: theirs, ours, theirs, ours.
+//! Alternating laps: theirs, ours, theirs, ours.
 
 use sinew_verify::LabError;
 use std::error::Error;
@@ -11,15 +11,15 @@ use crate::timed::{TimedRunError, time_run};
 use sinew_measure::reference::ErrorNorm;
 use sinew_measure::{Case, MeasureError, MethodChoice, on_one_thread};
 
-/// An error of another program, whose kinds are not known here.
+/// An error of another program, of an unknown kind.
 pub type RivalError = Box<dyn Error + Send + Sync>;
 
-/// Another program that steps the same system.
+/// Another program that simulates the same system.
 pub trait Rival {
     /// Its name, with versions.
     fn name(&self) -> String;
 
-    /// The integrator of ours that does the same, and its step (s).
+    /// Our integrator that does the same, and its step (s).
     fn same(&self) -> (&'static str, f64);
 
     /// One run over the case's duration: CPU time (s) of its steps alone.
@@ -47,7 +47,7 @@ const ROUNDING: f64 = 1e-9;
 pub struct Pair {
     /// The error that the run is to reach, and the run.
     pub target: Target,
-    /// CPU time of our steps over that of theirs in the lap before, sorted.
+    /// CPU time of our steps over that of theirs in the preceding lap, sorted.
     pub ratios: Vec<f64>,
     /// CPU time of our set-up over the median of their laps.
     pub setup: f64,
@@ -66,7 +66,7 @@ impl Pair {
 pub struct Beside {
     /// The other program.
     pub rival: String,
-    /// Its integrator by our name, and its step (s).
+    /// The name of its integrator in our terms, and its step (s).
     pub same: (String, f64),
     /// Its relative L2 error (fraction).
     pub error: f64,
@@ -76,8 +76,8 @@ pub struct Beside {
     pub pairs: Vec<Pair>,
 }
 
-/// Finds our cheapest runs, checks that the other program computes the same as ours, and times both
-/// in turn on one thread.
+/// Finds our cheapest runs, checks that the other program computes the same as ours, and times both alternately on one
+/// thread.
 ///
 /// # Errors
 /// [`LabError`].
@@ -191,7 +191,7 @@ impl Contender {
     }
 }
 
-/// Relative L2 difference over all samples; infinite if they are not the same in number.
+/// Relative L2 difference over all samples; infinite if their numbers differ.
 fn apart(a: &[Vec<f64>], b: &[Vec<f64>]) -> f64 {
     if a.len() != b.len() || a.iter().zip(b).any(|(a, b)| a.len() != b.len()) {
         return f64::INFINITY;

@@ -1,8 +1,8 @@
-//! Our methods in turn with another program on the same matrices: paired ratios of CPU time.
+//! Our methods alternating with another program on the same matrices: paired ratios of CPU time.
 //!
-//! Times of two programs compare only when both ran on the same machine in the same minute. Each
-//! lap of ours therefore follows a lap of the other one, and their ratio counts, not their times.
-//! [`simulators`] have laws and methods of their own: each is held against a fine run of its law.
+//! Times of two programs are comparable only when both ran on the same machine in the same minute. Each lap of ours
+//! therefore follows a lap of the other program, and their ratio counts, not their times. [`simulators`] have their own
+//! laws and methods: each is compared with a fine run of its law.
 
 mod export;
 pub mod factor;

@@ -3,7 +3,7 @@
 use sinew_measure::search::{CasePilots, Goal, Search, candidates};
 use sinew_measure::{Case, Effort, MeasureError, MethodChoice, Row, measure};
 
-/// An error and the run of ours that reaches it most cheaply.
+/// An error and our run that reaches it at the lowest cost.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Target {
     /// Largest error (fraction); none for the run that is the other program's own method and step.
@@ -14,11 +14,11 @@ pub struct Target {
     pub row: Row,
 }
 
-/// Errors (fractions) that are sought.
+/// Target errors (fractions).
 const ERRORS: [f64; 3] = [1e-2, 1e-3, 1e-6];
 
-/// The same method and step as the other program's first, then the cheapest run for each error, if
-/// there is one. Cost is CPU time of set-up and steps for the case's duration.
+/// The same method and step as the other program's first, then the cheapest run for each error, if any. Cost is CPU
+/// time of set-up and steps for the case's duration.
 ///
 /// # Errors
 /// [`MeasureError`] when the other program's own method cannot run here.

@@ -33,7 +33,7 @@ pub(super) struct Sizes {
     pub(super) tissue: &'static str,
     /// The cubes, small ones first.
     pub(super) cases: &'static [&'static str],
-    /// The one that must be in real time.
+    /// The cube that must run in real time.
     pub(super) asked: &'static str,
 }
 

@@ -8,7 +8,7 @@ use crate::report::{number, percent};
 use crate::results::Mark;
 use sinew_verify::MarkVerdict;
 
-/// Largest error (fraction) of a reference by which errors of some per cent can be measured.
+/// Largest error (fraction) of a reference with which errors of some per cent can be measured.
 const OF_REFERENCE: f64 = 1e-3;
 
 /// Largest error (fraction) of motion and of forces in steps that follow the stiffness.
@@ -24,7 +24,7 @@ pub(super) fn all(cases: &[CaseInfo], rows: &[Row], quick: bool) -> Vec<Mark> {
     marks
 }
 
-/// A mark on the largest of some shares.
+/// A mark for the largest of some shares.
 fn largest<'a>(
     case: &str,
     asked: &str,
@@ -56,7 +56,8 @@ fn references(cases: &[CaseInfo]) -> Mark {
     )
 }
 
-/// Central difference in parts that follow the stiffness, at every step: where contact is exact at the end of each part, nothing else errs.
+/// Central difference in substeps that follow the stiffness, for every step: since contact is exact at the end of each
+/// substep, there is no other error.
 fn steps_that_follow(rows: &[Row]) -> [Mark; 2] {
     let own: Vec<&Row> = rows.iter().filter(|row| is_yardstick(row)).collect();
     let figures = |error: fn(&Row) -> Option<f64>| {
@@ -127,8 +128,8 @@ fn cells(case: &str) -> f64 {
     last.and_then(|last| last.parse().ok()).unwrap_or(10.0)
 }
 
-/// Size at which the cost is 1, on the straight line through the logarithms of the two sizes about it, or of the last
-/// two; and true if that size is larger than all measured ones.
+/// Size at which the cost is 1, on the straight line through the logarithms of the two sizes that enclose it, or of the
+/// last two sizes; and true if that size is larger than all measured ones.
 fn largest_in_real_time(costs: &[(f64, f64)]) -> Option<(f64, bool)> {
     let about = costs.windows(2).find(|pair| pair[1].1 > 1.0);
     let is_beyond = about.is_none();

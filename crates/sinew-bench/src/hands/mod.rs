@@ -14,14 +14,14 @@ use sinew_verify::{Machine, Progress};
 /// The bench of scenes with tools.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HandsBench {
-    /// The folder of scenes, which has these in `hands`.
+    /// The folder of scenes; these are in its folder `hands`.
     pub scenes: PathBuf,
     /// Takes the longest steps only, and no finer meshes.
     pub quick: bool,
 }
 
 impl HandsBench {
-    /// Measures every case on one thread. A method that tools cannot push is listed with its reason.
+    /// Measures every case on one thread. A method without support for tools is listed with its reason.
     ///
     /// # Errors
     /// [`BenchError`] if no scene can be read.
@@ -43,7 +43,7 @@ impl HandsBench {
         self.plan().input_files()
     }
 
-    /// The names of the files that [`write_all`](crate::report::write_all) writes of the results.
+    /// The names of the files that [`write_all`](crate::report::write_all) writes for the results.
     #[must_use]
     pub fn output_files(&self) -> Vec<String> {
         self.plan().output_files()

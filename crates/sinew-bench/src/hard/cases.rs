@@ -15,7 +15,7 @@ pub(crate) struct HardCase {
     pub(crate) slow: bool,
 }
 
-/// The methods that cases of the paper's own kind are given to.
+/// The methods for cases of the paper's own kind.
 fn rivals() -> Vec<MethodChoice> {
     vec![
         cnn(),
@@ -31,7 +31,7 @@ fn rivals() -> Vec<MethodChoice> {
     ]
 }
 
-/// The rivals, and the method that singles out bad elements.
+/// The rivals, and the method that treats bad elements separately.
 fn rivals_and_patches() -> Vec<MethodChoice> {
     let mut methods = rivals();
     methods.push(patched());
@@ -45,7 +45,7 @@ fn rivals_and_guards() -> Vec<MethodChoice> {
     methods
 }
 
-/// Methods for undamped motion, most of which keep their energy.
+/// Methods for undamped motion, most of which conserve their energy.
 fn conservative() -> Vec<MethodChoice> {
     vec![
         block(),

@@ -1,10 +1,10 @@
-//! The energy of a run, step by step, in the form that its method keeps.
+//! The energy of a run, step by step, in the form that its method conserves.
 
 use sinew_core::vectors::{dot, larger};
 use sinew_core::{LinearOperators, LoadTime, Moment, RecordError, Recorder, State, Verdict};
 use sinew_integrators::ConservedEnergy;
 
-/// Follows energy and work through a run. It must see every step.
+/// Follows energy and work through a run. It must receive every step.
 ///
 /// For leapfrog methods `E+ = E- + dt w'(F - D w)`, w being the mean of two velocities (multiply
 /// the step by w; the products with K telescope): the energy never exceeds the first one and the
@@ -182,8 +182,8 @@ impl Recorder for Ledger<'_> {
     }
 }
 
-/// The time (s) between two states. The difference of their times is off by the rounding of the later
-/// one, which far beyond the critical step shows in the energy.
+/// The time (s) between two states. The difference of their times has the rounding error of the later one, which
+/// affects the energy far beyond the critical step.
 fn length_of_step(before: &State, state: &State) -> f64 {
     let difference = state.t() - before.t();
     let same = |dt: &f64| (dt / difference - 1.0).abs() <= 1e-6;

@@ -9,7 +9,7 @@ use sinew_measure::{Case, Effort, MethodChoice, Row, finite, measure};
 use super::energy::{Energies, Ledger};
 use sinew_verify::LabError;
 
-/// Distance from equilibrium (relative) below which a reference counts as come to rest.
+/// Distance from equilibrium (relative) below which a reference counts as being at rest.
 const AT_REST: f64 = 1e-3;
 
 /// Measures a method on a case, with its step over the critical one and, if they apply, its
@@ -66,8 +66,7 @@ pub(crate) fn run_with_energies(
     Ok((state, ledger.found))
 }
 
-/// The displacement (m) at rest under the loads at the end, where the reference comes to rest
-/// there.
+/// The displacement (m) at rest under the loads at the end, if the reference comes to rest there.
 pub(crate) fn equilibrium(case: &Case) -> Option<Vec<f64>> {
     let linear = case.simulation().system().as_linear()?;
     let mut force = vec![0.0; linear.operators().dofs()];

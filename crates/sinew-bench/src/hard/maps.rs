@@ -1,4 +1,4 @@
-//! The stability maps: which scenes, parameters and steps.
+//! The stability maps: their scenes, parameters and steps.
 
 use sinew_measure::{Case, MethodChoice};
 use sinew_mesh::TetMesh;
@@ -153,7 +153,7 @@ impl Varied {
         Ok(Case::new(self.id, simulation)?)
     }
 
-    /// The map over the values at which there is one, and the others.
+    /// The map for the values at which it exists, and the missing ones.
     fn map(&self, quick: bool) -> (StabilityMap, Vec<Missing>) {
         let every = if quick { 3 } else { 1 };
         let steps = self.divisors.iter().rev().step_by(every);
@@ -191,7 +191,7 @@ pub(crate) fn ids(quick: bool) -> Vec<&'static str> {
     wanted(quick).map(|varied| varied.id).collect()
 }
 
-/// The maps, and missing ones with their reason; `begins` is notified of each. A quick run makes one of them,
+/// The maps, and missing ones with their reason; `begins` is notified of each. A quick run computes one of them,
 /// coarser.
 pub(crate) fn all(quick: bool, mut begins: impl FnMut(&str)) -> (Vec<StabilityMap>, Vec<Missing>) {
     let (mut maps, mut missing) = (Vec::new(), Vec::new());

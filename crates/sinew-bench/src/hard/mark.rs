@@ -1,4 +1,4 @@
-//! Marks in the making: the requirement, and the figure compared with it.
+//! Marks during their evaluation: the requirement, and the figure compared with it.
 
 use crate::results::Mark;
 use sinew_verify::MarkVerdict;
@@ -35,7 +35,7 @@ impl Asked {
         }
     }
 
-    /// The mark failed for want of a figure.
+    /// The mark, failed because no figure is available.
     pub(crate) fn not_measured(self, reason: impl Into<String>) -> Mark {
         Mark {
             case: self.case.into(),
@@ -54,7 +54,7 @@ impl Mark {
         Self { note, ..self }
     }
 
-    /// Failed in any case where another condition is not met.
+    /// The mark, failed also if another condition is not met.
     pub(crate) fn and(self, condition: bool) -> Self {
         let verdict = if condition {
             self.verdict

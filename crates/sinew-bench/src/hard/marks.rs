@@ -15,7 +15,7 @@ use crate::planned::yardstick;
 use crate::results::{Mark, StabilityMap};
 use sinew_verify::LabError;
 
-/// The cases and rows that marks are taken from.
+/// The cases and rows from which marks are computed.
 pub(crate) struct Measured<'a> {
     pub(crate) cases: &'a BTreeMap<String, Case>,
     /// Ids of the cases that were to be read.
@@ -47,7 +47,7 @@ fn asked(case: &'static str, asked: &'static str, limit: f64) -> Asked {
     Asked { case, asked, limit }
 }
 
-/// Every mark that can be given on scenes and on bodies; `begins` is notified of each as it begins.
+/// Every possible mark on scenes and on bodies; `begins` is notified when each one begins.
 pub(crate) fn all(measured: &Measured<'_>, mut begins: impl FnMut(&str)) -> Vec<Mark> {
     let mut marks = of_scenes(measured, &mut begins);
     for tissue in large::all() {
@@ -59,12 +59,13 @@ pub(crate) fn all(measured: &Measured<'_>, mut begins: impl FnMut(&str)) -> Vec<
     marks
 }
 
-/// The mark that a check gives; failed if the check cannot be made.
+/// The mark from a check; failed if the check is not possible.
 fn given(asked: Asked, check: &mut dyn FnMut(Asked) -> Result<Mark, LabError>) -> Mark {
     check(asked).unwrap_or_else(|error| asked.not_measured(error.to_string()))
 }
 
-/// The stable step of central difference against every run of the maps: bounded within it, and not beyond 1.1 of it.
+/// The stable step of central difference, compared with every run of the maps: bounded within it, and unbounded beyond
+/// 1.1 of it.
 pub(crate) fn of_maps(maps: &[StabilityMap]) -> Mark {
     let asked = asked(
         "stability maps, central difference",

@@ -8,7 +8,7 @@ use sinew_mesh::{Group, GroupMembers, TetMesh};
 /// tetrahedron into the flat one on the face and three others.
 ///
 /// # Errors
-/// [`StructuredError`] for a cube that cannot be.
+/// [`StructuredError`] for an impossible cube.
 pub fn sliver_cube(cells: usize, edge: f64, thinness: f64) -> Result<TetMesh, StructuredError> {
     let mut mesh = cube(cells, edge, Split::Kuhn)?;
     let middle = cells / 2;
@@ -45,7 +45,7 @@ fn flatten(mesh: &mut TetMesh, tet: usize, thinness: f64) {
 /// `tissue`.
 ///
 /// # Errors
-/// [`StructuredError`] for a cube that cannot be.
+/// [`StructuredError`] for an impossible cube.
 pub fn inclusion_cube(cells: usize, core: usize, edge: f64) -> Result<TetMesh, StructuredError> {
     let mut mesh = cube(cells, edge, Split::Mirrored)?;
     let from = cells.saturating_sub(core) / 2;

@@ -1,4 +1,4 @@
-//! The methods that hard cases are given to.
+//! The methods for hard cases.
 
 use std::collections::BTreeMap;
 
@@ -12,17 +12,17 @@ pub(crate) fn cnn() -> MethodChoice {
     method
 }
 
-/// The stabilised network at one sweep a step.
+/// The stabilised network with one sweep per step.
 pub(crate) fn block() -> MethodChoice {
     inner("block", None)
 }
 
-/// The stabilised network at `sweeps` sweeps a step.
+/// The stabilised network with `sweeps` sweeps per step.
 pub(crate) fn chebyshev(sweeps: u32) -> MethodChoice {
     inner("chebyshev", Some(sweeps))
 }
 
-/// The stabilised network at `passes` symmetric passes, two sweeps each.
+/// The stabilised network with `passes` symmetric passes, two sweeps each.
 pub(crate) fn gauss_seidel(passes: u32) -> MethodChoice {
     inner("gauss-seidel", Some(passes))
 }
@@ -37,31 +37,31 @@ fn inner(kind: &str, sweeps: Option<u32>) -> MethodChoice {
     method
 }
 
-/// Sweeps that lower a step's energy, at this many a step.
+/// Sweeps that lower a step's energy, with this number per step.
 pub(crate) fn energy(sweeps: u32) -> MethodChoice {
     let mut method = MethodChoice::new("cnn-energy");
     method.options = method.options.with_number("sweeps", f64::from(sweeps));
     method
 }
 
-/// The same by a formula, "ie" or "trap".
+/// The same with a formula, "ie" or "trap".
 pub(crate) fn energy_of(kind: &str, sweeps: u32) -> MethodChoice {
     let mut method = energy(sweeps);
     method.options = method.options.with("kind", OptionValue::Text(kind.into()));
     method
 }
 
-/// A method that cuts its step into stable parts.
+/// A method that divides its step into stable substeps.
 pub(crate) fn cut(integrator: &str) -> MethodChoice {
     automatic(integrator, "substeps")
 }
 
-/// A method that cuts its step into stable parts and limits speeds by the energy that loads and start bring.
+/// A method that divides its step into stable substeps and limits speeds by the energy of the loads and of the start.
 pub(crate) fn guarded(integrator: &str) -> MethodChoice {
     automatic(integrator, "saturation")
 }
 
-/// Central difference that solves the few elements which forbid its step as small blocks.
+/// Central difference that solves the few elements that are unstable at its step as small blocks.
 pub(crate) fn patched() -> MethodChoice {
     automatic("central-difference", "patches")
 }

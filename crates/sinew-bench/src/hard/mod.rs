@@ -1,4 +1,4 @@
-//! Hard cases: damping, stiffness and meshes at which methods fail, each with a mark to pass.
+//! Hard cases: damping, stiffness and meshes for which methods fail, each with a pass mark.
 
 mod cases;
 mod checks;
@@ -29,16 +29,16 @@ use sinew_verify::{Machine, Progress};
 /// The bench of hard cases.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HardBench {
-    /// The folder of scenes, which has the hard ones in `hard`.
+    /// The folder of scenes; the hard ones are in its folder `hard`.
     pub scenes: PathBuf,
-    /// Leaves out the cases that take seconds, and makes fewer steps and repeats.
+    /// Leaves out the cases that take seconds, and uses fewer steps and repetitions.
     pub quick: bool,
 }
 
 impl HardBench {
-    /// Measures every case on one thread and gives the marks. A run that diverges is a row like any other, one that
-    /// cannot be made is listed with its reason, and a mark that is not passed is listed in the results as such. So do
-    /// marks on a scene that cannot be read, which is listed too.
+    /// Measures every case on one thread and gives the marks. A run that diverges is a row like any other, a run that
+    /// is not possible is listed with its reason, and a mark that is not passed is listed in the results as such. Marks
+    /// on a scene that cannot be read fail too, and the scene is listed.
     ///
     /// # Errors
     /// [`BenchError`] if no scene can be read.
@@ -70,7 +70,7 @@ impl HardBench {
         scene_files(&self.scenes())
     }
 
-    /// The names of the files that [`write_all`](crate::report::write_all) writes of the results.
+    /// The names of the files that [`write_all`](crate::report::write_all) writes for the results.
     #[must_use]
     pub fn output_files(&self) -> Vec<String> {
         file_names(&case_ids(&self.scenes()), &maps::ids(self.quick))

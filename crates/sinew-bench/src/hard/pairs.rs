@@ -7,13 +7,13 @@ use sinew_scene::{BodyModel, Simulation};
 
 use sinew_verify::LabError;
 
-/// A system with the state it starts from.
+/// A system and the state from which it starts.
 pub(crate) struct Twin {
     pub(crate) system: Box<dyn System>,
     pub(crate) start: State,
 }
 
-/// The mesh and the problem behind a scene's body.
+/// The mesh and the problem of a scene's body.
 pub(crate) fn body(simulation: &Simulation) -> Option<(&BodyModel, &Problem)> {
     let built = simulation.model().body()?;
     Some((built, &built.problem))
@@ -35,7 +35,7 @@ impl QuarterTurn {
         turned
     }
 
-    /// Turns every node's vector.
+    /// Rotates every node's vector.
     pub(crate) fn of_field(self, field: &[f64]) -> Vec<f64> {
         let vectors = field.as_chunks::<3>().0.iter();
         vectors.flat_map(|vector| self.of(*vector)).collect()
@@ -49,7 +49,7 @@ impl QuarterTurn {
     }
 }
 
-/// A body turned as a whole: mesh, supports, loads and start.
+/// A body rotated as a whole: mesh, supports, loads and start.
 pub(crate) fn turned(simulation: &Simulation, turn: QuarterTurn) -> Result<Twin, LabError> {
     let (built, problem) = body(simulation)
         .ok_or_else(|| LabError::new("an oscillator has no direction and no mirror image"))?;
@@ -80,8 +80,7 @@ pub(crate) fn turned(simulation: &Simulation, turn: QuarterTurn) -> Result<Twin,
     twin(&mesh, &problem, start)
 }
 
-/// A body measured in another unit of length, `per_metre` of them a metre; kilograms and seconds
-/// stay.
+/// A body measured in another unit of length, with `per_metre` units in a metre; kilograms and seconds are unchanged.
 pub(crate) fn in_units(simulation: &Simulation, per_metre: f64) -> Result<Twin, LabError> {
     let start = simulation.initial_state();
     let scaled = |field: &[f64]| field.iter().map(|x| per_metre * x).collect();
@@ -121,7 +120,8 @@ pub(crate) fn in_units(simulation: &Simulation, per_metre: f64) -> Result<Twin, 
     twin(&mesh, &problem, start)
 }
 
-/// Mass, stiffness and damping of an oscillator have no length in their units, its force has.
+/// An oscillator in another unit of length: the units of mass, stiffness and damping contain no length, that of force
+/// does.
 fn oscillator_in_units(
     system: &dyn System,
     start: State,

@@ -18,7 +18,7 @@ impl MapRun {
 }
 
 impl StabilityMap {
-    /// Puts a column of runs, one for each value, into every method's map.
+    /// Adds a column of runs, one for each value, to every method's map.
     pub(crate) fn add(
         &mut self,
         value: f64,

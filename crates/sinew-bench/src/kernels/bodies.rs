@@ -17,8 +17,7 @@ pub(super) struct Body {
     pub(super) model: Model,
 }
 
-/// The peers' cube at several sizes, a body that no lattice fits, an organ and, if any, a larger mesh
-/// of a mesh generator.
+/// The peers' cube at several sizes, a body without a lattice, an organ and, if any, a larger mesh of a mesh generator.
 pub(super) fn bodies(
     meshes: &Path,
     generated: Option<&Path>,
@@ -49,7 +48,7 @@ pub(super) fn cube_body(cells: usize) -> Result<Body, LabError> {
     body(format!("cube {}^3", cells + 1), &mesh, "sides", "top")
 }
 
-/// A cube without loads whose mass damping (1/s) is another.
+/// A cube without loads, with this mass damping (1/s).
 pub(super) fn damped_cube(cells: usize, mass: f64) -> Result<Model, LabError> {
     let mesh = cube(cells, 0.1, Split::Kuhn)?;
     let mut problem = problem("sides", "top");
@@ -58,7 +57,7 @@ pub(super) fn damped_cube(cells: usize, mass: f64) -> Result<Model, LabError> {
     Ok(Model::build(&mesh, &problem)?)
 }
 
-/// Moves nodes by up to a tenth of a cell and numbers them in leaps, as mesh generators leave them.
+/// Moves nodes by up to a tenth of a cell and numbers them irregularly, as mesh generators do.
 fn scatter(mesh: &mut TetMesh) {
     let count = mesh.points.len();
     let shift = |node: usize, axis: usize| 5e-4 * ((12.9898 * (3 * node + axis) as f64).sin());

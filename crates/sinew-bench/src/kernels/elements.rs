@@ -30,20 +30,20 @@ pub struct ElementRow {
     pub precision: &'static str,
     /// Instructions; "scalar" for plain numbers.
     pub instructions: &'static str,
-    /// Time of a sweep for each tetrahedron (ns), median of laps in turn, on this computer.
+    /// Time of a sweep for each tetrahedron (ns), median of alternating laps, on this computer.
     pub ns_per_tet: f64,
-    /// Time over that of plain neo-Hookean tetrahedra with the same numbers and instructions, median of laps.
+    /// Time over that of plain neo-Hookean tetrahedra with the same precision and instructions, median of laps.
     pub ratio_to_p1: f64,
-    /// Time of plain numbers in f64 over its own, median of laps.
+    /// Time with plain numbers in f64 over its own time, median of laps.
     pub gain_over_scalar: f64,
-    /// Largest difference from the forces by plain numbers in f64, relative to the largest force.
+    /// Largest difference from the forces with plain numbers in f64, relative to the largest force.
     pub difference: f64,
 }
 
-/// Mark for a ratio of a row.
+/// Mark for a ratio in a row.
 #[derive(Clone, Debug, Serialize)]
 pub struct ElementMark {
-    /// The body, law, element and numbers.
+    /// The body, law, element and precision.
     pub row: String,
     /// The ratio.
     pub what: &'static str,
@@ -74,10 +74,10 @@ const MATERIALS: [Material; 6] = [
     ),
 ];
 
-/// Evaluations of a lap, in tetrahedra, about.
+/// Approximate number of evaluations of a lap, in tetrahedra.
 const LAP: usize = 200_000;
 
-/// Sweeps of a law and element with some numbers.
+/// Sweeps of a law and element in some precision.
 struct Runner {
     sweep: Box<dyn Sweep>,
     precision: &'static str,
@@ -253,7 +253,7 @@ fn difference(found: &[f64], expected: &[f64]) -> f64 {
     off / size(&mut expected.iter().copied())
 }
 
-/// Largest time over plain tetrahedra in f64 and in f32: of elements, and of rotations with vectors.
+/// Largest times over plain tetrahedra in f64 and in f32: of elements, and of rotations with vectors.
 const TIMES: [(&str, &str, [f64; 2]); 3] = [
     ("neo-hookean", "fbar", [1.45, 1.45]),
     ("neo-hookean", "fbar-edge", [2.0, 2.2]),

@@ -1,4 +1,4 @@
-//! Laps in turn: plain loops, then each machine.
+//! Alternating laps: plain loops, then each machine.
 
 use sinew_verify::LabError;
 use std::sync::Arc;
@@ -21,13 +21,13 @@ use crate::timed::{Spent, TimedRunError, time, time_batch};
 /// Share of the stable step that steps take.
 const SHARE: f64 = 0.9;
 
-/// Degrees of freedom that a lap moves, about.
+/// Approximate number of degrees of freedom that a lap moves.
 const LAP: usize = 2_000_000;
 
-/// Laps that one batch of several threads takes.
+/// Number of laps that one batch of several threads takes.
 const LONG: usize = 5;
 
-/// A machine with a state of its own.
+/// A machine with its own state.
 struct Runner {
     variant: Variant,
     machine: Box<dyn Machine>,
@@ -36,7 +36,7 @@ struct Runner {
     /// Bytes of matrices.
     bytes: usize,
     state: State,
-    /// Time of the baseline's lap, and of the lap after it (s).
+    /// Time of the baseline's lap, and of the following lap (s).
     laps: Vec<[f64; 2]>,
     /// Largest difference from the plain machine after the first lap, relative.
     difference: f64,
@@ -209,7 +209,7 @@ fn runner_in<T: ElementPrecision>(
 }
 
 impl Runner {
-    /// Takes steps; their time.
+    /// Takes steps and returns their time.
     fn take(&mut self, model: &dyn System, dt: f64, steps: usize) -> Result<Spent, TimedRunError> {
         let mut batch = Batch::new(model, Inputs::none(), dt, steps);
         time_batch(&mut *self.machine, &mut batch, steps, &mut self.state)

@@ -6,11 +6,10 @@ use sinew_measure::thread_cpu_time;
 use sinew_sparse::simd::InstructionSet;
 use sinew_sparse::sweep::read_all;
 
-/// Bytes read in a measurement, at least.
+/// Minimum number of bytes read in a measurement.
 const READ: usize = 400_000_000;
 
-/// Bytes per second at which one thread reads `bytes` bytes repeatedly: the bandwidth of the cache that they fit
-/// into.
+/// Bytes per second at which one thread reads `bytes` bytes repeatedly: the bandwidth of the cache that contains them.
 pub(super) fn bandwidth(bytes: usize) -> f64 {
     let words = (bytes / 8).max(4096);
     let values = vec![1.0_f64; words];

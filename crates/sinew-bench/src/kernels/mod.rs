@@ -33,10 +33,9 @@ use sinew_verify::Progress;
 pub struct KernelBench {
     /// Folder of the repository's meshes.
     pub meshes: PathBuf,
-    /// A mesh of some ten thousand tetrahedra from a mesh generator, with surfaces "bottom" and "top", if
-    /// there is one.
+    /// A mesh of some ten thousand tetrahedra from a mesh generator, with surfaces "bottom" and "top", if any.
     pub generated: Option<PathBuf>,
-    /// One small body and few laps, to see that everything runs.
+    /// One small body and few laps, to check that everything runs.
     pub quick: bool,
 }
 
@@ -57,7 +56,7 @@ pub struct KernelResults {
     pub elements: Vec<ElementRow>,
     /// Steps of a pulled cube, compared with a plain scalar loop, and automatic steps.
     pub pulled: Vec<PulledRow>,
-    /// Marks for ratios of these.
+    /// Marks for some of these ratios.
     pub marks: Vec<ElementMark>,
 }
 

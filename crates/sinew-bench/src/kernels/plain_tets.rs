@@ -22,8 +22,9 @@ pub(super) struct PlainTets {
 }
 
 impl PlainTets {
-    /// Operations of a step for a tetrahedron: 9 differences of corners, H (45), F (3), its cofactor (27), J (5), the law (7, a division as one), the stress (27), three
-    /// corners (45) and the fourth (9), and 12 sums at nodes.
+    /// Number of operations of a step for a tetrahedron: 9 differences of corners, H (45), F (3), its cofactor (27), J
+    /// (5), the law (7, a division as one), the stress (27), three corners (45) and the fourth (9), and 12 sums at
+    /// nodes.
     pub(super) const OPERATIONS: f64 = 189.0;
 
     /// The tetrahedra of a mesh with the masses, supports and constant loads of a model, and Lame's constants (Pa).
@@ -61,7 +62,7 @@ impl PlainTets {
         plain
     }
 
-    /// Sets out from rest with velocities that are half a step of `dt` (s) behind.
+    /// Starts from rest with velocities half a step of `dt` (s) behind.
     pub(super) fn begin(&mut self, dt: f64) {
         for ((v, load), inverse) in self.v.iter_mut().zip(&self.loads).zip(&self.inverse) {
             *v = load.map(|load| -0.5 * dt * inverse * load);

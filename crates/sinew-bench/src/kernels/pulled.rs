@@ -26,25 +26,27 @@ pub struct PulledRow {
     pub element: &'static str,
     /// "f64" or "f32".
     pub precision: &'static str,
-    /// CPU time of a step (s), median of laps in turn, on this computer.
+    /// CPU time of a step (s), median of alternating laps, on this computer.
     pub step_s: f64,
-    /// Time of a step of a plain scalar loop over plain tetrahedra in f64 over its own, median of laps.
+    /// Time of a step of a plain scalar loop over plain tetrahedra in f64 over its own time, median of laps.
     pub times_plain: f64,
-    /// Floating-point operations of a step that the formulas have.
+    /// Floating-point operations of a step according to the formulas.
     pub operations: f64,
-    /// Bytes of a step that have to come from memory once: nodes and shapes of tetrahedra, and where their forces are summed up.
+    /// Bytes that a step has to read from memory once: nodes and shapes of tetrahedra, and the places where their
+    /// forces are added.
     pub bytes: f64,
     /// Rate of operations over the lower of the limits by instructions and by memory.
     pub share_of_roof: f64,
-    /// Relative difference of the displacement from the plain loop's after as many steps; of plain tetrahedra.
+    /// Relative difference of the displacement from that of the plain loop after the same number of steps; for plain
+    /// tetrahedra.
     pub off_plain: Option<f64>,
-    /// Relative difference of the displacement from a run of an eighth of the step in f64, of fixed steps.
+    /// Relative difference of the displacement from a run with an eighth of the step in f64, for fixed steps.
     pub error: f64,
-    /// The same of `dt = "auto"`.
+    /// The same for `dt = "auto"`.
     pub error_of_automatic: f64,
     /// Force evaluations of automatic steps over those of the fixed ones.
     pub forces_of_automatic: f64,
-    /// CPU time of the run in automatic steps over that of as many forces in fixed steps, median of laps.
+    /// CPU time of the run in automatic steps over that of the same number of forces in fixed steps, median of laps.
     pub over_fixed: f64,
 }
 
@@ -54,10 +56,10 @@ const TRACTION: f64 = 600.0;
 /// Time that runs simulate (s).
 const DURATION: f64 = 0.5;
 
-/// Share of the stable step at rest that fixed steps are: stretched tissue is faster.
+/// Fixed step over the stable step at rest: stretched tissue has a smaller stable step.
 const SHARE: f64 = 0.7;
 
-/// Share of the stable step at rest that half an automatic step is.
+/// Half of an automatic step over the stable step at rest.
 const SHARE_OF_AUTOMATIC: f64 = 0.9;
 
 const ELEMENTS: [(Element, &str); 3] = [
@@ -72,7 +74,7 @@ struct Runner {
     precision: &'static str,
     fixed: Laps,
     automatic: Laps,
-    /// Times (s) of the plain loop for as many steps as the fixed run has, lap by lap.
+    /// Times (s) of the plain loop for the same number of steps as the fixed run, lap by lap.
     plain: Vec<f64>,
     /// Displacements (m) at the end of the plain loop.
     plain_end: Vec<f64>,
@@ -231,7 +233,7 @@ fn apart(found: &[f64], expected: &[f64]) -> f64 {
     (squares / size).sqrt()
 }
 
-/// Operations of a step for a tetrahedron that the formulas of an element have, two for a multiply-add.
+/// Number of operations of a step for a tetrahedron according to the formulas of an element, two for a multiply-add.
 fn operations_of(element: &str) -> f64 {
     // H (54) and J - 1 (32), times the volume, added to its patch.
     const MEANS: f64 = 88.0;
@@ -250,7 +252,7 @@ fn bytes_of(precision: &str) -> f64 {
     16.0 + 10.0 * number + 16.0
 }
 
-/// Operations a second that instructions and memory allow.
+/// Operations per second that instructions and memory allow.
 fn roof(roofs: &Roofs, precision: &str, intensity: f64, bytes: f64) -> f64 {
     let best = InstructionSet::best().name();
     let own = roofs
@@ -261,10 +263,10 @@ fn roof(roofs: &Roofs, precision: &str, intensity: f64, bytes: f64) -> f64 {
     of_instructions.min(intensity * bandwidth(bytes as usize))
 }
 
-/// Least gains over the plain loop, of plain tetrahedra in f64 and in f32, up to 10,000 tetrahedra and beyond.
+/// Smallest gains over the plain loop, of plain tetrahedra in f64 and in f32, up to 10,000 tetrahedra and beyond.
 const GAINS: [[f64; 2]; 2] = [[2.7, 3.7], [2.0, 3.2]];
 
-/// Most that automatic steps may take over as many forces in fixed ones.
+/// Largest time of automatic steps over that of the same number of forces in fixed steps.
 const MOST_OVER_FIXED: f64 = 1.3;
 
 /// The ratios that have a mark.

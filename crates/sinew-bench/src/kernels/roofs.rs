@@ -26,7 +26,7 @@ pub struct ReadRate {
     pub memory: &'static str,
     /// The bytes.
     pub bytes: usize,
-    /// Bytes a second.
+    /// Bytes per second.
     pub bytes_per_s: f64,
 }
 
@@ -37,14 +37,14 @@ pub struct OperationRate {
     pub instructions: &'static str,
     /// "f64" or "f32".
     pub precision: &'static str,
-    /// Floating-point operations a second, two for each multiply-add.
+    /// Floating-point operations per second, two for each multiply-add.
     pub operations_per_s: f64,
 }
 
 /// Sizes of caches (bytes) if the system does not report them.
 const CACHES: [usize; 2] = [1 << 20, 32 << 20];
 
-/// Most bytes that are read to measure memory.
+/// Largest number of bytes read to measure memory.
 const MOST: usize = 1 << 30;
 
 impl Roofs {

@@ -1,4 +1,4 @@
-//! A bench of kernels as people read it.
+//! A bench of kernels as a table for readers.
 
 use std::fmt;
 

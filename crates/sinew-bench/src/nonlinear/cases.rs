@@ -118,7 +118,7 @@ mod tests {
 
     use super::*;
 
-    /// A slow bench should not find out late that a scene has a mistake.
+    /// A slow bench should not find an error in a scene late.
     #[test]
     fn every_scene_is_read_with_every_law_and_finer_mesh() {
         let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");

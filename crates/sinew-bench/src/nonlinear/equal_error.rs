@@ -40,8 +40,8 @@ enum Shape {
     HeldCube,
 }
 
-/// A comparison: cells along an edge of the element that does not lock, those of plain ones to try, coarse ones first, and those of the
-/// 10-node tetrahedra of the reference.
+/// A comparison: cells along an edge of the element that does not lock, those of the plain ones to be tried, coarse
+/// ones first, and those of the 10-node tetrahedra of the reference.
 struct Comparison {
     shape: Shape,
     cells: usize,
@@ -76,7 +76,7 @@ struct Candidate {
     frequency: f64,
 }
 
-/// The comparisons as marks; a quick run makes the first one only.
+/// The comparisons as marks; a quick run computes only the first one.
 pub(super) fn marks(quick: bool, mut begins: impl FnMut(&str)) -> Vec<Mark> {
     let pairs = COMPARISONS
         .iter()
@@ -250,7 +250,7 @@ impl Shape {
     }
 }
 
-/// A simulated second, to be timed again and again.
+/// A simulated second, to be timed repeatedly.
 struct Second {
     model: Model,
     integrator: Box<dyn Integrator>,

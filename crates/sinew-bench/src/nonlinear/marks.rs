@@ -63,7 +63,7 @@ fn energy_never_rises(rows: &[Row]) -> Mark {
     }
 }
 
-/// Central difference whose parts follow the stiffness comes to the end everywhere.
+/// Central difference whose substeps follow the stiffness reaches the end in all cases.
 fn steps_follow_the_stiffness(rows: &[Row]) -> Mark {
     let own: Vec<&Row> = rows.iter().filter(|row| is_yardstick(row)).collect();
     let worst = own.iter().max_by(|a, b| error(a).total_cmp(&error(b)));
@@ -89,7 +89,7 @@ fn steps_follow_the_stiffness(rows: &[Row]) -> Mark {
 }
 
 /// Errors at 10 ms of an independent implementation, for the methods of a quick run after the yardstick, each with a
-/// flag: true if it takes the same steps. Its sweeps set out from rest, and those here from the displacement by the
+/// flag: true if it takes the same steps. Its sweeps start from rest, and those here from the displacement by the
 /// velocity.
 const OF_OTHERS: [(f64, bool); 2] = [(0.0044, true), (0.0178, false)];
 
@@ -134,7 +134,7 @@ fn errors_are_those_of_others(rows: &[Row]) -> Mark {
     }
 }
 
-/// The error of a run; infinite of one that has none.
+/// The error of a run; infinite for a run without one.
 fn error(row: &Row) -> f64 {
     row.sound_error().unwrap_or(f64::INFINITY)
 }

@@ -1,4 +1,4 @@
-//! The methods that large deformations are given to.
+//! The methods for large deformations.
 
 use sinew_core::OptionValue;
 use sinew_measure::MethodChoice;
@@ -35,7 +35,7 @@ pub(super) fn of_sofa() -> Vec<MethodChoice> {
     methods
 }
 
-/// Every method there is, with the variants that trade error for cost.
+/// Every available method, with the variants that trade error for cost.
 pub(super) fn all() -> Vec<MethodChoice> {
     let mut methods = vec![yardstick()];
     for id in sinew_integrators::ids() {
@@ -45,7 +45,7 @@ pub(super) fn all() -> Vec<MethodChoice> {
     methods
 }
 
-/// Variants of a method that behave otherwise on tissue of large deformation.
+/// Variants of a method that behave differently on tissue under large deformation.
 fn variants(id: &str) -> Vec<MethodChoice> {
     match id {
         "rk4" => vec![with("rk4", "substeps", OptionValue::Text("auto".into()))],

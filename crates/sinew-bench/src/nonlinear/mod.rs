@@ -1,7 +1,7 @@
 //! Large deformations: every method, law and element on scenes with tissue that is pressed, twisted and released.
 //!
-//! Errors in time are against a reference of the same body, extrapolated to step 0; errors of the mesh, against finer
-//! meshes, are listed separately.
+//! Errors in time are relative to a reference of the same body, extrapolated to step 0; errors of the mesh, relative to
+//! finer meshes, are listed separately.
 
 mod cases;
 mod equal_error;
@@ -21,7 +21,7 @@ use sinew_verify::{Machine, Progress};
 /// The bench of large deformations.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NonlinearBench {
-    /// The folder of scenes, which has most of these in `nonlinear`.
+    /// The folder of scenes; most of these are in its folder `nonlinear`.
     pub scenes: PathBuf,
     /// Takes few scenes, methods and steps.
     pub quick: bool,
@@ -51,7 +51,7 @@ impl NonlinearBench {
         self.plan().input_files()
     }
 
-    /// The names of the files that [`write_all`](crate::report::write_all) writes of the results.
+    /// The names of the files that [`write_all`](crate::report::write_all) writes for the results.
     #[must_use]
     pub fn output_files(&self) -> Vec<String> {
         self.plan().output_files()

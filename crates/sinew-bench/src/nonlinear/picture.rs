@@ -17,7 +17,8 @@ use crate::report::{number, percent};
 const SCENE: &str = "nonlinear/twist.toml";
 const STEP: f64 = 5e-3;
 
-/// The column of the twist when it stores most energy, coloured by displacement, with the error of the run in its title.
+/// The column of the twist when it stores the largest energy, coloured by displacement, with the error of the run in
+/// its title.
 ///
 /// # Errors
 /// [`LabError`].

@@ -15,11 +15,11 @@ pub(crate) struct PlannedCase {
     pub(crate) methods: Vec<MethodChoice>,
     /// Steps (s), which divide the time between the scene's instants.
     pub(crate) steps: &'static [f64],
-    /// Laws and elements in the place of the scene's; empty for its own.
+    /// Laws and elements in place of those of the scene; empty for its own.
     pub(crate) materials: Vec<Material>,
     /// Further remarks about the case.
     pub(crate) remarks: &'static [&'static str],
-    /// Finer meshes by which the error of the scene's own is estimated.
+    /// Finer meshes for the error estimate of the scene's own mesh.
     pub(crate) finer: Option<FinerMeshes>,
 }
 

@@ -10,7 +10,7 @@ pub(crate) struct Material {
 }
 
 impl Material {
-    /// Every law that is stated by Young's modulus, as the scenes are, with every element.
+    /// Every law that is defined by Young's modulus, as in the scenes, with every element.
     pub(crate) fn all() -> Vec<Self> {
         let name = LawParameter::YOUNGS_MODULUS.name;
         let is_stated = |id: &&&str| {

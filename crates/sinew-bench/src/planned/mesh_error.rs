@@ -13,8 +13,8 @@ use sinew_scene::{Scene, Simulation};
 
 use super::case::FinerMeshes;
 
-/// Shares of the stable step of undamped leapfrog at rest in which finer meshes are followed by the methods of order 4 and 2: errors in time
-/// are then far below those in space.
+/// Steps over the stable step of undamped leapfrog at rest on finer meshes, for the methods of order 4 and 2: errors in
+/// time are then far below those in space.
 const SHARE: f64 = 1.0 / 3.0;
 const SHARE_OF_ORDER_2: f64 = 0.6;
 
@@ -29,8 +29,8 @@ pub(super) struct MeshReference {
 }
 
 impl MeshReference {
-    /// The scene with these values on two finer meshes with the element that does not lock, extrapolated to cells of no size as if errors
-    /// fell with the square of their edge.
+    /// The scene with these values on two finer meshes with the element that does not lock, extrapolated to zero cell
+    /// size on the assumption that errors fall with the square of the edge.
     pub(super) fn new(
         scene: &Path,
         values: &[String],
@@ -71,7 +71,7 @@ impl MeshReference {
     }
 }
 
-/// Places to a ten-millionth of a metre.
+/// Positions in units of a ten-millionth of a metre.
 fn place(point: [f64; 3]) -> [i64; 3] {
     point.map(|x| (1e7 * x).round() as i64)
 }
@@ -81,7 +81,7 @@ fn places(simulation: &Simulation) -> Result<Vec<[i64; 3]>, LabError> {
     Ok(body.mesh.points.iter().copied().map(place).collect())
 }
 
-/// Displacements (m) of nodes at these places; fixed ones stay, or move with their support.
+/// Displacements (m) of nodes at these positions; fixed ones do not move, or move with their support.
 fn at_nodes(simulation: &Simulation, u: &[f64], nodes: &[[i64; 3]]) -> Result<Vec<f64>, LabError> {
     let body = simulation.model().body().ok_or_else(LabError::no_body)?;
     let found: HashMap<[i64; 3], u32> = (0..)

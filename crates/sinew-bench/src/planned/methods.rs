@@ -5,7 +5,7 @@ use sinew_measure::{MethodChoice, Row};
 
 const SUBSTEPS: &str = "substeps";
 
-/// Central difference whose substeps follow the stiffness: the method to which costs are compared.
+/// Central difference whose substeps follow the stiffness: the method with which costs are compared.
 pub(crate) fn yardstick() -> MethodChoice {
     with(
         "central-difference",
@@ -26,7 +26,7 @@ pub(crate) fn with(id: &str, key: &'static str, value: OptionValue) -> MethodCho
     method
 }
 
-/// Sweeps that lower a step's energy, of a kind and at this many a step.
+/// Sweeps that lower a step's energy, of one kind and with this number per step.
 pub(crate) fn energy(kind: &str, sweeps: u32) -> MethodChoice {
     let mut method = MethodChoice::new("cnn-energy");
     method.options = Options::new()

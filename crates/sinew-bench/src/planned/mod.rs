@@ -1,4 +1,4 @@
-//! Cases that are planned scene by scene, each with its own methods, steps, materials and finer meshes.
+//! Cases that are planned for each scene, each with its own methods, steps, materials and finer meshes.
 
 mod case;
 mod material;

@@ -18,7 +18,7 @@ pub(crate) struct Plan {
     pub(crate) subject: &'static str,
     /// The folder of scenes.
     pub(crate) scenes: PathBuf,
-    /// True if times are taken from few repeats.
+    /// True if times are measured with few repetitions.
     pub(crate) quick: bool,
     pub(crate) cases: Vec<PlannedCase>,
 }

@@ -30,7 +30,7 @@ pub(super) struct Running<'a> {
 }
 
 impl Running<'_> {
-    /// Measures a case on each of its bodies. The error of the first body without a reference.
+    /// Measures a case on each of its bodies. Returns the error of the first body without a reference, if any.
     pub(super) fn case(&mut self, planned: &PlannedCase, scene: &Path) -> Option<CaseError> {
         let mut error = None;
         let mut finest: Option<(Option<&'static str>, MeshReference)> = None;
@@ -151,7 +151,8 @@ impl Running<'_> {
     }
 }
 
-/// Steps of methods that factorise a matrix in each iteration: short ones cost minutes, and explicit methods are far beneath them there.
+/// Number of steps for methods that factorise a matrix in each iteration: short steps cost minutes, and explicit
+/// methods are far cheaper there.
 const STEPS_OF_FACTORISING_METHODS: usize = 3;
 
 fn steps_of(planned: &PlannedCase, method: &MethodChoice) -> &'static [f64] {

@@ -7,18 +7,18 @@ use super::{marks, number, verdict};
 use crate::results::{BenchResults, Skipped};
 use sinew_verify::ruled;
 
-/// Most rows of a table.
+/// Largest number of rows of a table.
 const MOST_ROWS: usize = 18;
-/// Most marks, and most scenes, that fit side by side.
+/// Largest number of marks, and of scenes, that fit side by side.
 const FEW: usize = 8;
-/// Most lines of a list.
+/// Largest number of lines of a list.
 const MOST_ITEMS: usize = 4;
 
 const HEAD: [&str; 6] = ["scene", "error at most", "cheapest", "dt", "error", "CPU"];
 const UNITS: [&str; 6] = ["", "[%]", "", "[ms]", "[%]", "[s/s]"];
 
-/// The answer of a bench for a terminal, at most 35 lines: the marks, if any, the cheapest run of each
-/// scene for errors of at most 10, 1 and 0.1 % without marks or with few; then skipped runs, and missing results.
+/// The summary of a bench for a terminal, at most 35 lines: the marks, if any; the cheapest run of each scene for
+/// errors of at most 10, 1 and 0.1 %, without marks or with few; then skipped runs, and missing results.
 #[must_use]
 pub fn brief(results: &BenchResults) -> String {
     let mut parts = Vec::new();
@@ -74,7 +74,7 @@ fn cheapest_runs(results: &BenchResults, most: usize) -> Option<String> {
     Some(text)
 }
 
-/// A line for each scene and run; limits that the same run meets share it.
+/// A line for each scene and run; limits that the same run meets share a line.
 fn answers(results: &BenchResults, limits: &[f64]) -> Vec<[String; 6]> {
     let mut answers = Vec::new();
     for id in results.case_ids() {
@@ -138,7 +138,7 @@ fn skipped(runs: &[Skipped]) -> Vec<String> {
     groups.collect()
 }
 
-/// The first of many things.
+/// The first few items of a long list.
 fn list(head: &str, things: Vec<String>) -> Option<String> {
     if things.is_empty() {
         return None;

@@ -86,7 +86,7 @@ fn front(page: &mut Page, results: &BenchResults, id: &str) {
     }
 }
 
-/// The reasons for which runs were refused, folded away.
+/// The reasons for which runs were refused, in a collapsed section.
 fn refusals(page: &mut Page, rows: &[&Row]) {
     let refused = rows.iter().filter_map(|row| {
         let reason = row.refusal.as_ref()?;
@@ -99,7 +99,7 @@ fn refusals(page: &mut Page, rows: &[&Row]) {
     }
 }
 
-/// The facts of the methods' set-ups, folded away.
+/// The facts from the methods' set-ups, in a collapsed section.
 fn findings(page: &mut Page, rows: &[&Row]) {
     let telling: Vec<&&Row> = rows.iter().filter(|row| !row.facts.is_empty()).collect();
     if telling.is_empty() {

@@ -5,18 +5,18 @@ use sinew_measure::Row;
 
 use super::{missing::shown, number, verdict};
 
-/// A column: its head, its cells, its key for sorting.
+/// A column: its header, its cells, its key for sorting.
 pub(super) struct Column {
     pub(super) head: &'static str,
     pub(super) unit: &'static str,
     pub(super) explained: &'static str,
     pub(super) cell: fn(&Row) -> String,
-    /// Numbers are sorted by this and aligned on the right; none sorts by the text.
+    /// Key by which numbers are sorted and aligned on the right; without a key the text is sorted.
     pub(super) key: Option<fn(&Row) -> f64>,
 }
 
 impl Column {
-    /// Head with its unit after a separator.
+    /// Header with its unit after a separator.
     pub(super) fn title(&self, separator: &str) -> String {
         if self.unit.is_empty() {
             self.head.to_owned()
@@ -130,7 +130,7 @@ static COLUMNS: [Column; 13] = [
     },
 ];
 
-/// Figures that only hard cases, large deformations or tools have.
+/// Figures that exist only for hard cases, large deformations or tools.
 static OTHER_COLUMNS: [Column; 8] = [
     Column {
         head: "force err.",
@@ -213,7 +213,7 @@ fn sweeps(row: &Row) -> String {
     }
 }
 
-/// A share in per cent, if there is one.
+/// A share in per cent, if any.
 fn share(value: Option<f64>) -> String {
     value.map_or_else(String::new, |x| shown(x, number::percent))
 }

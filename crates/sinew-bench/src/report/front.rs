@@ -13,7 +13,7 @@ use crate::results::BenchResults;
 const PAPER: &str = Cnn::ID;
 /// The global method with which local ones are compared.
 const NON_LOCAL: &str = Modal::ID;
-/// Errors below which they are compared (fraction).
+/// Errors (fraction) below which they are compared.
 const COMPARED_BELOW: f64 = 0.01;
 
 /// A method on the front.
@@ -141,7 +141,7 @@ pub fn paper_sentence(results: &BenchResults, case: &CaseInfo) -> Option<String>
     ))
 }
 
-/// Two ends of a range, or the one that both are.
+/// The two ends of a range, or one value if both are equal.
 fn range(low: String, high: String, unit: &str) -> String {
     if low == high {
         format!("{low}{unit}")

@@ -29,8 +29,7 @@ const HEAD: f64 = 40.0;
 const FOOT: f64 = 44.0;
 const BETWEEN: f64 = 22.0;
 
-/// The map as SVG: colours for errors, signs for runs that failed, a line for the stable step that
-/// each method gives.
+/// The map as SVG: colours for errors, signs for runs that failed, a line for the stable step that each method states.
 #[must_use]
 pub fn heat_map(map: &StabilityMap) -> String {
     let layout = Layout::of(map);
@@ -191,7 +190,7 @@ fn draw_steps(svg: &mut Svg, steps: &Steps, frame: Frame) {
     svg.text(&Text::new(middle, frame.bottom() + 29.0, "step dt [ms]").anchored(Anchor::Middle));
 }
 
-/// A run in its cell; its sign keeps clear of the line of the stable step at `limit`.
+/// A run in its cell; its sign does not overlap the line of the stable step at `limit`.
 fn draw_run(svg: &mut Svg, cell: Frame, run: &MapRun, limit: Option<f64>) {
     let (fill, ink) = match (run.verdict(), run.error) {
         (RowVerdict::Unbounded | RowVerdict::Diverged | RowVerdict::Refused, _) | (_, None) => {
@@ -249,7 +248,7 @@ fn sign(run: &MapRun) -> &'static str {
     }
 }
 
-/// The stable step of each row, joined from row to row; along the edge if it lies outside.
+/// The stable step of each row, joined from row to row; along the edge if it is outside.
 fn draw_limit(svg: &mut Svg, steps: &Steps, panel: &MapPanel, frame: Frame) {
     let mut line = Vec::new();
     let mut lines = Vec::new();

@@ -29,7 +29,7 @@ pub fn html(results: &BenchResults) -> String {
     page.finish()
 }
 
-/// Pages that lie side by side in a browser have different titles.
+/// Title of a page: pages in neighbouring tabs of a browser have different titles.
 fn title(results: &BenchResults) -> String {
     let subject = match &results.subject {
         Some(subject) => subject,
@@ -258,7 +258,7 @@ mod tests {
         );
     }
 
-    /// Runs that end in all ways on the peers' cube, a mark, a map, and missing results.
+    /// Runs with all kinds of outcomes on the peers' cube, a mark, a map, and missing results.
     fn every_kind_of_result() -> BenchResults {
         let mut results = BenchResults::new("r", Machine::default());
         results.cases.push(CaseInfo {

@@ -1,11 +1,11 @@
-//! The list of missing things, as people read it.
+//! The list of missing results for readers.
 
 use sinew_draw::Page;
 use sinew_draw::page::{Cell, Column, Table, TableRow};
 
 use crate::results::Missing;
 
-/// A number by its format, or the text that replaces it.
+/// A formatted number, or the text that replaces it.
 pub(super) fn shown(x: f64, format: impl Fn(f64) -> String) -> String {
     if x.is_finite() {
         format(x)

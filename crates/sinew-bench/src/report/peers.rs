@@ -1,4 +1,4 @@
-//! The table of other systems, beneath the case they were measured on.
+//! The table of other systems, below the case on which they were measured.
 
 use sinew_draw::Page;
 use sinew_draw::page::{Cell, Column, Table, TableRow};

@@ -14,9 +14,8 @@ const CELL: (f64, f64) = (98.0, 24.0);
 const GAP: f64 = 2.0;
 const DOES_NOT_SETTLE: &str = "~";
 
-/// Verdicts on the runs of a case as SVG: a row per method, a column per step, and where the
-/// critical step lies. Columns are evenly spaced whatever the steps, so that every cell can show
-/// its error and its verdict.
+/// Verdicts on the runs of a case as SVG: a row per method, a column per step, and the position of the critical step.
+/// Columns are evenly spaced for any steps, so that every cell can show its error and its verdict.
 #[must_use]
 pub fn strip(results: &BenchResults, case: &str) -> String {
     let rows: Vec<&Row> = results.rows_of(case).collect();
@@ -133,7 +132,7 @@ impl<'a> Strip<'a> {
         svg.finish()
     }
 
-    /// Parts the steps up to the critical one from those beyond it.
+    /// Separates the steps up to the critical one from those beyond it.
     fn draw_critical(&self, svg: &mut Svg, dt: f64, x: f64, (top, bottom): (f64, f64), width: f64) {
         let label = format!("critical step 2/ω = {} ms", number::milliseconds(dt));
         let half = 0.5 * text_width(&label, TEXT);

@@ -2,7 +2,7 @@
 
 use sinew_measure::Row;
 
-/// Errors (fraction) for which the cheapest run is named.
+/// Errors (fraction) for which the cheapest run is shown.
 pub(super) const GOOD_ENOUGH: [f64; 3] = [0.1, 0.01, 0.001];
 
 /// The run that costs least among those, bounded and not saturated, with at most the given error (fraction).

@@ -14,13 +14,13 @@ use crate::results::{BenchResults, Mark};
 use sinew_measure::Row;
 use sinew_verify::ruled::{self, RULED_HEAD};
 
-/// The rows by case, the runs that were skipped and the missing things, for a terminal.
+/// The rows by case, the skipped runs and the missing results, for a terminal.
 #[must_use]
 pub fn terminal(results: &BenchResults) -> String {
     by_case(results, "", terminal_rows, terminal_marks)
 }
 
-/// The rows by case, the runs that were skipped and the missing things, as Markdown.
+/// The rows by case, the skipped runs and the missing results, as Markdown.
 #[must_use]
 pub fn markdown(results: &BenchResults) -> String {
     by_case(results, "### ", markdown_rows, markdown_marks)
@@ -120,7 +120,7 @@ fn table(
     table
 }
 
-/// Gives the rule under a Markdown head its colons.
+/// Adds colons to the rule below a Markdown header.
 fn align_right(table: &str, columns: &[&Column]) -> String {
     let mut lines: Vec<String> = table.lines().map(str::to_owned).collect();
     if let Some(rule) = lines.get_mut(1) {

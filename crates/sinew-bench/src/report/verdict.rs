@@ -17,7 +17,7 @@ pub(super) fn meaning(verdict: RowVerdict) -> &'static str {
     }
 }
 
-/// Light enough for black text: tints of the Okabe-Ito colours.
+/// Colour of a verdict, light enough for black text: tints of the Okabe-Ito colours.
 pub(super) fn tint(verdict: RowVerdict) -> Colour {
     match verdict {
         RowVerdict::Accurate => Colour(0xb8, 0xe6, 0xd4),

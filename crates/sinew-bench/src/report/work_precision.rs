@@ -9,12 +9,12 @@ use crate::results::BenchResults;
 /// Errors above this (fraction) are drawn in the lane of the unbounded runs.
 const LARGEST_SHOWN_ERROR: f64 = 100.0;
 
-/// Errors below this (fraction) are drawn in a lane of their own: relevant ones lie above.
+/// Errors below this (fraction) are drawn in a separate lane: relevant errors are larger.
 pub(super) const LEAST_SHOWN_ERROR: f64 = 1e-8;
 
-/// Error over CPU time of the runs of a case: a line per method over its steps, and the Pareto
-/// front down to the first run below all errors shown. A method has the same style in the plots of all
-/// cases, laws and elements, and no two methods share one.
+/// Error over CPU time of the runs of a case: a line per method over its steps, and the Pareto front down to the first
+/// run below all shown errors. A method has the same style in the plots of all cases, laws and elements, and no two
+/// methods share one.
 #[must_use]
 pub fn work_precision(results: &BenchResults, case: &str) -> Plot {
     let rows: Vec<&Row> = results.rows_of(case).collect();
@@ -85,7 +85,7 @@ fn point(row: &Row, ringed: bool) -> Point {
     }
 }
 
-/// The error as drawn: infinite if it has no place in the frame, minus infinity below it.
+/// The error for the drawing: infinite if it is above the frame, minus infinity if it is below.
 fn shown_error(row: &Row) -> f64 {
     match (row.outcome, row.error_at_most()) {
         (RowOutcome::Finished, Some(error)) if row.bounded && error <= LARGEST_SHOWN_ERROR => {
@@ -99,7 +99,7 @@ fn shown_error(row: &Row) -> f64 {
     }
 }
 
-/// The runs on the front, the cheapest first, down to the first below all errors shown.
+/// The runs on the front, the cheapest first, down to the first run below all shown errors.
 fn front<'a>(rows: &[&'a Row]) -> Vec<&'a Row> {
     let mut front: Vec<&Row> = rows.iter().copied().filter(|row| row.pareto).collect();
     front.sort_by(|a, b| a.cpu_s_per_s.total_cmp(&b.cpu_s_per_s));

@@ -27,7 +27,7 @@ pub struct Written {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum WriteError {
-    /// The results cannot be JSON.
+    /// The results cannot be written as JSON.
     #[error("cannot write {}: {source}", path.display())]
     Results {
         /// The file for them.
@@ -60,8 +60,7 @@ fn of_map(slug: &str) -> String {
     format!("map-{slug}.svg")
 }
 
-/// Writes results, page and plots into a folder. Everything is drawn before the first file is
-/// touched.
+/// Writes results, page and plots into a folder. Everything is drawn before the first file is written.
 ///
 /// # Errors
 /// [`WriteError`] when a file cannot be written. Files written before the one that failed stay.

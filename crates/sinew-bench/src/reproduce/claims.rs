@@ -23,7 +23,7 @@ pub struct Claim {
 pub enum Holds {
     /// It is true as written.
     Yes,
-    /// It is true in the part that the measurement names.
+    /// It is true in the part that the measurement states.
     InPart,
     /// It is not true.
     No,

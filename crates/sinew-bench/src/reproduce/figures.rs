@@ -22,7 +22,7 @@ pub struct Figure {
 /// The numbers of all figures, in the paper's order.
 pub(super) const NUMBERS: [&str; 8] = ["1b", "2a", "2b", "3a", "3b", "4b", "4c", "4d"];
 
-/// Range (m) of the paper's vertical axes, a little widened.
+/// Range (m) of the paper's vertical axes, slightly extended.
 const FRAME: f64 = 0.3;
 
 pub(super) fn figures(runs: &Runs<'_>) -> Result<Vec<Figure>, LabError> {

@@ -17,7 +17,7 @@ pub use reproduction::Reproduction;
 
 use sinew_measure::Case;
 
-/// Runs everything the paper shows, on its oscillator (section 4.1) and its cube (section 4.2).
+/// Runs all cases of the paper, on its oscillator (section 4.1) and its cube (section 4.2).
 ///
 /// # Errors
 /// [`LabError`] when a run fails or a case differs from the paper's description.

@@ -1,4 +1,4 @@
-//! The runs behind figures and claims, each made once.
+//! The runs for figures and claims, each executed once.
 
 use sinew_core::{Options, Run, State, simulate};
 
@@ -14,8 +14,8 @@ pub(super) const LARGE: [f64; 2] = [0.015, 0.02];
 /// The paper's saturation voltages (m/s).
 pub(super) const VOLTAGES: [f64; 3] = [4.0, 3.2, 2.0];
 
-/// Displacement over time, and the row of a measured run. As the curves show every step, the error
-/// is taken over every step.
+/// Displacement over time, and the row of a measured run. The curves show every step, so the error is computed over
+/// every step.
 #[derive(Clone, Debug)]
 pub(super) struct History {
     /// (t (s), u (m)) of the oscillator.
@@ -43,8 +43,8 @@ pub(super) struct Runs<'a> {
     pub(super) limit_cycles: [f64; 3],
     /// The cube after a second at the small step: forward Euler and the network.
     pub(super) cube_small: [Snapshot; 2],
-    /// At 20 ms: forward Euler at the first instant a displacement passes the cube's edge, and the
-    /// network after a second.
+    /// At 20 ms: forward Euler at the first instant at which a displacement exceeds the cube's edge, and the network
+    /// after a second.
     pub(super) cube_large: [Snapshot; 2],
     /// Largest |u| (m) of forward Euler after a second at 20 ms, unless it overflows.
     pub(super) euler_after_a_second: f64,
@@ -122,7 +122,7 @@ fn failed(
     LabError::new(format!("{case}: {method} at {dt} s: {source}"))
 }
 
-/// The solution that the oscillator's errors are measured against, finely enough for a curve.
+/// The solution for the errors of the oscillator, fine enough for a curve.
 fn reference(oscillator: &mut Case) -> Result<Vec<(f64, f64)>, LabError> {
     let track = oscillator
         .reference_at_every_step(SMALL)
@@ -189,7 +189,7 @@ fn snapshot(
     })
 }
 
-/// The state after `duration` (s), or the first in which a displacement passes `limit` (m).
+/// The state after `duration` (s), or the first state in which a displacement exceeds `limit` (m).
 fn state_after(
     case: &Case,
     method: &MethodChoice,

@@ -24,7 +24,7 @@ impl BenchResults {
     /// `missing`.
     ///
     /// # Errors
-    /// [`ResultsError::Json`], which no results are known to give.
+    /// [`ResultsError::Json`], which is not known to occur.
     pub fn to_json(&self) -> Result<String, ResultsError> {
         let written = Self {
             missing: self.all_missing(),

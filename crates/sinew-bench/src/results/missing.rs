@@ -5,19 +5,19 @@ use std::fmt;
 use serde::{Deserialize, Serialize};
 use sinew_measure::Gap;
 
-/// A scene, a run or a number that was requested and is not there. `null` replaces it in JSON and `n/a` in tables;
-/// everything else is as it would be without it.
+/// A scene, a run or a number that was requested and is absent. `null` replaces it in JSON and `n/a` in tables;
+/// everything else is unchanged.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Missing {
     /// Id of the case or the map; the file if a scene could not be read.
     pub scene: String,
-    /// The run, or the value of a map's parameter; none if it concerns the scene as a whole.
+    /// The run, or the value of a map's parameter; none if the whole scene is missing.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub row: Option<String>,
     /// The number's field; `None` if more than a number is missing.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub field: Option<String>,
-    /// The text that replaces a number, such as `inf`; `None` without any.
+    /// The text that replaces a number, such as `inf`; `None` without such a text.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub value: Option<String>,
     /// Reason why it is missing.
@@ -44,7 +44,7 @@ impl Missing {
         }
     }
 
-    /// The scene, with the run if there is one.
+    /// The scene, with the run if any.
     #[must_use]
     pub fn place(&self) -> String {
         match &self.row {
@@ -53,7 +53,7 @@ impl Missing {
         }
     }
 
-    /// The number and the text that replaces it, or all of it.
+    /// The number and the text that replaces it, or all of the missing result.
     #[must_use]
     pub fn what(&self) -> String {
         match (&self.field, &self.value) {

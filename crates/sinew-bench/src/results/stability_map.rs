@@ -1,5 +1,4 @@
-//! Error and boundedness over step and a parameter of the scene, with the stable step that theory
-//! gives.
+//! Error and boundedness over step and a parameter of the scene, with the theoretical stable step.
 
 use serde::{Deserialize, Serialize};
 use sinew_measure::{Row, RowOutcome, RowVerdict};
@@ -36,7 +35,7 @@ pub struct MapPanel {
     pub runs: Vec<Vec<MapRun>>,
 }
 
-/// The part of a run that a map keeps.
+/// The data of a run that a map stores.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct MapRun {
     /// Relative error (fraction); `None` if diverged.

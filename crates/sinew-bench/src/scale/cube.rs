@@ -11,7 +11,7 @@ use sinew_scene::{Scene, SceneSource};
 use super::row::ScaleBody;
 use sinew_verify::LabError;
 
-/// Simulated time (s), about: a pressure wave crosses the cube three times.
+/// Approximate simulated time (s): a pressure wave crosses the cube three times.
 const DURATION: f64 = 0.1;
 
 /// Instants at which errors are taken.

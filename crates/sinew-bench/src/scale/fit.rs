@@ -18,10 +18,11 @@ pub struct ScaleFit {
     /// Exponents over the number of tetrahedra, by least squares of the logarithms; `None` if
     /// fewer than two sizes have the figure.
     pub exponents: Exponents,
-    /// Tetrahedra of the largest body in real time: where wall time is simulated time, between the two sizes
-    /// about it or on the line through all sizes beyond them; none without two sizes.
+    /// Number of tetrahedra of the largest body in real time: the size at which wall time equals simulated time,
+    /// between the two neighbouring sizes or, beyond the measured ones, on the line through all sizes; none without two
+    /// sizes.
     pub real_time_tets: Option<f64>,
-    /// True if that lies beyond the sizes that were measured.
+    /// True if that size is beyond the measured ones.
     pub real_time_is_extrapolated: bool,
 }
 
@@ -113,7 +114,7 @@ pub(super) fn fits(rows: &[ScaleRow]) -> Vec<ScaleFit> {
     fits
 }
 
-/// The size at which wall time (s per s) over sizes, increasing, is 1, with a flag: true if it lies beyond them.
+/// The size at which wall time (s per s) over sizes, increasing, is 1, with a flag: true if it is beyond them.
 fn real_time(points: &[(f64, f64)]) -> (Option<f64>, bool) {
     let crossing = points
         .windows(2)

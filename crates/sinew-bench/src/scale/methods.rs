@@ -30,7 +30,7 @@ pub(super) struct Variant {
     rule: StepRule,
     pub(super) precision: &'static str,
     pub(super) threads: Threads,
-    /// True if it factorises a matrix; it is not a program then.
+    /// True if it factorises a matrix; it is then no program.
     pub(super) factorises: bool,
 }
 
@@ -41,7 +41,7 @@ pub(super) fn has_several_threads() -> bool {
     sinew_machines::Threads::All.most() >= SEVERAL
 }
 
-/// All methods in all precisions and with all numbers of threads that they can take.
+/// All methods in all precisions and with all numbers of threads that they support.
 pub(super) fn variants() -> Vec<Variant> {
     let two_step = Options::new()
         .with("kind", OptionValue::Text("two-step".into()))

@@ -2,7 +2,7 @@
 
 use super::row::ScaleRow;
 
-/// Largest time of a set-up (s) that is waited for.
+/// Largest accepted time of a set-up (s).
 const LONGEST: f64 = 90.0;
 
 /// Share of the available memory that a factor may take.
@@ -11,8 +11,8 @@ const SHARE: f64 = 0.5;
 /// Memory (bytes) assumed if the system does not report it.
 const ASSUMED: f64 = 4e9;
 
-/// Powers of the number of unknowns by which memory and time of a factor of a cube grow at least with the
-/// best ordering (George, SIAM Journal on Numerical Analysis 10, 1973; in space, memory n^(4/3), work n^2).
+/// Powers of the number of unknowns with which memory and time of a factor of a cube grow at least, for the best
+/// ordering (George, SIAM Journal on Numerical Analysis 10, 1973; in space, memory n^(4/3), work n^2).
 const MEMORY: f64 = 4.0 / 3.0;
 const TIME: f64 = 2.0;
 

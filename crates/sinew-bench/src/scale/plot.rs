@@ -65,7 +65,7 @@ impl ScaleResults {
     }
 }
 
-/// The largest error that a run may have; infinite of one that diverged.
+/// The largest error that a run may have; infinite for a run that diverged.
 fn at_most(row: &ScaleRow) -> f64 {
     let error = row.error_is_below.or(row.error);
     error.unwrap_or(f64::INFINITY)

@@ -17,7 +17,7 @@ pub struct ScaleBody {
     pub simulated_s: f64,
     /// 2/omega (s) of its fastest motion.
     pub critical_step_s: f64,
-    /// Wall time (s) in which mesh and matrices were made.
+    /// Wall time (s) for building mesh and matrices.
     pub build_wall_s: f64,
     /// Memory (bytes per tetrahedron) of mesh and matrices; none if no allocator counts it.
     pub bytes_per_tet: Option<f64>,
@@ -42,7 +42,7 @@ pub struct ScaleRow {
     pub nodes: usize,
     /// Its tetrahedra.
     pub tets: usize,
-    /// The method: "two-step" for the propagator of that kind, else the id of an integrator.
+    /// The method: "two-step" for the propagator of that kind, otherwise the id of an integrator.
     pub integrator: &'static str,
     /// Step (s).
     pub dt: f64,
@@ -60,7 +60,7 @@ pub struct ScaleRow {
     pub sweeps_per_s: f64,
     /// Simulated time (s).
     pub simulated_s: f64,
-    /// Relative L2 error of the displacement (fraction); none of a run that diverged.
+    /// Relative L2 error of the displacement (fraction); none for a run that diverged.
     pub error: Option<f64>,
     /// Bound (fraction) below which the error lies, if it is too small for the reference; `error` must not be
     /// quoted then.
@@ -74,7 +74,7 @@ pub struct ScaleRow {
     pub wall_s_per_s: f64,
     /// Laps that were timed.
     pub laps: usize,
-    /// CPU time of all threads (s) of the set-up, on matrices of which nothing is known yet.
+    /// CPU time of all threads (s) of the set-up, on matrices without any derived data.
     pub setup_cpu_s: f64,
     /// Wall time (s) of the set-up.
     pub setup_wall_s: f64,
@@ -83,7 +83,7 @@ pub struct ScaleRow {
     pub bytes_per_tet: Option<f64>,
 }
 
-/// A run that was not made.
+/// A run that was not executed.
 #[derive(Clone, Debug, Serialize)]
 pub struct ScaleSkipped {
     /// The cube.
@@ -92,7 +92,7 @@ pub struct ScaleSkipped {
     pub tets: usize,
     /// Method, precision and threads.
     pub method: String,
-    /// Reason why it was not made.
+    /// Reason why it was not executed.
     pub reason: String,
 }
 

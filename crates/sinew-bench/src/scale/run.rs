@@ -13,7 +13,7 @@ use crate::median::median;
 use crate::timed::time_run;
 use sinew_verify::LabError;
 
-/// Most laps, and the time (s) after which no further one is begun.
+/// Largest number of laps, and the time (s) after which no further lap starts.
 const LAPS: usize = 5;
 const BUDGET: f64 = 2.0;
 
@@ -79,7 +79,7 @@ fn row_here(cube: &mut Cube, variant: &Variant) -> Result<ScaleRow, LabError> {
     })
 }
 
-/// A body on matrices of its own, without any derived data: for the first set-up of a method.
+/// A body with its own matrices, without any derived data: for the first set-up of a method.
 struct Fresh<'a> {
     body: &'a dyn System,
     operators: LinearOperators,

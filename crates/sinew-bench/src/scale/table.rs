@@ -1,4 +1,4 @@
-//! A bench over sizes as people read it.
+//! A bench over sizes as a table for readers.
 
 use std::fmt;
 
@@ -135,7 +135,7 @@ fn fit(fit: &ScaleFit) -> [String; 9] {
     ]
 }
 
-/// The largest body in real time, with a star if it lies beyond the sizes measured.
+/// The largest body in real time, with a star if it is beyond the measured sizes.
 pub(super) fn real_time(fit: &ScaleFit) -> Option<String> {
     let star = if fit.real_time_is_extrapolated {
         "*"

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use sinew_bench::nonlinear::picture;
 
-/// It is left in `target/tmp`, to be looked at.
+/// The picture remains in `target/tmp` for inspection.
 #[test]
 fn the_picture_says_its_error_and_is_small() {
     let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");

@@ -1,9 +1,9 @@
-//! The names of integrators stand in one list.
+//! Test that the names of integrators are in one list only.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Lists of runs, which are about certain methods.
+/// Lists of runs that concern particular methods.
 const LISTS: [&str; 17] = [
     "sinew-bench/src/beside/simulators/own_runs.rs",
     "sinew-bench/src/verify/pressed.rs",

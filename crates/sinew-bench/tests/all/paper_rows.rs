@@ -76,7 +76,7 @@ fn forward_euler_at_20_ms_diverges_and_the_bench_goes_on() {
     assert_eq!(cube().skipped, []);
 }
 
-/// Every integrator, and those kinds of some that lead elsewhere on the front, in three steps each.
+/// Every integrator, and the variants for other parts of the front, in three steps each.
 #[test]
 fn every_method_runs() {
     let mut expected: Vec<String> = sinew_integrators::ids()
@@ -115,7 +115,7 @@ fn the_reference_knows_its_own_error_and_the_case_its_facts() {
     close(case.critical_step_s.unwrap(), 0.0079, 3e-3);
 }
 
-/// The error is taken over all steps if dt does not divide the distance of the instants.
+/// The error is computed over all steps if dt does not divide the distance between the instants.
 #[test]
 fn the_papers_oscillator_at_15_ms_is_compared_at_every_step() {
     let results = run(

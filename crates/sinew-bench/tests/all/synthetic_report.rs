@@ -1,5 +1,5 @@
-//! A bench that never ran, with figures of the size real ones have: every file is written, holds
-//! what it should, and can be looked at in the directory the test prints.
+//! A bench that never ran, with figures of realistic size: every file is written, has the expected contents, and can be
+//! viewed in the directory that the test prints.
 
 use std::{collections::BTreeMap, fs, path::Path};
 
@@ -31,7 +31,7 @@ struct MethodChoice {
     work: (f64, f64),
     /// Errors (fraction); infinite where the run diverges.
     errors: [f64; 5],
-    /// Shares of saturated cells, from the same steps.
+    /// Shares of saturated cells, for the same steps.
     saturated: [f64; 5],
 }
 

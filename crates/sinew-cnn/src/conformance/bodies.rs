@@ -1,4 +1,4 @@
-//! Bodies whose forces follow from a law, which the suite is given.
+//! Bodies whose forces follow from a law, that the user of the suite provides.
 
 use std::sync::Arc;
 
@@ -9,7 +9,7 @@ use super::{Make, Method};
 use crate::program::Program;
 use crate::{Machine, ReferenceMachine};
 
-/// A body with a start, from which 40 steps of any method stay within its law.
+/// A body with an initial state, from which 40 steps of any method stay within its law.
 pub struct Body {
     /// Its name, as failures show it.
     pub name: String,
@@ -17,7 +17,7 @@ pub struct Body {
     pub system: Box<dyn System>,
     /// The state at the beginning.
     pub start: State,
-    /// Its largest angular frequency (rad/s), about.
+    /// Its approximate largest angular frequency (rad/s).
     pub omega: f64,
     /// True if its law refuses inverted elements.
     pub refuses: bool,
@@ -33,7 +33,7 @@ impl std::fmt::Debug for Body {
 
 /// Steps of a run.
 const STEPS: usize = 40;
-/// Steps of one whose velocities are bounded, which carries errors away.
+/// Number of steps of a run with bounded velocities, in which errors grow.
 const BOUNDED: usize = 3;
 
 struct Run<'a> {
@@ -93,8 +93,8 @@ impl Run<'_> {
     }
 }
 
-/// After 40 steps u, v, the clock and the work are those of [`ReferenceMachine`], to a rounding (relative); after a
-/// few steps if velocities are bounded.
+/// After 40 steps u, v, the clock and the work equal those of [`ReferenceMachine`], to a relative rounding error; if
+/// velocities are bounded, after a few steps.
 pub fn bodies_move_as_by_the_reference(
     methods: &[Method],
     bodies: &[Body],

@@ -12,9 +12,9 @@ use super::dense::motion;
 use super::systems::{Changing, Damped, Kind, case, constant_force};
 use super::{Make, Method};
 
-/// Every method comes as near to the exact motion as it declares: under a constant load the error
-/// against the matrix exponential, and against the closed form of an oscillator, falls with the step
-/// at the method's order; an exact method has none to 1e-9.
+/// Every method comes as near to the exact motion as it declares: under a constant load the error against the matrix
+/// exponential, and against the closed form of an oscillator, falls with the step at the method's order; an exact
+/// method has no error above 1e-9.
 pub fn motions_converge_to_the_exact_ones(methods: &[Method], make: &Make) {
     for method in methods.iter().filter(|method| !method.bounds) {
         for layers in [Layers::One, Layers::Three] {

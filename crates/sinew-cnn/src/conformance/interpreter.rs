@@ -126,7 +126,7 @@ impl<'a> Interpreter<'a> {
         work
     }
 
-    /// Makes a sweep; returns the number of degrees of freedom at which a clamp was reached.
+    /// Executes a sweep; returns the number of degrees of freedom at which a clamp was reached.
     fn sweep(&mut self, sweep: &Sweep, at: At) -> u64 {
         let q = self.quotient(sweep, at);
         let cells = q.len() / self.layers;
@@ -200,7 +200,7 @@ impl<'a> Interpreter<'a> {
         terms.sum::<f64>() + of_q
     }
 
-    /// The bound of a clamp on one cell.
+    /// The bound of a clamp for one cell.
     fn clamp(&mut self, clamp: Clamp, target: Register, cell: usize, reached: &mut [bool]) {
         let dofs = cell * self.layers..(cell + 1) * self.layers;
         match clamp {

@@ -1,4 +1,4 @@
-//! Results of the definition that are kept, so that machines that are compared with the same programs share them.
+//! Stored results of the definition, shared by machines that are compared with the same programs.
 
 use std::collections::HashMap;
 use std::hash::Hash;
@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use sinew_core::{State, StepReport};
 
-/// Values by key, each computed once, whoever asks.
+/// Values by key, each computed only once.
 #[derive(Debug)]
 struct Once<K, V>(Mutex<HashMap<K, Arc<OnceLock<V>>>>);
 

@@ -8,10 +8,10 @@ use super::run::{Run, STEPS, all_runs, bits, everything_runs};
 use super::systems::{Changing, Damped, Kind, LONG};
 use super::{Make, Method};
 
-/// After 100 steps u, v and a are those of the same program executed literally on matrices that are
-/// written out, to 1e-13 relative, and so are the clock and the work: every method and a program
-/// with every instruction, clamped and not, on systems of every kind. If a clamp makes errors grow with the
-/// motion, the bound grows with them, and fewer steps are taken if that is more than 10 times.
+/// After 100 steps u, v and a equal those of the same program executed literally on full matrices, to 1e-13 relative,
+/// and so do the clock and the work: for every method and a program with every instruction, clamped and not, on systems
+/// of every kind. If a clamp makes errors grow with the motion, the bound grows with them; if this growth is more than
+/// 10 times, fewer steps are taken.
 pub fn steps_are_those_of_the_definition(methods: &[Method], make: &Make) {
     for run in everything_runs().chain(all_runs(methods)) {
         let (steps, growth) = match run.bounds {

@@ -1,10 +1,9 @@
 //! A conformance suite for machines.
 //!
-//! A machine is compared with programs executed literally: every sweep as its documentation defines it, on
-//! matrices that are written out entry by entry, and with motions that are known exactly. The suite
-//! brings its own systems (one layer and three; mass and stiffness damping, dashpots and all of them;
-//! loads that jump and loads with kinks; free and partly fixed) and a program with every instruction;
-//! it also runs the programs of the methods that it is given.
+//! A machine is compared with programs executed literally (every sweep as its documentation defines it, on full
+//! matrices) and with motions that are known exactly. The suite contains its own systems (one layer and three; mass and
+//! stiffness damping, dashpots and all of them; loads that jump and loads with kinks; free and partly fixed) and a
+//! program with every instruction; it also runs the programs of the methods that it receives.
 //!
 //! ```
 //! use sinew_cnn::conformance::Method;
@@ -62,11 +61,11 @@ pub use work::work_is_counted;
 
 use crate::{Machine, Program};
 
-/// Makes a fresh machine.
+/// Creates a new machine.
 pub type Make = dyn Fn() -> Box<dyn Machine>;
 
-/// Builds a method's program for a system and a step of the caller (s); `None` if the method takes
-/// no such system.
+/// Builds a method's program for a system and a step of the caller (s); `None` if the method does not support the
+/// system.
 pub type ProgramOf = Box<dyn Fn(&dyn System, f64) -> Option<Program> + Send + Sync>;
 
 /// A method whose programs test a machine.
@@ -79,7 +78,7 @@ pub struct Method {
     pub properties: Properties,
     /// Length of its steps times the largest angular frequency.
     pub omega_dt: f64,
-    /// True if the method bounds velocities, so that it need not converge.
+    /// True if the method bounds velocities, so that it may not converge.
     pub bounds: bool,
     known: Arc<known::Known>,
 }
@@ -125,9 +124,9 @@ impl Method {
     }
 }
 
-/// Makes one test for each law that a machine has to keep, in a module of this name: with the programs of
-/// a list of [`Method`]s, for a closure that makes fresh machines. The test's global allocator has to
-/// be [`sinew_core::CountingAllocator`].
+/// Generates one test for each law that a machine has to obey, in a module of this name: with the programs of a list of
+/// [`Method`]s, for a closure that creates new machines. The test's global allocator has to be
+/// [`sinew_core::CountingAllocator`].
 #[macro_export]
 macro_rules! machine_conformance {
     ($name:ident, $methods:expr, $make:expr) => {
@@ -185,9 +184,9 @@ macro_rules! machine_conformance {
     };
 }
 
-/// Makes one test for each law that a machine has to keep on bodies whose forces follow from a law, in a module of this name: with the
-/// programs of a list of [`Method`]s on a list of [`Body`]s, for a closure that makes fresh machines, to a rounding (relative). The test's
-/// global allocator has to be [`sinew_core::CountingAllocator`].
+/// Generates one test for each law that a machine has to obey on bodies whose forces follow from a law, in a module of
+/// this name: with the programs of a list of [`Method`]s on a list of [`Body`]s, for a closure that creates new
+/// machines, to a relative rounding error. The test's global allocator has to be [`sinew_core::CountingAllocator`].
 #[macro_export]
 macro_rules! machine_conformance_on_bodies {
     ($name:ident, $methods:expr, $bodies:expr, $make:expr, $rounding:expr) => {

@@ -73,7 +73,7 @@ pub fn a_refused_trial_leaves_the_machine_usable(methods: &[Method], make: &Make
     }
 }
 
-/// A machine to which no program was given takes no step, and says so.
+/// A machine without a program takes no step, and returns an error.
 pub fn a_machine_without_a_program_refuses(make: &Make) {
     let kind = Kind {
         layers: Layers::Three,

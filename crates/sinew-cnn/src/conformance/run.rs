@@ -11,7 +11,7 @@ use super::systems::{Case, Kind, Numbers, case, takes};
 use super::{Make, Method};
 use crate::program::Program;
 
-/// Rounding that a machine in f64 may add to 100 steps, relative to the largest value of its kind.
+/// Rounding error that a machine in f64 may add in 100 steps, relative to the largest value of the quantity.
 const ROUNDING: f64 = 1e-13;
 
 /// Relative distance between the starts of two motions that are compared to detect chaos.
@@ -57,12 +57,12 @@ impl Method {
 }
 
 impl Run {
-    /// Takes steps with a fresh machine.
+    /// Takes steps with a new machine.
     pub(super) fn by(&self, make: &Make, batches: &[usize]) -> (State, StepReport) {
         self.by_machines(make, batches, false)
     }
 
-    /// Takes steps with one machine, or with a fresh one for each batch.
+    /// Takes steps with one machine, or with a new one for each batch.
     pub(super) fn by_machines(
         &self,
         make: &Make,
@@ -118,8 +118,8 @@ impl Run {
         apart(&one.u, &other.u, &start.u).max(apart(&one.v, &other.v, &start.v))
     }
 
-    /// Number of these steps, halved until the motion carries no error far away, and how far it carries
-    /// one then, at least 1: clamps make some motions chaotic.
+    /// Number of these steps, halved until the motion does not amplify an error much, and this amplification, at least
+    /// 1: clamps make some motions chaotic.
     pub(super) fn predictable(&self, steps: usize) -> (usize, f64) {
         let mut steps = steps;
         let mut growth = self.amplification(steps);
@@ -137,7 +137,7 @@ impl Run {
         (state, work)
     }
 
-    /// This program with every cell's velocity clamped so that most are.
+    /// This program with a clamp on every cell's velocity that most of them reach.
     pub(super) fn clamped(self, steps: usize) -> Self {
         let (free, _) = &*self.by_definition(steps);
         let largest = largest(&free.v).max(largest(&self.case.start.v));
@@ -159,7 +159,7 @@ impl Run {
         self.program.limits.is_some()
     }
 
-    /// Compares a machine with the definition, in a motion that makes errors this many times larger.
+    /// Compares a machine with the definition, in a motion with this amplification of errors.
     pub(super) fn agrees(&self, make: &Make, steps: usize, growth: f64) {
         let (state, work) = self.by(make, &[steps]);
         let (expected, expected_work) = &*self.by_definition(steps);

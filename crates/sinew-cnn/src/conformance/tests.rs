@@ -1,5 +1,4 @@
-//! The suite for machines: as a machine's own tests use it, and against broken machines, each of which
-//! it has to notice.
+//! The suite for machines: as a machine's own tests use it, and with broken machines, each of which it has to detect.
 
 use std::hint::black_box;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -48,7 +47,7 @@ static METHODS: LazyLock<Vec<Method>> = LazyLock::new(methods);
 
 crate::machine_conformance!(reference, METHODS, || Box::new(ReferenceMachine::default()));
 
-/// The reference machine with a mistake.
+/// The reference machine with one fault.
 #[derive(Debug)]
 struct Broken {
     inner: ReferenceMachine,
@@ -58,39 +57,39 @@ struct Broken {
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Mistake {
-    /// None: the laws hold for the wrapper itself.
+    /// No fault: the laws hold for the wrapper itself.
     None,
-    /// Makes the updates of a sweep in the wrong order.
+    /// Executes the updates of a sweep in the wrong order.
     UpdatesBackwards,
-    /// Gives the weights of an update's terms to each other's registers.
+    /// Exchanges the weights of an update's terms.
     WeightsExchanged,
     /// Registers that follow from the state are not recomputed when a batch begins.
     EntryForgotten,
-    /// The first step is as any other.
+    /// Treats the first step like any other.
     StartForgotten,
-    /// Nothing is clamped.
+    /// Applies no clamps.
     ClampsForgotten,
-    /// Updates for the last step of a batch alone are never made.
+    /// Omits the updates for the last step of a batch.
     LastStepForgotten,
-    /// Sweeps are made even if a step does not need them.
+    /// Executes sweeps even if a step does not need them.
     ConditionsForgotten,
-    /// A step that is to be taken in parts is taken whole.
+    /// Takes a step as a whole that should be taken in substeps.
     RepeatsForgotten,
     /// A coefficient is off by 1e-10 relative.
     CoefficientOff,
     /// Each batch allocates.
     Allocates,
-    /// Each batch counts a sweep too many.
+    /// Counts one sweep too many in each batch.
     CountsTooMuch,
     /// The velocity loses its last bit when a batch begins.
     RoundsWhenABatchBegins,
-    /// After a refused step it does not continue.
+    /// Does not continue after a refused step.
     StopsAfterARefusal,
-    /// A refused step is passed over in silence.
+    /// Ignores a refused step without an error.
     HidesARefusal,
     /// Every step fails.
     FailsEveryStep,
-    /// No step is taken, in silence.
+    /// Takes no step, without an error.
     TakesNoStep,
 }
 
@@ -228,7 +227,7 @@ fn a_machine_that_fails_or_takes_no_step_breaks_every_law() {
     }
 }
 
-/// Every law is broken by at least one of the machines that it is there for.
+/// Every law detects at least one of the faults for which it exists.
 #[test]
 fn every_law_notices_the_machines_that_break_it() {
     let [

@@ -80,7 +80,7 @@ impl Reached {
 }
 
 impl Cells<'_> {
-    /// Completes rho, makes q of it and then the updates; returns the number of degrees of freedom at
+    /// Completes rho, computes q from it and then executes the updates; returns the number of degrees of freedom at
     /// which a clamp was reached.
     pub(super) fn finish(&mut self, sweep: &Sweep, is_last: bool) -> u64 {
         let mut saturated = 0;
@@ -98,7 +98,7 @@ impl Cells<'_> {
         saturated
     }
 
-    /// Makes updates that neither need q nor have clamps.
+    /// Executes updates that neither need q nor have clamps.
     pub(super) fn enter(&mut self, updates: &[Update]) {
         let mut reached = Reached {
             any: false,
@@ -108,7 +108,7 @@ impl Cells<'_> {
         self.update(updates.iter(), 0..dofs, &mut reached);
     }
 
-    /// Completes rho by the cell's own terms and makes q of it.
+    /// Completes rho with the cell's own terms and computes q from it.
     fn finish_rho(&mut self, sweep: &Sweep, range: Range<usize>) {
         let (q, mass) = (&mut self.q[range.clone()], &self.mass[range.clone()]);
         // The last term and the division share a pass.
@@ -137,7 +137,7 @@ impl Cells<'_> {
         }
     }
 
-    /// Makes updates on a range of degrees of freedom, two in a pass if the second allows it.
+    /// Executes updates on a range of degrees of freedom, two in a pass if the second allows it.
     fn update<'u>(
         &mut self,
         updates: impl Iterator<Item = &'u Update>,
@@ -154,7 +154,7 @@ impl Cells<'_> {
         }
     }
 
-    /// Makes an update, and one that follows it, in one pass.
+    /// Executes an update, and one that follows it, in one pass.
     fn pass(
         &mut self,
         update: &Update,
@@ -246,7 +246,7 @@ impl Update {
     }
 
     /// True if this update is `next <- own next + weight target` after an update `target <- ..` that does not read
-    /// `next`, so that one pass can make both.
+    /// `next`, so that one pass can execute both.
     fn follows(&self, before: &Self) -> bool {
         let reads = |register| before.terms.iter().any(|term| term.register == register);
         let [own, of_before] = &self.terms[..] else {

@@ -1,6 +1,6 @@
 //! Linear combinations of slices.
 
-/// Most slices that one pass adds up.
+/// Largest number of slices that one pass adds up.
 pub(super) const MOST: usize = 4;
 
 /// A second slice that follows the sum in the same pass: `out = own out + weight sum`.
@@ -13,7 +13,7 @@ pub(super) struct Follower<'a> {
 /// A bound on the size of a sum, and marks of the values that reached it.
 pub(super) struct Bound<'a> {
     pub(super) limit: f64,
-    /// Becomes 1 where the bound was reached: as wide as the values, so that several are compared at a time.
+    /// Set to 1 where the bound was reached: as wide as the values, so that several are compared at a time.
     pub(super) reached: &'a mut [u64],
 }
 
@@ -75,7 +75,7 @@ pub(super) fn combine(
     any != 0
 }
 
-/// [`combine`] for at most [`MOST`] slices; `finish` turns each sum into the value that is kept.
+/// [`combine`] for at most [`MOST`] slices; `finish` turns each sum into the stored value.
 fn few(
     out: &mut [f64],
     own: Option<f64>,

@@ -1,4 +1,4 @@
-//! Values found once for all cells before a sweep: its loads and the weights that follow them.
+//! Values computed once for all cells before a sweep: its loads and the weights that depend on them.
 
 use std::sync::Arc;
 
@@ -107,7 +107,7 @@ impl<'a> StepTime<'a> {
     }
 }
 
-/// The load that the weights of a program follow, over the current step.
+/// The load on which the weights of a program depend, over the current step.
 #[derive(Clone, Debug, Default)]
 pub struct FollowedLoad {
     /// The load, by its number, and the step's beginning (s).
@@ -130,12 +130,12 @@ impl FollowedLoad {
         }
     }
 
-    /// Forgets the last step.
+    /// Discards the last step.
     pub fn forget(&mut self) {
         self.of = None;
     }
 
-    /// Computes the change of the load that the weights of a sweep follow over a step.
+    /// Computes the change of the load on which the weights of a sweep depend, over a step.
     pub fn follow(
         &mut self,
         sweep: &Sweep,

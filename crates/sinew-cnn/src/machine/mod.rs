@@ -16,15 +16,14 @@ use crate::Program;
 
 /// Runs programs on the cells of a system.
 ///
-/// Its internals (other precision, another numbering, another memory) are free; the
-/// [`State`] stays f64, node-major. Every machine gives the results of [`ReferenceMachine`], to its own
-/// rounding, and the same bits for every division of a run into batches. The module `conformance` (feature
-/// `conformance`) checks that.
+/// It may use another precision, numbering or memory internally; the [`State`] stays f64, node-major. Every machine
+/// gives the results of [`ReferenceMachine`], to its own rounding, and the same bits for every division of a run into
+/// batches. The module `conformance` (feature `conformance`) checks that.
 pub trait Machine: Send + std::fmt::Debug {
     /// Its name, as plans and results show it.
     fn name(&self) -> &'static str;
 
-    /// Its name with the precision and the instructions that it uses, as rows show it.
+    /// Its name with the precision and the instructions that it uses, as tables of results show it.
     fn kernel(&self) -> String {
         self.name().to_owned()
     }

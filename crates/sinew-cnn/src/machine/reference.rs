@@ -1,4 +1,4 @@
-//! The reference machine: the meaning of a program.
+//! The reference machine: it defines the meaning of a program.
 
 use std::sync::Arc;
 
@@ -58,7 +58,7 @@ impl Machine for ReferenceMachine {
 }
 
 impl ReferenceMachine {
-    /// Takes all steps, or parts of them, of a batch.
+    /// Takes all steps, or substeps, of a batch.
     fn steps(
         &mut self,
         program: &Program,
@@ -109,7 +109,7 @@ impl ReferenceMachine {
         Ok(())
     }
 
-    /// Makes one sweep.
+    /// Executes one sweep.
     fn sweep(
         &mut self,
         program: &Program,
@@ -179,7 +179,7 @@ impl ReferenceMachine {
         })
     }
 
-    /// The cells of a sweep, once the neighbours' forces are in q.
+    /// The cells of a sweep, after the neighbours' forces are in q.
     fn cells<'a>(
         &'a mut self,
         program: &'a Program,

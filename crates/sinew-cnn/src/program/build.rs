@@ -7,7 +7,7 @@ use super::{
 };
 
 impl Program {
-    /// An empty program with this time of the velocity after a step.
+    /// An empty program; `velocity` is the time of the velocity after a step.
     #[must_use]
     pub fn new(velocity: VelocityTime) -> Self {
         Self {
@@ -33,7 +33,7 @@ impl Program {
         Register(self.names.len() as u8 - 1)
     }
 
-    /// The register of this name, a new one if absent.
+    /// The register of this name, created if absent.
     pub fn named(&mut self, name: &'static str) -> Register {
         match self.names.iter().position(|known| *known == name) {
             Some(index) => Register(index as u8),
@@ -41,8 +41,8 @@ impl Program {
         }
     }
 
-    /// The sweep `q = M^-1 (F - K u - D v)` of a system's net force. With stiffness damping a register
-    /// `w = u + beta v` is kept, which the neighbours read then.
+    /// The sweep `q = M^-1 (F - K u - D v)` of a system's net force. With stiffness damping a register `w = u + beta v`
+    /// is stored, and the neighbours read this register.
     pub fn net_force(&mut self, physics: &Physics, u: Register, v: Register, at: LoadAt) -> Sweep {
         let loads = Loads::All { factor: 1.0, at };
         if at == LoadAt::StartOf {
@@ -97,8 +97,8 @@ impl Program {
         register
     }
 
-    /// Completes the program: wherever a register changes of which `u + beta v` is kept, the sum
-    /// follows.
+    /// Completes the program: for each register with a stored sum `u + beta v`, every change of the register is
+    /// followed by an update of the sum.
     #[must_use]
     pub fn complete(mut self) -> Self {
         for Source {

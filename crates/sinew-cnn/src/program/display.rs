@@ -16,9 +16,8 @@ const DIGITS: usize = 6;
 /// Longest line of a list.
 const WIDTH: usize = 96;
 
-/// Sweep by sweep in formulas, numbers with six significant digits: `{:.17}` shows them in full.
-/// Loads are counted from 1. Sweeps of one kind that follow each other are shown once, with their
-/// coefficients as a list.
+/// Sweep by sweep in formulas, numbers with six significant digits: `{:.17}` shows them in full. Loads are counted
+/// from 1. Sweeps of one kind that follow each other are shown once, with a list of their coefficients.
 impl fmt::Display for Program {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let digits = f.precision().unwrap_or(DIGITS);

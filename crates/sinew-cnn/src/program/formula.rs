@@ -24,7 +24,7 @@ pub(super) struct Line {
 /// A sweep in formulas.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Lines {
-    /// Steps in which it is made, if these are not all.
+    /// Steps that execute it, if these are not all.
     pub(super) when: Option<String>,
     /// The sweep's q, then the updates in order.
     pub(super) lines: Vec<Line>,

@@ -28,8 +28,8 @@ impl Program {
     }
 }
 
-/// Adds the clamp to the sweeps of a step. `kept` is a register for the velocity before it and the
-/// time between the step's two velocities (s), if an acceleration is kept.
+/// Adds the clamp to the sweeps of a step. `kept` is a register for the velocity before the clamp, and the time between
+/// the step's two velocities (s), if an acceleration is kept.
 fn clamp(sweeps: &mut [Sweep], dt: f64, before: Register, kept: Option<(Register, f64)>) {
     let (u, v, a) = (Register::U, Register::V, Register::A);
     let moves = |sweep: &&mut Sweep| sweep.updates.iter().any(|update| update.target == u);

@@ -47,27 +47,28 @@ use crate::blocks::CellBlocks;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Program {
     names: Vec<&'static str>,
-    /// Registers that follow from those of the state when one is loaded.
+    /// Registers computed from those of the state when a state is loaded.
     pub entry: Vec<Update>,
-    /// The first step, from a velocity at the displacement's time; empty if it is like all others.
+    /// The first step, from a velocity at the displacement's time; empty if it equals all others.
     pub start: Vec<Sweep>,
     /// A step.
     pub step: Vec<Sweep>,
     /// Time of V after a step.
     pub velocity: VelocityTime,
-    /// Times at which damping takes velocities after a step.
+    /// Times at which damping uses velocities after a step.
     pub damped: DampedAt,
     /// Kind of acceleration in A after the last step of a batch.
     pub acceleration: Acceleration,
     /// P^-1, one block for each cell, of sweeps with [`Quotient::Blocks`].
     pub blocks: Option<Arc<CellBlocks>>,
-    /// The matrix P of a step that is `P (v+ - v-) = dt F`, `u+ = u + dt v+`; `None` for other steps, which nothing can touch.
+    /// The matrix P of a step that is `P (v+ - v-) = dt F`, `u+ = u + dt v+`; `None` for other steps, which support no
+    /// contact.
     pub inertia: Option<CellInertia>,
     /// Limits (m/s) of [`Clamp::Vector`], one for each cell.
     pub limits: Option<Arc<[f64]>>,
-    /// Number of times a step is made for one step of the caller.
+    /// Number of times that a step is executed for one step of the caller.
     pub repeats: u32,
-    /// Moments of loads, from which weights that follow a load are made.
+    /// Moments of loads, from which load-dependent weights are computed.
     pub moments: Option<Arc<Moments>>,
     sources: Vec<Source>,
 }
@@ -81,7 +82,7 @@ struct Source {
     beta: f64,
 }
 
-/// The matrix P that a step divides forces by, of one block for each cell.
+/// The matrix P that a step divides forces by, with one block for each cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum CellInertia {
     /// The lumped mass times this factor.
@@ -107,7 +108,7 @@ impl Program {
         &self.names
     }
 
-    /// This program made `times` as often for one step of the caller.
+    /// This program executed `times` as often for one step of the caller.
     #[must_use]
     pub fn repeated(self, times: u32) -> Self {
         Self {
@@ -128,7 +129,7 @@ impl Program {
         }
     }
 
-    /// The size (m/s) beyond which a component of the velocity moves the displacement no faster; infinite if nothing
+    /// The size (m/s) at which a component of the velocity moves the displacement at most; infinite if nothing
     /// saturates.
     #[must_use]
     pub fn saturation(&self) -> f64 {
@@ -140,8 +141,8 @@ impl Program {
         limits.fold(f64::INFINITY, f64::min)
     }
 
-    /// The time (s) by which a change of velocity is divided in the acceleration that a step of `dt` (s) keeps; `starts` in a first step
-    /// from a velocity at the displacement's time.
+    /// The time (s) by which a change of velocity is divided to give the acceleration that a step of `dt` (s) stores;
+    /// `starts` in a first step from a velocity at the displacement's time.
     #[must_use]
     pub fn kick(&self, dt: f64, starts: bool) -> Option<f64> {
         let halves = starts && self.velocity != VelocityTime::Same;

@@ -1,4 +1,4 @@
-//! Facts about a system that a program needs.
+//! Properties of a system that a program needs.
 
 use sinew_core::{Equations, System};
 
@@ -15,7 +15,7 @@ pub struct Physics {
     pub stiffness_damping: f64,
     /// True if there are dashpots, a damping matrix proportional to neither M nor K.
     pub dashpots: bool,
-    /// Number of loads, those from outside not counted.
+    /// Number of loads, without those from outside.
     pub loads: u32,
 }
 

@@ -2,7 +2,7 @@
 
 use super::formula::{Coefficient, Line, Lines};
 
-/// Fewest sweeps worth leaving out.
+/// Smallest number of sweeps that is worth omitting.
 const FEWEST: usize = 3;
 
 /// Consecutive sweeps of one kind, or of two kinds in turn.
@@ -10,11 +10,11 @@ const FEWEST: usize = 3;
 pub(super) struct Stretch {
     pub(super) from: usize,
     pub(super) to: usize,
-    /// Number of kinds; all sweeps if none is left out.
+    /// Number of kinds; all sweeps if none is omitted.
     pub(super) shown: usize,
 }
 
-/// Cuts the sweeps of a program into stretches.
+/// Divides the sweeps of a program into stretches.
 pub(super) fn stretches(sweeps: &[Lines]) -> Vec<Stretch> {
     let mut found = Vec::new();
     let mut from = 0;
@@ -43,7 +43,7 @@ pub(super) fn stretches(sweeps: &[Lines]) -> Vec<Stretch> {
 }
 
 impl Stretch {
-    /// Number of sweeps left out.
+    /// Number of sweeps omitted.
     pub(super) fn left_out(self) -> usize {
         self.to - self.from - self.shown
     }

@@ -74,7 +74,7 @@ pub struct Sweep {
     pub updates: Vec<Update>,
 }
 
-/// Steps in which a sweep is made.
+/// Steps in which a sweep is executed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum When {
     /// Every step.
@@ -111,7 +111,7 @@ impl Loads {
     }
 }
 
-/// Time at which a sweep takes its loads; see [`sinew_core::LoadTime`].
+/// Time at which a sweep evaluates its loads; see [`sinew_core::LoadTime`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LoadAt {
     /// The beginning of the step, or the mean over it.
@@ -187,7 +187,7 @@ pub struct Update {
     pub of_q: f64,
     /// Bound of the result.
     pub clamp: Option<Clamp>,
-    /// True if the update is made only in the last step of a batch.
+    /// True if the update is executed only in the last step of a batch.
     pub last_only: bool,
 }
 

@@ -4,13 +4,12 @@ use sinew_core::Layers;
 
 use super::{Clamp, Forces, Program, Quotient, Register, Sweep, When};
 
-/// Memory that a step streams for each cell, while loads are constant and in a step that is
-/// not the last of a batch.
+/// Memory that a step transfers for each cell, with constant loads and in a step that is not the last of a batch.
 ///
-/// Counted for a machine that passes once over the cells in each sweep: every register (and the mass,
-/// if used) that the pass reads counts as one vector read, every one that it writes as one
-/// vector written, however often; q and what the neighbours read again stay in cache. A product
-/// streams each block of the matrix once, with the number of its column.
+/// Counted for a machine that passes once over the cells in each sweep: every register (and the mass, if used) that the
+/// pass reads counts as one vector read, every one that it writes as one vector written, for any number of accesses; q
+/// and the values that neighbours read again stay in cache. A product transfers each block of the matrix once, with the
+/// number of its column.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Traffic {
     /// Vectors read, one value for each layer of a cell.

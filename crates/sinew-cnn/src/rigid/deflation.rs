@@ -1,4 +1,4 @@
-//! Added inertia that rigid motions do not feel.
+//! Added inertia without effect on rigid motions.
 
 use std::ops::Range;
 
@@ -10,12 +10,14 @@ use super::{LAYERS, MOST, RigidMotions};
 /// `P = M' + S - S R (R'S R)^-1 R'S`: the inertia M' plus the stiffness terms of a step, one block S for each cell,
 /// without their effect on the rigid motions R.
 ///
-/// For a matrix W with `W <= S` and `W R = 0`, `W <= P - M'`: with the projection `Z = I - R (R'S R)^-1 R'S` it is `Z'W Z <= Z'S Z = P - M'`. So P bounds `M' + W` as the blocks
-/// `B = M' + S` do, is never above them, and is M' on rigid motions. Its inverse is that of the blocks and a correction by sums over each part,
+/// For a matrix W with `W <= S` and `W R = 0`, `W <= P - M'`: with the projection `Z = I - R (R'S R)^-1 R'S` one has
+/// `W = Z'W Z <= Z'S Z = P - M'`. So P is an upper bound of `M' + W` like the blocks `B = M' + S`, is never above these
+/// blocks, and equals M' on rigid motions. Its inverse is that of the blocks plus a correction by sums over each part,
 ///
 /// `P^-1 = B^-1 + U G^-1 U'`, with `U = B^-1 S R` and `G = U'M' R`
 ///
-/// (Sherman, Morrison and Woodbury, as `R'S R - R'S B^-1 S R = G`). Motions are kept orthonormal in S: P depends on their span alone.
+/// (Sherman, Morrison and Woodbury, as `R'S R - R'S B^-1 S R = G`). Motions are orthonormal in S: P depends on their
+/// span alone.
 #[derive(Clone, Debug)]
 pub struct Deflation {
     parts: Vec<Part>,
@@ -31,12 +33,12 @@ struct Part {
     /// G and its factor.
     gram: [[f64; MOST]; MOST],
     factor: Factor,
-    /// True if S resists all motions; if it does not, nothing is subtracted.
+    /// True if S resists all motions; otherwise nothing is subtracted.
     is_sound: bool,
 }
 
 impl Deflation {
-    /// The rigid motions of these parts, of 1 to 6 each; nothing is taken out before they are weighed.
+    /// The rigid motions of these parts, of 1 to 6 each; nothing is removed before [`Deflation::weigh`].
     #[must_use]
     pub fn new(parts: Vec<FreePart>) -> Self {
         let of = |free: FreePart| Part {
@@ -63,9 +65,9 @@ impl Deflation {
         self.parts.iter().map(|part| part.rigid.count()).sum()
     }
 
-    /// Sets the motions about the rest positions of cells, or about those displaced by displacements (m), S as
-    /// `factor` times the blocks `added`, `B^-1` times `of_inverse` as
-    /// `inverse`, all row by row, and M' by its diagonal.
+    /// Sets the motions about the rest positions of cells, or about positions displaced by displacements (m), S as
+    /// `factor` times the blocks `added`, `B^-1` as `of_inverse` times `inverse`, all row by row, and the diagonal of
+    /// M'.
     pub fn weigh(
         &mut self,
         u: Option<&[f64]>,
@@ -109,7 +111,7 @@ impl Deflation {
         }
     }
 
-    /// The motions of each part, by their numbers among all.
+    /// The motions of each part, by their numbers among the motions of all parts.
     pub fn ranges(&self) -> impl Iterator<Item = Range<usize>> {
         let mut first = 0;
         self.parts.iter().map(move |part| {
@@ -138,7 +140,8 @@ impl Deflation {
         self.sound().map(of_part).sum()
     }
 
-    /// Calls `each` with every cell that feels the motions, the number of the first motion of its part, and with its rows of S R and U.
+    /// Calls `each` with every cell on which the motions act, the number of the first motion of its part, and the
+    /// cell's rows of S R and U.
     pub fn for_each_cell(
         &self,
         mut each: impl FnMut(usize, usize, &[[f64; LAYERS]], &[[f64; LAYERS]]),

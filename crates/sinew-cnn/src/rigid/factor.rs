@@ -2,7 +2,7 @@
 
 use super::{Coefficients, MOST};
 
-/// Pivot, as a share of its own entry, below which motions depend on each other.
+/// Pivot, as a share of its diagonal entry, below which motions depend on each other.
 const DEPENDENT: f64 = 1e-14;
 
 /// The lower factor L of a symmetric positive definite matrix `L L'`.

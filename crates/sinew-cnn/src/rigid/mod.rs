@@ -10,7 +10,7 @@ pub use motions::RigidMotions;
 pub(crate) use motions::by_diagonal;
 pub use projection::Projection;
 
-/// Motions of a part, at most.
+/// Largest number of motions of a part.
 const MOST: usize = 6;
 
 /// Components of a cell.

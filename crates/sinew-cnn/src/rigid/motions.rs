@@ -5,21 +5,23 @@ use sinew_core::FreePart;
 use super::factor::Factor;
 use super::{Coefficients, LAYERS, MOST};
 
-/// Times that a rigid displacement is improved: each leaves about the square of the angle that is left.
+/// Largest number of improvements of a rigid displacement: each leaves an error of about the square of the remaining
+/// angle.
 const MOST_TURNS: usize = 12;
 
-/// Square of a change, as a share of that of the displacement, at which a rigid displacement is found.
+/// Square of a change, as a share of that of the displacement, at which a rigid displacement has converged.
 const FOUND: f64 = 1e-28;
 
-/// The rigid motions of a part, about where its cells rest or have been moved to, orthonormal in the metric of one matrix for each cell.
+/// The rigid motions of a part, about the rest or current positions of its cells, orthonormal in a metric with one
+/// matrix for each cell.
 #[derive(Clone, Debug)]
 pub struct RigidMotions {
     pub(crate) free: FreePart,
-    /// R, of each cell the components of each motion.
+    /// R: for each cell the components of each motion.
     pub(crate) motions: Vec<[f64; LAYERS]>,
     /// The metric times R.
     pub(crate) weighted: Vec<[f64; LAYERS]>,
-    /// The factor of the metric of the part's own twists.
+    /// The factor of the metric of the part's twists.
     factor: Factor,
     /// The centre (m) of these rotations: it moves with an unsupported part, so that they stay independent
     /// at any displacement.
@@ -45,8 +47,8 @@ impl RigidMotions {
         self.free.twists.len()
     }
 
-    /// Takes the motions about rest, or about displacements (m), and makes them orthonormal in the metric that
-    /// `weigh` applies to a cell's vector; returns false if they are dependent in it.
+    /// Computes the motions about rest, or about displacements (m), and makes them orthonormal in the metric that
+    /// `weigh` applies to a cell's vector; returns false if they are linearly dependent in this metric.
     pub(crate) fn take(
         &mut self,
         u: Option<&[f64]>,
@@ -143,12 +145,12 @@ impl RigidMotions {
         }
     }
 
-    /// Writes the rigid displacement y (m) of the part from the displacement `u` (m) on, however large, at which
-    /// `y'M y/2 - b'y` is least for the forces b (N) `pull` and the diagonal M (N/m) of `inertia`; `places` is scratch
-    /// space. Cells of other parts stay as they are.
+    /// Writes the rigid displacement y (m) of the part from the displacement `u` (m) on, of any size, that minimises
+    /// `y'M y/2 - b'y` for the forces b (N) `pull` and the diagonal M (N/m) of `inertia`; `places` is scratch space.
+    /// Cells of other parts are unchanged.
     ///
     /// It is the rigid motion that is nearest to `M^-1 b` in the metric of M (Kabsch, Acta Cryst. A 32, 1976, for an
-    /// unsupported part), by twists that are made finite by the exponential map.
+    /// unsupported part), with twists that the exponential map makes finite.
     pub fn lead(
         &mut self,
         u: &[f64],
@@ -205,7 +207,7 @@ impl RigidMotions {
         }
     }
 
-    /// Moves the part from its place by the exponential of a sum of its twists.
+    /// Moves the part from its position by the exponential of a sum of its twists.
     fn turn(&self, c: &Coefficients, places: &[f64], y: &mut [f64]) {
         let (mut translation, mut rotation) = ([0.0; 3], [0.0; 3]);
         for (twist, c) in self.free.twists.iter().zip(c) {

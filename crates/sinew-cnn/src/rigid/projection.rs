@@ -5,10 +5,11 @@ use sinew_core::FreePart;
 use super::RigidMotions;
 use super::motions::by_diagonal;
 
-/// `P^-1 = Z Q^-1 Z' + R (R'M' R)^-1 R'`, with `Z = I - R (R'M' R)^-1 R'M'`, for any Q above a matrix A that is M' on rigid motions R: an iteration for the rest of a
-/// motion, and M' alone for its rigid part.
+/// `P^-1 = Z Q^-1 Z' + R (R'M' R)^-1 R'`, with `Z = I - R (R'M' R)^-1 R'M'`, for any `Q >= A` of a matrix A that equals
+/// M' on rigid motions R: an iteration for the elastic part of a motion, and M' alone for its rigid part.
 ///
-/// A maps R and its complement in the metric of M' to each other's dual, so does P, and on the complement `Z Q^-1 Z' <= Z A^-1 Z'`: so P is above A.
+/// A maps R and its complement in the metric of M' to their duals, P does the same, and on the complement
+/// `Z Q^-1 Z' <= Z A^-1 Z'`: so `P >= A`.
 #[derive(Clone, Debug)]
 pub struct Projection {
     parts: Vec<RigidMotions>,

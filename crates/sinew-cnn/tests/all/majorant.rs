@@ -1,5 +1,4 @@
-//! The matrix P that takes the place of M lies above what a step needs, whatever the network, its
-//! damping and the step.
+//! Tests that the matrix P that replaces M is above the matrix that a step needs, for any network, damping and step.
 
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
@@ -41,7 +40,7 @@ fn mass_with_damping(operators: &LinearOperators, dt: f64) -> DMatrix<f64> {
     mass(operators) * (1.0 + dt / 2.0 * operators.damping().mass)
 }
 
-/// Matrix that a majorant adds to that.
+/// Matrix that a majorant adds to [`mass_with_damping`].
 fn added(operators: &LinearOperators, dt: f64, majorant: &Majorant) -> DMatrix<f64> {
     other_damping(operators) * (majorant.damping_share() * dt / 2.0)
         + stiffness(operators) * (majorant.s() * dt * dt / 4.0)
@@ -67,7 +66,7 @@ fn extremes(symmetric: &DMatrix<f64>) -> (f64, f64) {
     (eigenvalues.min(), eigenvalues.max())
 }
 
-/// Column by column what a function makes of the unit vectors.
+/// The matrix of a function, column by column from the unit vectors.
 fn columns(n: usize, mut apply: impl FnMut(&[f64], &mut [f64])) -> DMatrix<f64> {
     let mut full = DMatrix::zeros(n, n);
     let (mut unit, mut column) = (vec![0.0; n], vec![0.0; n]);
@@ -87,7 +86,7 @@ fn of_pencil(inverse: &DMatrix<f64>, s: &DMatrix<f64>) -> (f64, f64) {
     extremes(&(root.transpose() * s * root))
 }
 
-/// The largest eigenvalue of `blockdiag(S)^-1 S` on the directions in which a cell feels anything.
+/// The largest eigenvalue of `blockdiag(S)^-1 S` on the directions in which a cell has stiffness.
 fn tight_gamma(s: &DMatrix<f64>) -> f64 {
     let n = s.nrows();
     let mut root = DMatrix::zeros(n, n);
@@ -130,7 +129,7 @@ fn damped_limit(operators: &LinearOperators) -> f64 {
     low
 }
 
-/// Each kind with its own number of sweeps.
+/// Each kind with its number of sweeps.
 fn inners(sweeps: [u32; 3]) -> [Inner; 4] {
     [
         Inner::Block,
@@ -167,7 +166,7 @@ fn damped() -> impl Strategy<Value = Damped> {
 }
 
 impl Damped {
-    /// The body under this damping and no other.
+    /// The body with this damping only.
     fn model(self, mut body: Body) -> Model {
         let law = Law::Springs {
             youngs_modulus: 3500.0,
@@ -205,7 +204,7 @@ fn damping_shares() -> impl Strategy<Value = DampingShare> {
     prop_oneof![Just(DampingShare::AsStiffness), Just(DampingShare::Whole)]
 }
 
-/// .1 to 1000 times the critical step.
+/// Shares from .1 to 1000 times the critical step.
 fn shares() -> impl Strategy<Value = f64> {
     (-1.0..3.0).prop_map(|power| 10.0_f64.powf(power))
 }
@@ -252,7 +251,7 @@ proptest! {
         }
     }
 
-    /// The block majorant itself, written out.
+    /// The block majorant itself, computed in full.
     #[test]
     fn one_block_per_cell_is_the_sum_it_says(
         body in bodies_up_to(2),
@@ -279,7 +278,7 @@ proptest! {
         prop_assert_eq!(majorant.gamma() == 0.0, majorant.mass_suffices());
     }
 
-    /// The iteration is raised by a thousandth, so that it may pass the circles by as much.
+    /// The eigenvalue from the iteration is raised by a thousandth, so that it may exceed the circles by as much.
     #[test]
     fn circles_bound_the_iteration_and_both_bound_the_eigenvalue(
         body in bodies_up_to(2),
@@ -400,7 +399,7 @@ fn gamma_of_the_paper_s_cube() {
     }
 }
 
-/// A cell some of whose components are held keeps them apart from the rest.
+/// A cell with fixed components keeps them separate from the rest.
 #[test]
 fn what_is_held_neither_gives_nor_takes() {
     let model = cube(2, springs(SpringRule::Lloyd), [false, false, true]);

@@ -22,7 +22,7 @@ fn damped() -> Physics {
     }
 }
 
-/// A leapfrog with a first step of its own that keeps the acceleration of its last kick.
+/// A leapfrog with its own first step that keeps the acceleration of its last kick.
 fn leapfrog(physics: &Physics, dt: f64) -> Program {
     let mut program = Program::new(VelocityTime::MiddleOfStep);
     program.acceleration = Acceleration::Kick;
@@ -174,7 +174,7 @@ fn a_completed_program_keeps_u_plus_beta_v_up_to_date() {
     assert_eq!(undamped.clone().complete(), undamped);
 }
 
-/// The sum of registers that are no part of the state follows in the sweeps, not when a batch begins.
+/// The sum with registers that are not part of the state is updated in the sweeps, not when a batch begins.
 #[test]
 fn sums_of_stages_are_kept_where_stages_are_written() {
     let mut program = Program::new(VelocityTime::Same);
@@ -198,7 +198,7 @@ fn sums_of_stages_are_kept_where_stages_are_written() {
     assert_eq!(counts, [2, 1, 3]);
 }
 
-/// Against the force of the system itself: `v += dt M^-1 (F - K (u + beta v) - alpha M v)`.
+/// Comparison with the force of the system itself: `v += dt M^-1 (F - K (u + beta v) - alpha M v)`.
 #[test]
 fn a_completed_program_feels_stiffness_damping() {
     let mut program = Program::new(VelocityTime::Same);

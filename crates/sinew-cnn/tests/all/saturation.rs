@@ -8,12 +8,12 @@ fn at(q: f64) -> Saturation {
     Saturation::at(q).unwrap()
 }
 
-/// Any voltage there can be.
+/// Any possible voltage.
 fn voltages() -> impl Strategy<Value = f64> {
     prop_oneof![POSITIVE | NORMAL | SUBNORMAL, 0.1..10.0]
 }
 
-/// Any velocity there can be, often one of the voltage's size.
+/// Any possible velocity, often of the size of the voltage.
 fn velocities(q: f64) -> impl Strategy<Value = f64> {
     let all = POSITIVE | NEGATIVE | NORMAL | SUBNORMAL | ZERO | INFINITE;
     prop_oneof![1 => all, 2 => (-2.5..2.5).prop_map(move |share| q * share)]

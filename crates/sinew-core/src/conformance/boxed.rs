@@ -1,4 +1,4 @@
-//! Integrators as the laws make them.
+//! Integrators as the laws create them.
 
 use crate::Integrator;
 

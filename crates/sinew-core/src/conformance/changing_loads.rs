@@ -18,7 +18,7 @@ const DAMPING: f64 = 2.0;
 enum Taken {
     /// All steps.
     All,
-    /// None beyond a load that the method refuses.
+    /// The steps up to a load that the method refuses.
     Refused,
 }
 
@@ -39,8 +39,8 @@ fn advance(
     Taken::All
 }
 
-/// Displacements (m) at time `t` (s) of the chain from rest, by its two modes: `response(omega)` is that
-/// of a mode to the load on the first mass divided by sqrt 2 and the mass.
+/// Displacements (m) at time `t` (s) of the chain from rest, as the sum of its two modes: `response(omega)` is the
+/// response of a mode to the load on the first mass divided by sqrt 2 and the mass.
 fn from_modes(response: impl Fn(f64) -> f64) -> [f64; 2] {
     let (slow, fast) = (response((SPRING / MASS).sqrt()), response(OMEGA_MAX));
     [0.5 * (slow + fast), 0.5 * (slow - fast)]
@@ -109,7 +109,7 @@ fn difference(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
     [a[0] - b[0], a[1] - b[1]]
 }
 
-/// A ramp with the motion of the chain that it causes, from rest.
+/// A ramp and the motion of the chain that it causes, from rest.
 struct Motion {
     ramp: Ramp,
     exact: Box<dyn Fn(f64) -> [f64; 2]>,
@@ -168,7 +168,7 @@ fn dropped(from: f64, to: f64, damping: f64) -> Motion {
     }
 }
 
-/// A sine that has begun at t = 0, somewhere in its period.
+/// A sine that begins at t = 0 with any phase.
 fn sinusoid(frequency: f64, phase: f64, damping: f64) -> Motion {
     let rate = TAU * frequency;
     Motion {
@@ -222,8 +222,8 @@ fn rate_of_sine(rise: f64, damping: f64, smooth: bool) -> Motion {
     }
 }
 
-/// The error falls as declared, and no slower, while loads change smoothly, jump on steps, jump
-/// between steps or have kinks there; a method that is exact is so wherever it does not refuse.
+/// The error decreases as declared or faster while loads change smoothly, jump on steps, jump between steps or have
+/// kinks between steps. An exact method is exact for all loads that it does not refuse.
 pub fn order_with_changing_loads_is_as_declared(make: &dyn Fn() -> Boxed) {
     let declared = make().properties().changing_loads;
     for damping in [DAMPING, 0.0] {
@@ -319,8 +319,7 @@ pub fn order_with_changing_loads_is_as_declared(make: &dyn Fn() -> Boxed) {
     }
 }
 
-/// A mass on a spring of 1e-9 N/m, too soft to matter within seconds, also to methods that are never
-/// stable.
+/// A mass on a spring of 1e-9 N/m, too soft to matter within seconds, also for methods that are never stable.
 fn almost_free(ramp: Ramp) -> LinearModel {
     let load = Load {
         ramp,
@@ -333,8 +332,8 @@ fn almost_free(ramp: Ramp) -> LinearModel {
     }
 }
 
-/// An unsupported mass gets the velocity that the impulse gives it, however short the load and wherever it falls
-/// between two steps; a method that cannot take the load refuses it.
+/// An unsupported mass gets the velocity that follows from the impulse of a load, for any duration of the load and any
+/// position between two steps. A method that cannot apply the load refuses it.
 pub fn the_impulse_of_a_load_arrives_wherever_it_falls(make: &dyn Fn() -> Boxed) {
     let dt = 0.005;
     let (short, long) = (0.12 * dt, 3.4 * dt);
@@ -408,8 +407,8 @@ pub fn time_does_not_drift_over_a_million_steps(make: &dyn Fn() -> Boxed) {
     }
 }
 
-/// A load does the same after a million steps as after a few hundred: a jump that falls on a step
-/// falls on it however late, and a checkpoint or a change of dt on the way changes nothing.
+/// A load has the same effect after a million steps as after a few hundred: a jump that coincides with a step does so
+/// at any time, and a checkpoint or a change of dt in between changes nothing.
 pub fn loads_act_alike_at_any_time(make: &dyn Fn() -> Boxed) {
     let dt = 1e-3;
     let shifted = |late: f64| -> Vec<(Ramp, LinearModel)> {

@@ -6,7 +6,7 @@ use super::problems::{
 };
 use crate::{SetupError, State, StepError};
 
-/// No load, no motion: nothing ever moves.
+/// A body at rest without loads stays at rest.
 pub fn rest_stays_at_rest(make: &dyn Fn() -> Boxed) {
     for Problem { system, start, .. } in problems(Dampers::MASS, 0.0) {
         let dofs = start.u.len();
@@ -71,7 +71,7 @@ pub fn bad_systems_and_steps_are_refused(make: &dyn Fn() -> Boxed) {
     );
 }
 
-/// An integrator used on another system of the same size forgets all it kept of the first.
+/// An integrator that is used on another system of the same size discards all that it kept of the first.
 pub fn another_system_is_noticed(make: &dyn Fn() -> Boxed) {
     let (first, second) = (
         chain(1.0, FORCE, [MASS; 2]),

@@ -9,10 +9,10 @@ use crate::{
     LinearSystem, LoadTime, Needs, SetupError, StableStep, State, Trial,
 };
 
-/// Rounding of 30 steps, relative to the largest value of its kind in them.
+/// Rounding error of 30 steps, relative to the largest value of the same quantity in them.
 const ROUNDING: f64 = 1e-13;
 
-/// Rounding of 30 solutions by factors, relative to the largest value of its kind in them.
+/// Rounding error of 30 solutions by factors, relative to the largest value of the same quantity in them.
 const SOLVED: f64 = 1e-10;
 
 /// The forces of a linear system that hides its matrices.
@@ -61,11 +61,11 @@ pub(super) fn lacks<T>(integrator: &dyn Integrator, answer: &Result<T, SetupErro
     matches!(answer, Err(SetupError::Lacks { integrator: id, .. }) if *id == integrator.id())
 }
 
-/// On a system that evaluates its forces and shows no matrices, a method that declares to need
-/// forces only gives the same bits and the same work as with the matrices, under all kinds of
-/// damping; one that needs an elastic law with its tangent moves as with the matrices where it gets one, up to rounding; any
-/// other refuses it by name, at set-up and when asked for a stable step. Without a
-/// spectrum a stable step is unknown, with one it is that of the matrices.
+/// Tests methods on a system that evaluates its forces and shows no matrices. A method that declares that it needs
+/// forces only gives the same bits and the same work as with the matrices, under all kinds of damping. A method that
+/// needs an elastic law with its tangent gives the motion with the matrices, up to rounding, if the system has such a
+/// law. Any other method refuses the system by name, at set-up and when asked for a stable step. Without a spectrum the
+/// stable step is unknown; with one it is that of the matrices.
 pub fn forces_are_enough_where_declared(make: &dyn Fn() -> Boxed) {
     for damping in [
         Dampers::NONE,
@@ -144,7 +144,7 @@ fn forces_are_enough(
     );
 }
 
-/// The motion with the matrices is that with the tangent of their law, up to the rounding of solutions.
+/// The motion with the matrices equals that with the tangent of their law, up to the rounding of solutions.
 fn tangents_are_enough(
     make: &dyn Fn() -> Boxed,
     problem: &Problem,

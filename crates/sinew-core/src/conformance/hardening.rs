@@ -20,7 +20,7 @@ const HARDENING: f64 = 1e5;
 /// Tag of the spring in the middle.
 const ELEMENT: u64 = 42;
 
-/// A value that the springs, which are sound, have.
+/// Returns the value; there is no error, because the springs are valid.
 fn sound<T, E: Display>(made: Result<T, E>) -> T {
     match made {
         Ok(value) => value,
@@ -53,7 +53,7 @@ impl Hardening {
         ForceModel::new(law, &[MASS; 2], Layers::One)
     }
 
-    /// The same forces, of which only their values are available.
+    /// The same forces without energy and tangent.
     fn without_tangent() -> ForceModel<Self> {
         let law = Self {
             tells_tangent: false,
@@ -66,7 +66,7 @@ impl Hardening {
         u[1] - u[0]
     }
 
-    /// Stiffness of the inner spring against a little more stretch (N/m).
+    /// Tangent stiffness of the inner spring (N/m).
     fn stiffness(stretch: f64) -> f64 {
         SPRING + 3.0 * HARDENING * stretch * stretch
     }
@@ -139,7 +139,7 @@ impl ElasticLaw for Hardening {
         &self.pattern
     }
 
-    /// The same of all kinds: it has no negative eigenvalue.
+    /// The same matrix for all kinds: it has no negative eigenvalue.
     fn tangent(
         &self,
         trial: &Trial<'_>,
@@ -227,9 +227,9 @@ fn mirrored(q: f64, v: f64) -> State {
     State::new(vec![-q, q], vec![-v, v])
 }
 
-/// Halving the step divides the error by 2^order on a nonlinear system too, against its motion in
-/// closed form; steps one by one, batches, recorders that stop and checkpoints give the same bits
-/// there. A method that needs matrices refuses it, and one that needs a tangent the same forces without one.
+/// Halving the step divides the error by 2^order on a nonlinear system too, compared with its motion in closed form.
+/// Single steps, batches, recorders that stop and checkpoints give the same bits there. A method that needs matrices
+/// refuses the system, and one that needs a tangent refuses the same forces without tangent.
 pub fn a_hardening_spring_swings_as_in_closed_form(make: &dyn Fn() -> Boxed) {
     let system = Hardening::system(0.0, f64::INFINITY);
     let properties = make().properties();
@@ -273,11 +273,11 @@ pub fn a_hardening_spring_swings_as_in_closed_form(make: &dyn Fn() -> Boxed) {
     in_every_way(make, &system, Inputs::none(), &start, dt, 23);
 }
 
-/// A system that refuses a trial state ends the run with an error that names the time, the element
-/// and the reason, at the same step however the steps were taken. What was recorded and watched
-/// until then is that of a run in which nothing was refused, and the integrator can be used again. A method that solves
-/// equations may reach the last step through other trials, avoiding one that is refused, and one whose energy never
-/// rises avoids refused states and runs to the end.
+/// A system that refuses a trial state ends the run with an error that names the time, the element and the reason, at
+/// the same step however the steps were taken. The values recorded and watched until then equal those of a run without
+/// a refusal, and the integrator can be used again. A method that solves equations may reach the last step through
+/// other trials, avoiding one that is refused, and one whose energy never rises avoids refused states and runs to the
+/// end.
 pub fn a_refusal_ends_the_run_and_keeps_what_was(make: &dyn Fn() -> Boxed) {
     if make().properties().needs == Needs::Matrices {
         return;

@@ -19,7 +19,7 @@ enum Declared {
     Times(f64),
     /// This share of 2/omega_max.
     OfCritical(f64),
-    /// Any.
+    /// Stable at any step.
     Any,
 }
 

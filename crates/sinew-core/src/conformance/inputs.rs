@@ -141,8 +141,8 @@ fn instants() -> Vec<f64> {
     (0..=FRAMES).map(|frame| frame as f64 * FRAME).collect()
 }
 
-/// A force given through [`Inputs`] moves the body as the same force does that the system has of its own,
-/// or is refused by name; a force on a degree of freedom that does not exist is refused.
+/// A force given through [`Inputs`] moves the body like the same force among the system's own loads, or is refused by
+/// name; a force on a degree of freedom that does not exist is refused.
 pub fn a_force_from_outside_is_felt(make: &dyn Fn() -> Boxed) {
     let free = chain(DAMPING, 0.0, [MASS; 2]);
     let mut inputs = Inputs::new();
@@ -173,8 +173,8 @@ pub fn a_force_from_outside_is_felt(make: &dyn Fn() -> Boxed) {
     );
 }
 
-/// Forces given frame by frame act like the same forces known beforehand, as pulses and as one course
-/// for each degree of freedom; their record, replayed, gives the same bits.
+/// Forces given frame by frame act like the same forces known beforehand, as pulses and as one function of time for
+/// each degree of freedom; the replay of their record gives the same bits.
 pub fn forces_as_they_happen_do_what_known_ones_do(make: &dyn Fn() -> Boxed) {
     let given = Random::frames();
     let entries = |[a, b]: [f64; 2]| [(0, a), (1, b)];
@@ -233,9 +233,9 @@ pub fn forces_as_they_happen_do_what_known_ones_do(make: &dyn Fn() -> Boxed) {
     }
 }
 
-/// Loads that follow an input channel act like the same loads known beforehand, and their record,
-/// replayed, gives the same bits: values that hold, values joined by lines, and the rate of such lines.
-/// A load that follows a channel which inputs lack is refused by name.
+/// Loads that follow an input channel act like the same loads known beforehand, and the replay of their record gives
+/// the same bits: constant values, values joined by lines, and the rate of such lines. A load that follows a channel
+/// which the inputs do not have is refused by name.
 pub fn channels_as_they_happen_do_what_known_loads_do(make: &dyn Fn() -> Boxed) {
     let given = Random::frames();
     let instants = instants();

@@ -32,15 +32,14 @@ impl Maxwell {
         }
     }
 
-    /// The dashpot's elongation `dt` (s) after it was `z`, the mass having moved to `u` at the constant
-    /// speed `v`: exact for such a path, and so of order 2 in dt.
+    /// The dashpot's elongation `dt` (s) after it was `z`, while the mass moves to `u` at the constant speed `v`: exact
+    /// for such a path, and thus of order 2 in dt.
     fn elongation(z: f64, u: f64, v: f64, dt: f64) -> f64 {
         let behind = u - RELAXATION * v;
         behind + (z - behind + v * dt) * (-dt / RELAXATION).exp()
     }
 
-    /// (u, v, z) after each of `count` times `interval` (s), by the Taylor series of the linear system
-    /// that the three are.
+    /// (u, v, z) after each of `count` times `interval` (s), by the Taylor series of the linear system of the three.
     fn motion(start: [f64; 3], interval: f64, count: usize) -> Vec<[f64; 3]> {
         let rate = |[u, v, z]: [f64; 3], force: f64| {
             let pull = SPRING * u + SERIES * (u - z);
@@ -115,10 +114,10 @@ impl ForceLaw for Maxwell {
     }
 }
 
-/// A law with memory is moved to the order that its own update allows: a Maxwell element of which
-/// [`System::accept`] knows u and v at the end of a step is of order 2 at most, and methods of order 1 keep
-/// theirs. A method that took [`Trial::dt`] for 0 within a step would be of order 1. Internal
-/// variables are part of a checkpoint.
+/// The motion of a law with memory has the order that the law's own update allows: a Maxwell element whose
+/// [`System::accept`] knows u and v at the end of a step is of order 2 at most, and methods of order 1 keep their
+/// order. A method that sets [`Trial::dt`] to 0 within a step would be of order 1. Internal variables are part of a
+/// checkpoint.
 pub fn a_maxwell_element_relaxes_as_in_closed_form(make: &dyn Fn() -> Boxed) {
     let system = Maxwell::new();
     let properties = make().properties();
@@ -242,9 +241,9 @@ impl ForceLaw for Counting {
     }
 }
 
-/// A system is notified once of each accepted step, or substep, one by one and in batches; nothing but its own
-/// [`System::accept`] changes the internal variables, and each trial has those of the last accepted state and says how
-/// long ago that was.
+/// A system is notified once of each accepted step or substep, in single steps and in batches. Only its own
+/// [`System::accept`] changes the internal variables. Each trial has those of the last accepted state and the time
+/// since then.
 pub fn each_step_is_accepted_once(make: &dyn Fn() -> Boxed) {
     let needs = make().properties().needs;
     for shows_matrices in [true, false] {

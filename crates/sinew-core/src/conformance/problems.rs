@@ -124,9 +124,8 @@ pub(super) fn loaded_chain(damping: Dampers, masses: [f64; 2], loads: Vec<Load>)
 /// The component of the body in which one of its nodes is fixed.
 pub(super) const HELD: usize = 7;
 
-/// Three nodes in space, each bound to the ground and to both others by springs in no special
-/// direction, so that all blocks of K are full; the last is fixed in y and keeps that component, which
-/// feels no force.
+/// Three nodes in space, each connected to the ground and to both others by springs in no special direction, so that
+/// all blocks of K are full; the last is fixed in y and keeps that component, on which no force acts.
 fn body(damping: Dampers, force: f64) -> Problem {
     let directions = [[0.6, 0.64, 0.48], [-0.36, 0.48, 0.8], [0.8, -0.36, 0.48]];
     let outer = |n: [f64; 3]| move |i: usize, j: usize| n[i] * n[j];
@@ -257,7 +256,7 @@ pub(super) fn advance(
     }
 }
 
-/// Gives forces that must be taken.
+/// Sets forces; they must be accepted.
 pub(super) fn give(inputs: &mut Inputs, t: f64, forces: &[(u32, f64)]) {
     if let Err(error) = inputs.set_forces(t, forces) {
         unreachable!("the forces are sound: {error}");

@@ -7,7 +7,7 @@ use crate::{
     StepReport, System, Verdict, simulate_under,
 };
 
-/// Records every `every`th state and the watched values of every step; stops at a step.
+/// Records every `every`th state and the watched values of every step; stops the run at a step.
 pub(super) struct Keeper {
     pub(super) every: usize,
     pub(super) stop_at: Option<usize>,
@@ -56,7 +56,7 @@ impl Recorder for Keeper {
     }
 }
 
-/// Takes steps one by one; the state before and after each.
+/// Takes steps one by one; returns the states before and after each.
 pub(super) fn singly(
     integrator: &mut dyn Integrator,
     system: &dyn System,
@@ -94,9 +94,9 @@ fn run(
     }
 }
 
-/// Takes steps one by one, in one batch, under a recorder that wants every third state and
-/// watches every step, and stopped by one and continued from a clone with a fresh integrator; requires
-/// the same bits and the same work of all of them. Returns the states before and after each step.
+/// Takes steps one by one, in one batch, under a recorder that wants every third state and watches every step, and in a
+/// run that a recorder stops and a fresh integrator continues from a clone. Requires the same bits and the same work of
+/// all of them. Returns the states before and after each step.
 pub(super) fn in_every_way(
     make: &dyn Fn() -> Boxed,
     system: &dyn System,

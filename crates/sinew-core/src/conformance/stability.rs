@@ -64,10 +64,9 @@ pub fn energy_behaves_as_declared(make: &dyn Fn() -> Boxed) {
     }
 }
 
-/// Just below the declared stable step motion stays bounded, just above it grows, be it slowly; where the
-/// method declares itself stable at any step, it stays bounded at three and at a thousand times
-/// 2/omega_max. Only a method that declares so may refuse the latter, by
-/// [`SetupError::Unresolved`] and its own name.
+/// The motion stays bounded just below the declared stable step; just above it the motion grows, however slowly. A
+/// method that declares itself stable at any step stays bounded at three and at a thousand times 2/omega_max. Only such
+/// a method may refuse the latter, by [`SetupError::Unresolved`] and its own name.
 pub fn stable_step_is_as_declared(make: &dyn Fn() -> Boxed) {
     for damping in [Dampers::NONE, Dampers::MASS] {
         for problem in problems(damping, 0.0) {
@@ -78,9 +77,9 @@ pub fn stable_step_is_as_declared(make: &dyn Fn() -> Boxed) {
 
 /// Steps after which growth is judged.
 const BLOCK: usize = 1000;
-/// Growth of the mean square of the displacement that no bounded motion has.
+/// Growth of the mean square of the displacement that no bounded motion reaches.
 const GROWN: f64 = 2.0;
-/// Displacement over the largest of the exact motion from which on nothing more is learned.
+/// Displacement, over the largest of the exact motion, at which the result is certain.
 const FAR: f64 = 1e3;
 
 /// A motion in steps of one length.

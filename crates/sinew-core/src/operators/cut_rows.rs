@@ -9,7 +9,7 @@ use crate::derived::Derived;
 use crate::revision::Revision;
 
 /// The rows and masses that a cut changed, of existing cells and of appended ones, for
-/// [`LinearOperators::take_cut_rows`]. Reused, it allocates nothing.
+/// [`LinearOperators::take_cut_rows`]. A reused object allocates nothing.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct CutRows {
     rows: RowsOfCells,
@@ -61,15 +61,15 @@ impl LinearOperators {
         matrices.mass.reserve(layers * cells);
     }
 
-    /// Takes over rows of a body that was cut, and appends those of new cells, at the cost of these rows while no other
-    /// clone shares the matrices, and of a copy otherwise. These are other matrices afterwards, which know no earlier
-    /// revision, with bounds by elements as before, which no cut passes. Loads are carried over by
-    /// [`LinearOperators::change_loads`]. Returns true if all rows were laid out again, which reserves space for
-    /// `spare_cells` more than these.
+    /// Takes over rows of a body that was cut, and appends those of new cells. The cost is that of these rows if no
+    /// other clone shares the matrices, and that of a copy otherwise. Afterwards they are different matrices with a new
+    /// revision. Their element bounds are unchanged, because no cut exceeds them. [`LinearOperators::change_loads`]
+    /// carries over the loads. Returns true if all rows were laid out again; this reserves space for `spare_cells` more
+    /// cells.
     ///
     /// # Errors
-    /// [`OperatorError`] if the rows fit neither each other nor the matrix, or where damping has a matrix of its own;
-    /// nothing is changed then.
+    /// [`OperatorError`] if the rows do not fit each other or the matrix, or if damping has its own matrix; nothing is
+    /// changed then.
     pub fn take_cut_rows(
         &mut self,
         cut: &CutRows,
@@ -105,7 +105,8 @@ impl LinearOperators {
         Ok(laid_out)
     }
 
-    /// Lets `change` carry the entries (degree of freedom, N) of each load, by its number, over a cut. They remain the same loads.
+    /// Lets `change` transfer the entries (degree of freedom, N) of each load, given by its number, to the cut body.
+    /// The loads keep their identity.
     pub fn change_loads(&mut self, mut change: impl FnMut(usize, &mut Vec<(u32, f64)>)) {
         for (number, load) in Arc::make_mut(&mut self.loads).iter_mut().enumerate() {
             change(number, &mut load.entries);

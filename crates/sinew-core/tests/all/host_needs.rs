@@ -1,4 +1,4 @@
-//! Promises of a batch to a machine with a memory of its own: what the host reads and changes, told beforehand.
+//! Promises of a batch to a machine with its own memory: the parts that the host reads and changes, stated in advance.
 
 use std::cell::RefCell;
 
@@ -62,7 +62,7 @@ impl Contact for Stop {
     fn add_forces(&self, _: &State, _: bool, _: &mut [f64]) {}
 }
 
-/// The springs, with a stop or not, of which each step is read or not.
+/// The springs, with or without a stop; the system reads each step or not.
 struct Body {
     springs: ForceModel<Springs>,
     stop: Option<Stop>,
@@ -97,8 +97,7 @@ impl System for Body {
     }
 }
 
-/// Symplectic Euler in a memory of its own. A sparing one shows the host what the batch has asked for, and nothing
-/// else.
+/// Symplectic Euler with its own memory. A sparing one shows the host only what the batch requested.
 struct Device {
     spares: bool,
     a: Vec<f64>,
@@ -193,7 +192,7 @@ impl Integrator for Device {
     }
 }
 
-/// Records every so many states and samples some degrees of freedom.
+/// Records every `every`th state and samples some degrees of freedom.
 struct Seen {
     every: usize,
     dofs: Vec<u32>,

@@ -86,7 +86,7 @@ fn run(steps: usize, divergence_limit: f64) -> Run {
     }
 }
 
-/// The states before and after each step, taken one by one without looking.
+/// The states before and after each step, taken one by one without a recorder.
 fn singly(system: &ForceModel<Springs>, steps: usize) -> Vec<State> {
     let (mut method, mut state) = (Method::default(), start());
     let mut states = vec![state.clone()];
@@ -104,7 +104,7 @@ enum Told {
     State(f64),
 }
 
-/// Wants every so many states and some degrees of freedom; stops or fails at a time.
+/// Requests every `every`th state and some degrees of freedom; stops or fails at a time.
 struct Wishes<'a> {
     every: usize,
     dofs: Vec<u32>,
@@ -359,7 +359,7 @@ impl System for Remembering {
     }
 }
 
-/// Also the last step of a run, after which nothing is evaluated.
+/// The last step of a run, after which nothing is evaluated, is also included.
 #[test]
 fn a_state_that_the_system_does_not_accept_ends_the_batch_with_the_reason() {
     let system = Remembering {

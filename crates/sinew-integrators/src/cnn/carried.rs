@@ -1,4 +1,4 @@
-//! Bodies that supports in motion carry.
+//! Bodies that are carried by moving supports.
 
 use sinew_cnn::equilibrium;
 use sinew_core::vectors::add_scaled;
@@ -7,13 +7,13 @@ use sinew_core::{LinearOperators, LoadTime, Ramp};
 /// Relative residual of forces at which a carried displacement counts as found.
 const FOUND: f64 = 1e-12;
 
-/// The displacements by which supports in motion carry a body without inertia, `K g = -K_p d`: the mass that a
-/// stabilising matrix adds must not brake them.
+/// The quasi-static displacements of a body due to moving supports, without inertia: `K g = -K_p d`. The mass that a
+/// stabilising matrix adds must not slow them down.
 #[derive(Debug, Default)]
 pub(super) struct Carried {
     courses: Vec<Course>,
-    /// The change (m/s) of the carried velocity in a step, and the impulse (N s) of inertia and centred damping by
-    /// it.
+    /// The change (m/s) of the carried velocity in a step, and the impulse (N s) that it causes by inertia and centred
+    /// damping.
     pub(super) change: Vec<f64>,
     pub(super) impulse: Vec<f64>,
 }
@@ -61,9 +61,9 @@ impl Carried {
         }
     }
 
-    /// Finds the change of the carried velocity from before the time `t` (s) to after it, in steps of `dt` (s), or in
-    /// the first step that velocity itself; returns true if there is any. `centred` is the share of the damping not
-    /// proportional to mass that the stabilising matrix contains.
+    /// Finds the change of the carried velocity across the time `t` (s), in steps of `dt` (s), or in the first step
+    /// that velocity itself; returns true if it is not zero. `centred` is the share of the damping not proportional to
+    /// mass that the stabilising matrix contains.
     pub(super) fn look(
         &mut self,
         operators: &LinearOperators,

@@ -4,16 +4,16 @@ use sinew_cnn::Deflation;
 use sinew_core::vectors::norm;
 use sinew_core::{AllShown, Contact, Meeting, State};
 
-/// Most improvements of the response in a step.
+/// Largest number of improvements of the response in a step.
 const MOST_ROUNDS: usize = 40;
 
 /// Residual of the rigid motions' equation, relative to its terms, at which they count as found.
 const FOUND: f64 = 1e-11;
 
-/// The same if it falls no further because of rounded positions.
+/// The same if rounded positions prevent a smaller residual.
 const ROUNDED: f64 = 1e-7;
 
-/// Relative change of a response by which slopes are found.
+/// Relative change of a response for slopes by differences.
 const NUDGE: f64 = 1e-7;
 
 /// Halvings of an improvement, and steps of the alternating minimisation if none helps.
@@ -28,13 +28,13 @@ const LOWERED: f64 = 1e-4;
 
 /// Finds the forces lambda of contact in a step of `P (v+ - v-) = dt F` with the matrix P of a [`Deflation`], `P^-1 = B^-1 + U G^-1 U'`.
 ///
-/// With the rigid motions' response `c = G^-1 U' lambda` known, contact pushes cells from `v + U c` by their own
-/// blocks B alone, as it does in other methods. As `U' lambda = R'S d`, d being the change of their velocities by it,
-/// c is the root of `f(c) = R'S d(c) - G c`: a few numbers for each part. f is linear but for contacts that begin,
-/// end, stick or slip, and Newton's method finds c in a few rounds, with slopes by differences (Qi and Sun, Math.
-/// Program. 58, 1993). If none of its steps helps, `c + f` is followed: an alternating minimisation over cells and
-/// rigid motions, which converges if contact is the minimum of a convex function. So all laws of contact hold as in
-/// one block for each cell.
+/// With the rigid motions' response `c = G^-1 U' lambda` known, contact acts on cells from `v + U c` by their diagonal
+/// blocks B alone, as in other methods. Since `U' lambda = R'S d`, d being the change of the cells' velocities by
+/// contact, c is the root of `f(c) = R'S d(c) - G c`: a few numbers for each part. f is linear except for contacts that
+/// begin, end, stick or slip, and Newton's method finds c in a few rounds, with slopes by differences (Qi and Sun,
+/// Math. Program. 58, 1993). If none of its steps helps, c is replaced by `c + f`: an alternating minimisation over
+/// cells and rigid motions, which converges if contact is the minimum of a convex function. So all laws of contact hold
+/// as with one block for each cell.
 #[derive(Debug, Default)]
 pub(super) struct CoupledContact {
     /// u and v of contact's cells without the response, three components each.
@@ -44,7 +44,7 @@ pub(super) struct CoupledContact {
     rows: Vec<Option<Row>>,
     /// Index of a cell among those of contact, plus one; 0 for other cells.
     place_of: Vec<u32>,
-    /// c, and f there.
+    /// c, and f at c.
     answer: Vec<f64>,
     left: Vec<f64>,
     /// c and f of the last evaluation of contact.
@@ -73,7 +73,7 @@ struct Row {
 #[derive(Clone, Copy)]
 pub(super) struct Coupled<'a> {
     pub(super) contact: &'a dyn Contact,
-    /// With the blocks B and no acceleration.
+    /// The step, with the blocks B and no acceleration.
     pub(super) meeting: &'a Meeting<'a>,
     pub(super) deflation: &'a Deflation,
     /// History variables of contact before the step.
@@ -219,7 +219,7 @@ impl CoupledContact {
         }
     }
 
-    /// Finds the improvement by the slopes; `None` if they are singular.
+    /// Finds the improvement from the slopes; `None` if they are singular.
     fn find_step(&mut self) -> Option<()> {
         let count = self.active.len();
         for (step, at) in self.step.iter_mut().zip(&self.active) {

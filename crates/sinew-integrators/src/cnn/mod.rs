@@ -1,5 +1,5 @@
-//! The cellular network as an integrator: one sweep of its templates a step, and a saturated
-//! output; and sweeps over nonlinear tissue that never raise its energy.
+//! The cellular network as an integrator: one sweep of its templates per step, and a saturated output; and sweeps over
+//! nonlinear tissue that never raise its energy.
 
 mod carried;
 mod coupled_contact;

@@ -13,7 +13,7 @@ pub(super) const SATURATION: OptionHelp = OptionHelp {
     ..GuardOption::HELP
 };
 
-/// The option `saturation`; its "auto" is the guard's.
+/// The option `saturation`; the value "auto" belongs to the guard.
 pub(super) fn saturation(options: &Options, integrator: &str) -> Result<Saturation, OptionError> {
     let read = |value: &OptionValue| match value.word() {
         Some("off") => Some(Saturation::OFF),

@@ -10,9 +10,9 @@ use crate::explicit_method::prelude::*;
 /// `y += dt f(x)`, `x += dt (A y - C x + B F(t))`, both from the old x and y, with the component-wise
 /// saturation f (Zhang, Zhong, Smith and Gu 2017, Eqs. 5-7).
 ///
-/// This order of the two halves is the only one that fits the paper's results. While nothing
-/// saturates it is forward Euler to the last bit; beyond forward Euler's stable step the clamp
-/// turns the blow-up into a limit cycle of amplitude about (4/pi) Q sqrt(dt m/d) that never settles.
+/// This order of the two halves is the only one that fits the paper's results. While nothing saturates it is forward
+/// Euler to the last bit; beyond forward Euler's stable step the clamp turns the divergence into a limit cycle of
+/// amplitude about (4/pi) Q sqrt(dt m/d) that never settles.
 #[derive(Debug, Default)]
 pub struct Cnn(pub Saturation);
 
@@ -34,7 +34,7 @@ impl Explicit for Cnn {
         Properties::of_order(1, Needs::Forces, EnergyBehaviour::Grows)
     }
 
-    /// Forward Euler's stable step: the clamp bounds the motion beyond it without making it right.
+    /// Forward Euler's stable step: the clamp bounds the motion beyond it without making it accurate.
     fn stable_step(&self, spectrum: &Spectrum) -> StableStep {
         ForwardEuler.stable_step(spectrum)
     }

@@ -1,4 +1,4 @@
-//! The steps of `cnn-stabilised` if no program expresses the solution with P.
+//! The steps of `cnn-stabilised` if no program can express the solution with P.
 
 use sinew_cnn::{CellBlocks, Deflation, Inverse, Stabiliser};
 use sinew_core::vectors::add_scaled;
@@ -12,11 +12,11 @@ use super::carried::Carried;
 use super::coupled_contact::{Coupled, CoupledContact};
 use crate::StepByHand;
 
-/// Residual of the contact iteration above which a remark is made.
+/// Residual of the contact iteration above which a remark is reported.
 const SETTLED: f64 = 1e-6;
 
-/// The step of [`super::CnnStabilised`] with sums over all cells of a part, with supports in motion, or with an
-/// iteration in the order of the cells.
+/// The step of [`super::CnnStabilised`] with sums over all cells of a part, with moving supports, or with an iteration
+/// in the order of the cells.
 pub struct SolvedSteps {
     inverse: Inverse,
     /// Share of the damping that P does not contain.

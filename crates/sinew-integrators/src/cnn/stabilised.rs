@@ -24,13 +24,13 @@ use crate::{
 /// `P v_half = M v0 + dt/2 (F(0) - K u0 - D_lag v0)`, D_lag being the part of D that is not in P: the
 /// network's sweep with `B = P^-1` in place of `M^-1`.
 ///
-/// With `P > dt/2 D + dt^2/4 K`, `E = v'(P - dt/2 D - dt^2/4 K) v/2 + u' K u/2`, u the mean of two
-/// displacements, falls by `dt v' D v` a step: stable at any step, with the exact equilibrium
-/// K u = F. (Multiply the step by the mean of both velocities; the products with K telescope. The
-/// idea of adding stiffness to the mass is that of Chen and Ricles, J. Eng. Mech. 134, 2008, and of
-/// mass scaling.) Parts that may move as rigid bodies do so with their own mass ([`Stabiliser::sparing`]); elastic motions are slowed down, and set-up computes by how
-/// much the slowest one is ([`Stabiliser::slowing`]). Below .99 of central difference's limit nothing has to be added to M. Beyond it, as
-/// the inner iteration grows, it becomes Newmark's method with beta = s/4.
+/// With `P > dt/2 D + dt^2/4 K`, `E = v'(P - dt/2 D - dt^2/4 K) v/2 + u' K u/2`, u the mean of two displacements, falls
+/// by `dt v' D v` a step: stable at any step, with the exact equilibrium K u = F. (Multiply the step by the mean of
+/// both velocities; the products with K telescope. The idea of adding stiffness to the mass is that of Chen and Ricles,
+/// J. Eng. Mech. 134, 2008, and of mass scaling.) Parts that may move as rigid bodies do so with their own mass
+/// ([`Stabiliser::sparing`]). Elastic motions are slowed down; set-up computes the factor for the slowest one
+/// ([`Stabiliser::slowing`]). Below .99 of central difference's limit nothing has to be added to M. Beyond it, with
+/// more sweeps of the inner iteration, the method becomes Newmark's method with beta = s/4.
 ///
 /// Order 2 undamped and with mass damping. With stiffness damping or dashpots:
 ///
@@ -59,8 +59,8 @@ impl CnnStabilised {
         }
     }
 
-    /// The matrix that was added to M for the current system and step; `None` before set-up and if
-    /// none was needed.
+    /// The matrix that was added to M for the current system and step; `None` before set-up and if no matrix was
+    /// needed.
     #[must_use]
     pub fn stabiliser(&self) -> Option<&Stabiliser> {
         self.stabiliser.as_ref()
@@ -73,7 +73,7 @@ const INNER: &str = "inner";
 const GAMMA: &str = "gamma";
 const S: &str = "s";
 
-/// Most inner iterations: far more than any can use.
+/// Largest number of inner iterations: far more than any run can use.
 const MOST_SWEEPS: u32 = 10_000;
 
 const INNER_OPTION: OptionHelp = OptionHelp {
@@ -134,8 +134,8 @@ impl Method for CnnStabilised {
         plain.chain(Self::variants()).collect()
     }
 
-    /// The energy that the method conserves. Where nothing is added to M it is central difference and has
-    /// no facts.
+    /// The energy that the method conserves. If nothing is added to M the method is central difference and has no
+    /// facts.
     fn conserved_energy(facts: &[Fact]) -> ConservedEnergy {
         match facts.iter().find(|fact| fact.name == DAMPING_SHARE) {
             None => ConservedEnergy::CentralDifference,
@@ -273,7 +273,7 @@ impl Scheme for CnnStabilised {
     }
 }
 
-/// The step as a program; `None` if none expresses how P is solved with.
+/// The step as a program; `None` if no program can express the solution with P.
 fn program(stabiliser: &Stabiliser, physics: &Physics, dt: f64) -> Option<Program> {
     let (u, v, a) = (Register::U, Register::V, Register::A);
     let mut program = Program::new(VelocityTime::MiddleOfStep);

@@ -7,13 +7,12 @@ use crate::limits::lagged;
 /// `u += dt v+`, where the velocity stays half a step behind the displacement and D_rest is the
 /// damping other than alpha M (Belytschko, Liu and Moran, Nonlinear Finite Elements, section 6.2).
 ///
-/// Started with `v_half = (1 - alpha dt/2) v0 + dt/2 a/(1 + alpha dt/2)`, a being the acceleration
-/// without mass damping: to second order in dt this is nearer to the Taylor series of the motion
-/// than damping all of it implicitly or none.
+/// Started with `v_half = (1 - alpha dt/2) v0 + dt/2 a/(1 + alpha dt/2)`, a being the acceleration without mass
+/// damping: to second order in dt this is nearer to the Taylor series of the motion than damping that is fully implicit
+/// or absent.
 ///
-/// Order 2 with mass damping; other damping lags by half a step, which lowers it to 1. Loads that
-/// jump or have kinks enter by their mean about each instant ([`sinew_core::LoadTime::around`]) and
-/// cost no order.
+/// Order 2 with mass damping; other damping lags by half a step, which lowers the order to 1. Loads that jump or have
+/// kinks enter by their mean about each instant ([`sinew_core::LoadTime::around`]) and do not lower the order.
 #[derive(Debug, Default)]
 pub struct CentralDifference;
 

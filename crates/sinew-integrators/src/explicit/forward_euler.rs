@@ -17,8 +17,8 @@ impl Explicit for ForwardEuler {
         Properties::of_order(1, Needs::Forces, EnergyBehaviour::Grows)
     }
 
-    /// The limit `2 zeta/w = beta + alpha/w^2` where the fastest mode swings, `2/|lambda|` where it creeps;
-    /// slow modes under mass damping creep with roots up to alpha.
+    /// The limit `2 zeta/w = beta + alpha/w^2` if the fastest mode oscillates, `2/|lambda|` if it creeps; slow modes
+    /// under mass damping creep with roots up to alpha.
     fn stable_step(&self, spectrum: &Spectrum) -> StableStep {
         let (w2, alpha) = (spectrum.omega_max.powi(2), spectrum.mass_damping);
         let d = alpha + spectrum.damping_max;

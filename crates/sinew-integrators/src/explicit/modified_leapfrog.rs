@@ -8,7 +8,7 @@ use crate::limits::lagged;
 /// 1986): two sweeps a step, order 4, stable up to 3.46/omega_max. Mass damping enters at the
 /// middle of the step and lowers the order to 2 with a small constant; other damping lags.
 ///
-/// The correction takes loads as constant, so that loads that change cost order 2.
+/// The correction assumes constant loads, so that changing loads lower the order to 2.
 ///
 /// Started from the Taylor series: `v_half = v0 + dt/2 a0 + dt^2/6 j0 + dt^3/24 q0` with
 /// `a0 = M^-1 (F - K u0 - D v0)`, `j0 = M^-1 (F' - K v0 - D a0)`, `q0 = -M^-1 K a0`.
@@ -25,8 +25,8 @@ impl Explicit for ModifiedLeapfrog {
     }
 
     /// `sqrt 12/w` undamped: `dt^2 w^2 (1 - dt^2 w^2/12)` reaches its largest value, 3, at `dt^2 w^2 = 6` and returns
-    /// to 0 at 12. Lagging damping d takes from the margin below 4 that is left at 6, and beyond that from the step:
-    /// stable while `2 d dt` and that value together stay below 4.
+    /// to 0 at 12. Lagging damping d reduces the margin below 4 that is left at 6, and beyond that the step: stable
+    /// while `2 d dt` and that value together stay below 4.
     fn stable_step(&self, spectrum: &Spectrum) -> StableStep {
         let (w, d) = (spectrum.omega_max, spectrum.damping_max);
         let with_damping = (1.0 / (2.0 * d)).max(lagged(w, d));

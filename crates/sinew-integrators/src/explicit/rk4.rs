@@ -5,8 +5,8 @@ use crate::limits::within_region_of;
 
 /// The classical fourth-order method (Kutta 1901) on (u, v): four sweeps a step.
 ///
-/// Order 4 also while loads change smoothly. A load that jumps or has a kink inside a step is
-/// replaced there by a line of the same impulse and first moment, which costs order 2 at most.
+/// Order 4 also while loads change smoothly. A load that jumps or has a kink inside a step is replaced there by a line
+/// of the same impulse and first moment, which lowers the order to 2 at worst.
 #[derive(Debug, Default)]
 pub struct Rk4;
 

@@ -1,4 +1,4 @@
-//! `substeps`: a step cut into equal parts.
+//! `substeps`: division of a step into equal substeps.
 
 use super::known_step::{KEPT, Known, followed, wave_at_rest};
 use sinew_cnn::Program;
@@ -12,19 +12,19 @@ use sinew_core::{
 use crate::stiffening::stiffened_element;
 use crate::{OptionDefault, OptionHelp, OptionKind, Stepper};
 
-/// Share of the stable step that automatic sub-steps stay below.
+/// Share of the stable step that automatic substeps stay below.
 const MARGIN: f64 = 0.9;
 
-/// Most parts that can be asked for: a run is interrupted between steps, never in the midst of one.
+/// Largest number of substeps that can be requested: a run can be interrupted between steps, never within one.
 const MOST_FIXED: u32 = 10_000;
 
-/// Number of parts into which a step is cut.
+/// Number of substeps of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Substeps {
-    /// This many parts, always.
+    /// A fixed number of substeps.
     Fixed(u32),
-    /// The fewest parts that are no longer than nine tenths of the stable step: that of the matrices, or of a law's
-    /// current stiffness, which is checked again and again.
+    /// The fewest substeps that are no longer than nine tenths of the stable step: that of the matrices, or of a law's
+    /// current stiffness, which is checked repeatedly.
     Auto,
 }
 
@@ -43,17 +43,17 @@ impl Substeps {
         shown_default: None,
     };
 
-    /// The fewest equal parts (from 1 on) of a step of `dt` (s) that are no longer than nine tenths
-    /// of `limit` (s), which is above 0; at most `u32::MAX`.
+    /// The fewest equal substeps (from 1 on) of a step of `dt` (s) that are no longer than nine tenths of `limit` (s),
+    /// which is above 0; at most `u32::MAX`.
     #[must_use]
     pub fn parts_of(dt: f64, limit: f64) -> u32 {
         Self::parts(dt, limit).min(f64::from(u32::MAX)) as u32
     }
 
-    /// The same for a method, provided that the parts are stable.
+    /// The same for a method, provided that the substeps are stable.
     ///
     /// # Errors
-    /// [`SetupError::Unresolved`] if they are not, naming the option that asked for them.
+    /// [`SetupError::Unresolved`] if they are not, naming the option that requested them.
     pub(super) fn stable_parts_of(
         integrator: &'static str,
         dt: f64,
@@ -73,8 +73,8 @@ impl Substeps {
         })
     }
 
-    /// Length (s) of the longest equal parts of a time of `length` (s) that are no longer than nine
-    /// tenths of `limit` (s), which is above 0, in any number.
+    /// Length (s) of the longest equal substeps of a time of `length` (s) that are no longer than nine tenths of
+    /// `limit` (s), which is above 0, for any number of substeps.
     #[must_use]
     pub fn longest_part(length: f64, limit: f64) -> f64 {
         length / Self::parts(length, limit)
@@ -85,7 +85,7 @@ impl Substeps {
         (dt / (MARGIN * limit) - 1e-9).ceil().max(1.0)
     }
 
-    /// Takes the option out of the others; `None` where it is absent.
+    /// Removes the option from the others and returns it; `None` if it is absent.
     ///
     /// # Errors
     /// [`OptionError::Value`] for anything but a whole number from 1 to 10000 or "auto".
@@ -102,64 +102,66 @@ impl Substeps {
     }
 }
 
-/// The next whole number of parts, from 1 on.
+/// The next whole number of substeps, from 1 on.
 pub(super) fn whole(parts: f64) -> u32 {
     parts.ceil().clamp(1.0, f64::from(u32::MAX)) as u32
 }
 
-/// Parts after which damping that is not by mass alone, and the stable step of a law that tells no tangent, are found
-/// again. Until then damping is taken to grow with the stiffness.
+/// Number of substeps after which two things are computed again: damping that is not only mass-proportional, and the
+/// stable step of a law without tangent. Until then damping is assumed to grow with the stiffness.
 const PARTS_BETWEEN_LOOKS: u32 = 40;
 
-/// Parts after which the fastest motion tells at the latest whether the stable step has shrunk.
+/// Largest number of substeps between two checks, by the fastest motion, of a shrinking stable step.
 const PARTS_BETWEEN_GLANCES: u32 = 4;
 
-/// Growth of the fastest wave's square up to which the stable step is followed by it; with more a look tells.
+/// Growth of the fastest wave's square up to which the stable step is updated from it; beyond it a full check is made.
 const MOST_FOLLOWED: f64 = 1.5;
 
-/// Parts after which a look tells again, where the wave alone, by what it was at rest, would allow longer ones than are taken.
+/// Number of substeps after which a full check is made again, if the wave alone, by its value at rest, would allow
+/// longer substeps than the current ones.
 const PARTS_BETWEEN_DOUBTS: u32 = 24;
 
-/// The same while that wave is as it was at the last look, up to [`SAME`].
+/// The same while that wave is as it was at the last full check, up to [`SAME`].
 const PARTS_BETWEEN_DOUBTS_AT_REST: u32 = 5 * PARTS_BETWEEN_DOUBTS;
 
-/// Change of the fastest wave's square that tells nothing new, as a factor.
+/// Change of the fastest wave's square that gives no new information, as a factor.
 const SAME: f64 = 1.1;
 
-/// Steps after which fewer parts are taken, as many as these needed at most: each change of the step excites the fastest motions a little.
+/// Number of steps after which fewer substeps are taken, as many as these steps needed at most: each change of the step
+/// excites the fastest motions a little.
 const STEPS_UNTIL_FEWER: u32 = 24;
 
-/// Products of a look after others, until their estimate settles.
+/// Number of products of a full check after the first one, until their estimate settles.
 const PRODUCTS_OF_LOOK: u64 = 6;
 
-/// Most by which the stable step is expected to shrink until the next glance.
+/// Largest factor by which the stable step is expected to shrink until the next quick check.
 const MOST_SHRINKING: f64 = 2.0;
 
-/// Most motion of a cell against a neighbour in a part, as a share of its size: with more, strains pass by within a part, and energy comes from
-/// nothing although each part is stable.
+/// Largest motion of a cell relative to a neighbour in a substep, as a share of its size: beyond it strains change too
+/// much within a substep, and energy is created although each substep is stable.
 const MOST_MOTION: f64 = 0.1;
 
-/// Largest number of parts into which the current stiffness may cut what takes two parts at rest: where it takes more, something is wrong, and a
-/// run would not end.
+/// Largest number of substeps for a step that takes two at rest, by the current stiffness: if it needs more, something
+/// is wrong, and a run would not end.
 const MOST_PARTS: u32 = 1000;
 
-/// An integrator that takes several equal steps for each one asked of it.
+/// An integrator that takes several equal steps for each requested step.
 pub struct Substepped {
     inner: Box<dyn Stepper>,
     substeps: Substeps,
-    /// Parts into which each part is cut once more.
+    /// Number of equal substeps into which each substep is divided further.
     finer: u32,
     parts: Option<(Revision, f64, u32)>,
-    /// The stable step at rest and the fastest wave there, of a law that tells it.
+    /// The stable step at rest and the fastest wave there, if the law provides it.
     rest: Option<(Revision, Known)>,
     /// A force (N).
     room: Vec<f64>,
-    /// The state before the step under way.
+    /// The state before the step in progress.
     kept: State,
 }
 
 impl Substepped {
-    /// Cuts the steps of `inner`.
+    /// Divides the steps of `inner`.
     #[must_use]
     pub fn new(inner: Box<dyn Stepper>, substeps: Substeps) -> Self {
         Self {
@@ -173,10 +175,11 @@ impl Substepped {
         }
     }
 
-    /// Parts, at rest, of what is cut by a law's current stiffness: with one, tissue that is a little stiffer would take twice as many.
+    /// Number of substeps at rest of a step that is divided by a law's current stiffness: with one, tissue that is a
+    /// little stiffer would take twice as many.
     pub const PARTS_AT_REST: f64 = 2.0;
 
-    /// The stable step of what is cut, by that of its parts.
+    /// The stable length of a divided step, from that of its substeps.
     fn of_whole(&self, of_part: StableStep) -> StableStep {
         match (of_part, self.substeps) {
             (StableStep::UpTo(limit), Substeps::Fixed(parts)) => {
@@ -243,12 +246,12 @@ impl Substepped {
     }
 }
 
-/// Parts by the current stiffness of a law, of what would take two at rest. They are a function of the state alone, in
-/// which they are stored: after each step, and after four parts of a longer one, the fastest wave tells whether the stable
-/// step may have shrunk ([`ElasticLaw::fastest_wave`]); where it may, or for laws that do not tell it, products of the
-/// tangent bring the estimate of the fastest motion up to date ([`follow_largest_eigenvalue`]), about two forces each. A
-/// step that turns out to be too long for the stiffness at its end, or that the law refuses, is taken again in shorter
-/// parts, from the state before it: contact, memory and what it made of the energy are undone.
+/// Number of substeps by the current stiffness of a law, for a step that takes two at rest. It is a function of the
+/// state alone, in which it is stored. After each step, and after four substeps of a longer one, the fastest wave shows
+/// whether the stable step may have shrunk ([`ElasticLaw::fastest_wave`]). If so, or for laws without this information,
+/// products of the tangent update the estimate of the fastest motion ([`follow_largest_eigenvalue`]), about two forces
+/// each. A step that is too long for the stiffness at its end, or that the law refuses, is taken again in shorter
+/// substeps from the state before it: contact, history variables and its effects on the energy are undone.
 impl Substepped {
     fn goes_by_current_stiffness(&self, system: &dyn System) -> bool {
         self.substeps == Substeps::Auto && system.as_linear().is_none()
@@ -270,7 +273,7 @@ impl Substepped {
         Ok(())
     }
 
-    /// The cut of the first step.
+    /// The division of the first step.
     fn first_cut(
         &mut self,
         batch: &mut Batch<'_>,
@@ -307,7 +310,7 @@ impl Substepped {
         Err(self.too_stiff(batch, state))
     }
 
-    /// Takes the next step, and again in more parts as long as it turns out to be too long.
+    /// Takes the next step, and repeats it in more substeps as long as it is too long.
     fn take_one(
         &mut self,
         batch: &mut Batch<'_>,
@@ -339,7 +342,7 @@ impl Substepped {
         }
     }
 
-    /// The end of a motion for which the largest number of parts is not enough.
+    /// Ends a motion for which the largest number of substeps is not enough.
     fn end(
         &mut self,
         batch: &Batch<'_>,
@@ -380,7 +383,8 @@ impl Substepped {
         }
     }
 
-    /// Takes a step in this cut, and cuts the one after it; the parts that the step itself needed.
+    /// Takes a step with this division, and divides the one after it; returns the number of substeps that the step
+    /// itself needed.
     fn try_in(
         &mut self,
         mut cut: StepCut,
@@ -417,7 +421,7 @@ impl Substepped {
         Ok(parts)
     }
 
-    /// The fewest parts of a step, up to `parts` parts of this length (s), that are stable by what is known.
+    /// The fewest substeps of a step, up to `parts` substeps of this length (s), that are stable by current knowledge.
     fn fewest_parts(&self, cut: &StepCut, parts: u32, part: f64) -> u32 {
         let by_look = Known::of(cut).limit_at(cut.seen);
         let by_rest = self.rest.map(|(_, rest)| rest.limit_at(cut.seen));
@@ -429,7 +433,8 @@ impl Substepped {
         Substeps::parts_of(step, limit).min(parts)
     }
 
-    /// Checks the stiffness after some of `parts` parts, and updates the cut; the parts that the step needed.
+    /// Checks the stiffness after some of `parts` substeps, and updates the division; returns the number of substeps
+    /// that the step needed.
     fn parts_needed(
         &mut self,
         cut: &mut StepCut,
@@ -467,7 +472,7 @@ impl Substepped {
         Ok(parts)
     }
 
-    /// The fastest wave in a state, where it is what stable steps go by until the next look.
+    /// The fastest wave in a state, if it determines stable steps until the next full check.
     fn wave(&self, batch: &Batch<'_>, state: &State) -> Result<Option<f64>, StepError> {
         let Some(law) = followed(batch.system()) else {
             return Ok(None);
@@ -480,7 +485,7 @@ impl Substepped {
             })
     }
 
-    /// True if parts of this length (s) stay stable by what the last look and the fastest wave tell.
+    /// True if substeps of this length (s) stay stable according to the last full check and the fastest wave.
     fn is_followed(&self, cut: &StepCut, wave: f64, part: f64) -> bool {
         let rest = self.rest.map(|(_, rest)| rest);
         let by_rest = || rest.is_some_and(|rest| rest.allows(wave, part));
@@ -496,7 +501,8 @@ impl Substepped {
             && (cut.taken < until_doubt || by_rest())
     }
 
-    /// The largest motion of a cell against a neighbour since the step began, over its size; 0 where it is surely `within` that, as in most steps.
+    /// The largest motion of a cell relative to a neighbour since the step began, over its size; 0 if it is surely
+    /// `within` that limit, as in most steps.
     fn motion(&self, system: &dyn System, state: &State, within: f64) -> f64 {
         let (Some(scales), Some(elastic)) = (system.scales(), system.as_elastic()) else {
             return 0.0;
@@ -539,7 +545,7 @@ impl Substepped {
         largest
     }
 
-    /// Brings the stable step up to date with a state; false where it is left as it was.
+    /// Updates the stable step from a state; returns false if it is left unchanged.
     fn look(
         &mut self,
         cut: &mut StepCut,
@@ -591,7 +597,7 @@ impl Substepped {
         Ok(true)
     }
 
-    /// The largest eigenvalue (1/s^2) of a law's tangent in a state over the masses.
+    /// The largest eigenvalue (1/s^2) of a law's tangent in a state, relative to the masses.
     fn fastest(
         &mut self,
         (law, waves): (&dyn ElasticLaw, bool),
@@ -618,14 +624,16 @@ impl Substepped {
     }
 }
 
-/// Copies a state but for the fields of the fastest motion, which only looks change: what a step that is taken again has seen of it is not lost.
+/// Copies a state without the fields of the fastest motion, which only full checks change: a repeated step keeps its
+/// information on that motion.
 fn keep(to: &mut State, from: &mut State) {
     let fields = [&mut *to, &mut *from].map(|state| std::mem::take(&mut state.fastest));
     to.clone_from(from);
     [to.fastest, from.fastest] = fields;
 }
 
-/// Notes the parts that a step of `parts` parts needed, and takes as many as the last steps needed at most.
+/// Records the number of substeps that a step of `parts` substeps needed, and takes the largest number that the last
+/// steps needed.
 fn note(cut: &mut StepCut, parts: u32, needed: u32) {
     if cut.parts > parts {
         (cut.needed, cut.steps) = (1, 0);

@@ -44,7 +44,7 @@ pub struct ImplicitSteps<M> {
 
 impl<M: OneAcceleration> ImplicitSteps<M> {
     /// Factorises for a linear system and steps of `dt` (s), or allocates for Newton's method; the analysis of the last
-    /// factor is reused on the same pattern.
+    /// factor is reused for the same pattern.
     pub(super) fn set_up(
         method: &M,
         system: &dyn System,
@@ -106,7 +106,7 @@ impl<M: OneAcceleration> StepByHand for ImplicitSteps<M> {
 
 /// Solver for the acceleration.
 enum Solver {
-    /// For `M + d D + k K`, whose factor is kept.
+    /// One factor of `M + d D + k K`, which is kept.
     Once(Box<factor::Solver>),
     /// Newton's method with a factor for each iteration.
     Newton(Box<NewtonSteps>),
@@ -191,7 +191,7 @@ impl EffectiveMass {
         matches!(self.solver, Solver::Once(_))
     }
 
-    /// Solves for the acceleration. On a linear system `shape` makes `(M + d D + k K) a` from the net force at the
+    /// Solves for the acceleration. On a linear system `shape` computes `(M + d D + k K) a` from the net force at the
     /// prediction, with the loads at the end, and may use up the predicted velocity.
     pub(super) fn solve(
         &mut self,
@@ -275,8 +275,8 @@ impl EffectiveMass {
         Ok(work)
     }
 
-    /// Adds to the change of the loads that of stiffness damping by the motion of supports, which matrices have among their loads and force laws have
-    /// not; the sweeps that it took.
+    /// Adds the change of stiffness damping due to the motion of supports to the change of the loads: matrices have it
+    /// among their loads, force laws do not. Returns the number of sweeps used.
     fn add_change_of_drag(
         &mut self,
         step: &Step<'_>,

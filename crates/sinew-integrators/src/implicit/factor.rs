@@ -37,7 +37,7 @@ pub struct Factor {
     cholesky: Cholesky,
 }
 
-/// Bytes of a factor for each byte of its blocks: work space, and zeros within panels.
+/// Memory of a factor over that of its blocks: it includes work space, and zeros within panels.
 const BESIDE: f64 = 1.3;
 
 impl Factor {
@@ -65,7 +65,7 @@ impl Factor {
         })
     }
 
-    /// Memory (bytes) that a factor on this pattern takes, about.
+    /// Approximate memory (bytes) of a factor on this pattern.
     ///
     /// # Errors
     /// [`FactorError`] when there is no memory for the analysis.
@@ -107,7 +107,7 @@ impl Factor {
     }
 }
 
-/// Products of blocks that factorising a matrix on a pattern takes, but for a factor that all patterns share.
+/// Number of products of blocks to factorise a matrix on a pattern, up to a factor common to all patterns.
 ///
 /// # Errors
 /// [`FactorError`] when there is no memory for the order of its cells.
@@ -115,7 +115,7 @@ pub(super) fn products_of_factor(pattern: &Pattern) -> Result<u64, FactorError> 
     Ok(cell_order(pattern)?.products())
 }
 
-/// Memory (bytes) of a factor whose cells are eliminated like this.
+/// Memory (bytes) of a factor with this order of elimination.
 fn bytes(elimination: &Elimination, layers: Layers) -> u64 {
     let numbers = elimination.blocks() as f64 * layers.block_len() as f64;
     (BESIDE * numbers * size_of::<f64>() as f64) as u64

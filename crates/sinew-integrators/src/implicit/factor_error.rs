@@ -2,7 +2,7 @@
 
 use sinew_core::SetupError;
 
-/// Reasons for which a matrix cannot be factorised, or a dense eigenproblem not be solved.
+/// Reasons for which a matrix cannot be factorised, or a dense eigenproblem cannot be solved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum FactorError {
@@ -22,7 +22,7 @@ pub enum FactorError {
         /// Memory that is left (MB).
         left: u64,
     },
-    /// Conjugate gradients that did not come to the solution.
+    /// Conjugate gradients that did not converge.
     #[error("conjugate gradients did not come to a solution in {iterations} iterations")]
     NotConverged {
         /// Iterations taken.

@@ -18,7 +18,7 @@ use crate::{Method, NumericalDissipation, OptionDefault, OptionHelp, OptionKind,
 /// On nonlinear laws the same equations are solved for a+ by Newton's method.
 ///
 /// The default, beta = 1/4 and gamma = 1/2, is stable at any step and conserves energy on linear systems; on nonlinear
-/// ones the energy may grow in long steps, which is reported.
+/// ones the energy may grow in long steps, which the method reports.
 #[derive(Clone, Copy, Debug)]
 pub struct Newmark {
     beta: f64,
@@ -126,8 +126,8 @@ impl Scheme for Newmark {
         ImplicitSteps::set_up(self, system, dt, before)
     }
 
-    /// Any step where 2 beta >= gamma >= 1/2; otherwise `1/(w sqrt(gamma/2 - beta))`, a lower bound with
-    /// damping. Where gamma < 1/2, none without damping, and unknown with it (Hughes, section 9.1).
+    /// Any step if 2 beta >= gamma >= 1/2; otherwise `1/(w sqrt(gamma/2 - beta))`, a lower bound with damping. If gamma
+    /// < 1/2, no step is stable without damping, and the limit is unknown with damping (Hughes, section 9.1).
     fn stable_step(
         &self,
         system: &dyn System,

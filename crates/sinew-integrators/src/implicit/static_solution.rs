@@ -24,7 +24,7 @@ pub enum StaticError {
         /// `||K u - F|| / ||F||`.
         residual: f64,
     },
-    /// The equilibrium of a nonlinear law could be followed from the undeformed body to a share of the load only.
+    /// The equilibrium of a nonlinear law could be followed from the undeformed body only to a share of the load.
     #[error(
         "the equilibrium was followed up to {:.2} % of the load; beyond that none was found: {source}. Where a body gives way, a run from rest \
          under the load with [damping] shows where it settles",
@@ -36,7 +36,7 @@ pub enum StaticError {
         /// The error of the last attempt to increase the load.
         source: NewtonError,
     },
-    /// Neither matrices nor an elastic law.
+    /// The system has neither matrices nor an elastic law.
     #[error("the system shows neither matrices nor an elastic law with its tangent")]
     Lacks,
     /// A load of another size than the system.
@@ -49,15 +49,15 @@ pub enum StaticError {
     },
 }
 
-/// Largest `||K u - F|| / ||F||` that counts as equilibrium. A body that floats freely has a
-/// singular matrix whose factor rounding can let pass; its residual is near 1.
+/// Largest `||K u - F|| / ||F||` that counts as equilibrium. A body without supports has a singular matrix, whose
+/// factorisation can succeed due to rounding; its residual is near 1.
 const BALANCED: f64 = 1e-6;
 
 /// Solves `K u = force` (N) for the displacement (m), or `dW/du = force` if the system is an elastic law. Fixed
-/// components of cells stay zero; supports are at their places at t = 0.
+/// components of cells stay zero; supports are at their positions at t = 0.
 ///
 /// The load on a nonlinear law grows from zero in adaptive steps, each solved by Newton's method: if several
-/// displacements balance the load, the answer is one that a slow load leads to, or jumps to.
+/// displacements balance the load, the result is one that a slowly growing load leads to, or jumps to.
 ///
 /// # Errors
 /// [`StaticError`] when the tangent is singular or nearly so, the load has the wrong size or is more than the law
@@ -72,10 +72,11 @@ pub fn static_solution(system: &dyn System, force: &[f64]) -> Result<Vec<f64>, S
     static_solution_under(system, &force)
 }
 
-/// [`static_solution`] under a load that may depend on the displacement: `dW/du = F(u)`, the whole load growing from nothing.
+/// [`static_solution`] under a load that may depend on the displacement: `dW/du = F(u)`, the whole load grows from
+/// zero.
 ///
 /// # Errors
-/// As [`static_solution`].
+/// Same as [`static_solution`].
 pub fn static_solution_under(
     system: &dyn System,
     load: &dyn StaticLoad,
@@ -104,7 +105,7 @@ fn linear_solution(system: &dyn LinearSystem, force: &[f64]) -> Result<Vec<f64>,
 /// The displacement (m) of a linear body at rest under a force (N) without a factor, by conjugate gradients: for some digits it takes far less memory and time.
 ///
 /// # Errors
-/// As [`static_solution`].
+/// Same as [`static_solution`].
 pub fn static_estimate(
     operators: &LinearOperators,
     force: &[f64],

@@ -21,24 +21,24 @@ pub(super) const LARGEST_EIGENVALUE_MARGIN: f64 = 1e-3;
 /// `M^-1 K` expanded in Chebyshev polynomials (Tal-Ezer, Kosloff and Koren, Geophysical Prospecting
 /// 35, 1987; Moler and Van Loan, SIAM Review 45, 2003).
 ///
-/// With r = M^-1 (F(t) - K u), `u+ = u + s v + g r` and `v+ = s' v + s r`, where s is a mode's impulse
-/// response and g its integral; the change of the loads within the step is integrated too, for any
-/// ramp, as long as its kinks and jumps fall on steps. Two sweeps per degree and one for r; one more
-/// per degree for each load that changes. The polynomials are cut so that under constant loads no step
-/// takes the state farther from its equilibrium, in the energy norm, than it was (`cut.rs`). The
-/// degree, about omega_max dt/2 + 5, is the smallest at which the error of a step meets the tolerance.
+/// With r = M^-1 (F(t) - K u), `u+ = u + s v + g r` and `v+ = s' v + s r`, where s is a mode's impulse response and g
+/// its integral; the change of the loads within the step is integrated too, for any ramp, as long as its kinks and
+/// jumps fall on steps. Two sweeps per degree and one for r; one more per degree for each load that changes. The
+/// polynomials are truncated so that under constant loads no step moves the state farther from its equilibrium in the
+/// energy norm (`cut.rs`). The degree, about omega_max dt/2 + 5, is the smallest at which the error of a step meets the
+/// tolerance.
 #[derive(Clone, Debug)]
 pub(super) struct Chebyshev {
     interval: f64,
     cut: Cut,
     /// Times of the quadrature over a step (s).
     times: Vec<f64>,
-    /// For each node the weighted impulse response and its rate at each of these times.
+    /// Weighted impulse response and its rate at each of these times, for each node.
     kernels: Vec<Vec<(f64, f64)>>,
 }
 
 impl Chebyshev {
-    /// Chooses the degree and makes the coefficients.
+    /// Chooses the degree and computes the coefficients.
     pub(super) fn new(
         operators: &LinearOperators,
         dt: f64,

@@ -1,4 +1,4 @@
-//! The exact motion's series, cut so that no mode grows.
+//! The series of the exact motion, truncated so that no mode grows.
 
 use sinew_core::SetupError;
 use sinew_core::closed_form::Mode;
@@ -7,19 +7,19 @@ use super::quadrature::quadrature;
 use super::resolution::Resolution;
 use super::series::{evaluate, interpolate, nodes, tails};
 
-/// Points per degree at which a step is compared with the exact one. The norms swing at most twice per
-/// degree, so that a value between two points is larger by half a percent.
+/// Points per degree at which a step is compared with the exact one. The norms oscillate at most twice per degree, so
+/// that a value between two points is larger by half a percent.
 const POINTS_PER_DEGREE: usize = 32;
 /// Margin for values between the points.
 const BETWEEN: f64 = 1.05;
-/// Growth of a step that can be rounding.
+/// Growth of a step that can be due to rounding.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// The exact motion over a step as Chebyshev series on 0..`interval`, long enough to be exact.
 ///
-/// A mode of eigenvalue lambda = omega^2, its displacement u counted from its equilibrium, moves by the
-/// matrix `E = [[1 - lambda g, omega s], [-omega s, s']]` on `(omega u, v)`, whose length is the square
-/// root of twice its energy. |E| <= 1, as no energy comes in.
+/// A mode of eigenvalue lambda = omega^2, its displacement u counted from its equilibrium, moves by the matrix
+/// `E = [[1 - lambda g, omega s], [-omega s, s']]` on `(omega u, v)`, whose length is the square root of twice its
+/// energy. |E| <= 1, as no energy is added.
 #[derive(Debug)]
 pub(super) struct Motion {
     /// Lambda (1/s^2).
@@ -35,17 +35,17 @@ pub(super) struct Motion {
     pub(super) g: Vec<f64>,
 }
 
-/// Polynomials for the three functions of a [`Motion`] by which no mode grows.
+/// Polynomials for the three functions of a [`Motion`] with which no mode grows.
 ///
-/// Cut at degree m, the series give a matrix T for E, of norm up to 1 + epsilon: a mode then grows
-/// without bound. Three polynomials correct T. With the kernel of Dirichlet `Q = (1 + 2 sum cos(k theta))/(2m + 1)`,
+/// Truncated at degree m, the series give a matrix T for E, of norm up to 1 + epsilon: a mode then grows without bound.
+/// Three polynomials correct T. With the kernel of Dirichlet `Q = (1 + 2 sum cos(k theta))/(2m + 1)`,
 /// `lambda = Lambda (1 - cos(theta))/2`, which is 1 at lambda = 0 and small elsewhere,
 ///
 /// 1. multiples of Q make s, s' and g exact at lambda = 0, where a body moves rigidly;
-/// 2. `(1 - eta) T + eta Q diag(1, s'(0))` replaces T. Its norm is at most
-///    `(1 - eta) |T| + eta |Q|`, hence at most 1 once `eta >= (|T| - 1)/(|T| - |Q|)` at every lambda,
-///    from which eta, the relaxation, is found. It is about epsilon. Near lambda = 0, where Q is 1, slow
-///    modes are hardly affected, and `1 - lambda g` stays 1 there, so that equilibria stay exact.
+/// 2. `(1 - eta) T + eta Q diag(1, s'(0))` replaces T. Its norm is at most `(1 - eta) |T| + eta |Q|`, hence at most 1
+///    once `eta >= (|T| - 1)/(|T| - |Q|)` at every lambda, which determines eta, the relaxation. It is about epsilon.
+///    Near lambda = 0, where Q is 1, slow modes are hardly affected, and `1 - lambda g` stays 1 there, so that
+///    equilibria stay exact.
 #[derive(Clone, Debug)]
 pub(super) struct Cut {
     pub(super) s: Vec<f64>,
@@ -82,7 +82,7 @@ struct Point {
 }
 
 impl Motion {
-    /// The series cut at the given degree or at the smallest one that meets the tolerance.
+    /// The series truncated at the given degree or at the smallest one that meets the tolerance.
     pub(super) fn cut(&self, resolution: Resolution) -> Result<Cut, SetupError> {
         // What rounding of g, which is of the size of dt^2, does to lambda g.
         let rounding = ROUNDING * self.interval * self.dt * self.dt;
@@ -250,7 +250,7 @@ mod tests {
         [1.0 - lambda * value(&cut.g), off, -off, value(&cut.s_rate)]
     }
 
-    /// Checks 20 times as many points as the relaxation was found from, points between those included.
+    /// Checks 20 times as many points as were used to find the relaxation, points between those included.
     #[test]
     fn no_mode_grows_and_none_is_off_by_more_than_is_said() {
         for (reach, alpha, beta) in [

@@ -4,12 +4,12 @@ use sinew_core::closed_form::Mode;
 
 use super::series::{evaluate, interpolate, nodes};
 
-/// Series of `s(M^-1 K)` and `g(M^-1 K)` in `u+ = u + s v + g r`, `r = M^-1 (F - K u)`, for the recurrence's own
-/// polynomial S in the place of `sin(w dt/2)/(w/2)` and a polynomial C in that of `cos(w dt/2)`:
-/// `s = e^-eta S C` and `lambda g = 1 - e^-eta (1 - w^2 S^2/2 + alpha/2 S C)`, with `w^2 = lambda - alpha^2/4`.
+/// Series of `s(M^-1 K)` and `g(M^-1 K)` in `u+ = u + s v + g r`, `r = M^-1 (F - K u)`, with the recurrence's
+/// polynomial S instead of `sin(w dt/2)/(w/2)` and a polynomial C instead of `cos(w dt/2)`: `s = e^-eta S C` and
+/// `lambda g = 1 - e^-eta (1 - w^2 S^2/2 + alpha/2 S C)`, with `w^2 = lambda - alpha^2/4`.
 ///
-/// A first step by the exact s would not fit: where S has a zero that the sine has elsewhere, the recurrence
-/// hardly turns a mode that this step moves, and lets it swing far out. With S in s that cannot be.
+/// A first step with the exact s would not fit: at a zero of S that is not a zero of the sine, the recurrence hardly
+/// changes the phase of a mode that this step moves, and its amplitude becomes large. With S in s that cannot happen.
 #[derive(Clone, Debug)]
 pub(super) struct FirstStep {
     pub(super) of_velocity: Vec<f64>,

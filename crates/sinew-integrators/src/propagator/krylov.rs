@@ -15,10 +15,10 @@ use crate::exponential::Exponential;
 const CHAIN: usize = 3;
 /// Number of columns by which the space grows between two error estimates.
 const EVERY: usize = 3;
-/// Length of a rate below which squares underflow and nothing moves any more.
+/// Length of a rate below which squares underflow and the motion is negligible.
 const NOTHING: f64 = 1e-140;
-/// Change between two checks of the solution above which the estimate is not believed: in a space far too small for the
-/// step both the solution and its estimate mean nothing.
+/// Change between two checks of the solution above which the estimate is not trusted: in a space far too small for the
+/// step both the solution and its estimate are meaningless.
 const STEADY: f64 = 1e-2;
 /// Share of a step below which it is not shortened: the space grows instead.
 const SHORTEST: f64 = 0.5;
@@ -29,9 +29,9 @@ const SHORTEST: f64 = 0.5;
 /// until Saad's estimate of the error, relative to the change over the step, meets the
 /// tolerance.
 ///
-/// Inner products weigh velocities by M and displacements by omega_max^2 M, so that both count alike.
-/// The energy weighs displacements by K, so that the error may add energy. A step that does
-/// is shortened: `y + theta (y+ - y)` has no more energy than y for the theta of [`Krylov::part_without_gain`].
+/// Inner products weigh velocities by M and displacements by omega_max^2 M, so that both count alike. The energy weighs
+/// displacements by K, so that the error may add energy. A step that adds energy is shortened: `y + theta (y+ - y)` has
+/// no more energy than y for the theta of [`Krylov::part_without_gain`].
 #[derive(Debug)]
 pub struct Krylov {
     resolution: Resolution,
@@ -294,7 +294,7 @@ impl Krylov {
     /// The factor theta of the change, at most 1, under which it adds no energy under constant loads.
     ///
     /// With `P = v'M v/2 + u'K u/2 - F'u` and a change c, `P(y + theta c) - P(y) = theta p + theta^2 q`, where
-    /// `q = dv'M dv/2 + du'K du/2`; for the exact motion `p + q` is minus the dissipation, at most 0. If it is above,
+    /// `q = dv'M dv/2 + du'K du/2`; for the exact motion `p + q` is minus the dissipation, at most 0. If it is above 0,
     /// theta = -p/q. K du follows from the Arnoldi relation, `-M (L c)_v = K du + D dv`, without a sweep.
     fn part_without_gain(
         &mut self,

@@ -29,14 +29,14 @@ use crate::{Method, OptionDefault, OptionHelp, OptionKind, OptionLabel, Scheme, 
 
 /// The exact motion of a linear system over a step, by sweeps of the network only.
 ///
-/// By Chebyshev polynomials for proportional damping and any ramp, or in a Krylov space for any
-/// damping and loads that are constant or linear over a step; either way kinks and jumps of loads
-/// must fall on steps. The degree is chosen from the step to meet a tolerance, and each step is
-/// checked. [`PropagatorKind`] defines the error that the tolerance bounds.
+/// By Chebyshev polynomials for proportional damping and any ramp, or in a Krylov space for any damping and loads that
+/// are constant or linear over a step; in both cases kinks and jumps of loads must fall on ends of steps. The degree is
+/// chosen from the step to meet a tolerance, and each step is checked. [`PropagatorKind`] defines the error that the
+/// tolerance bounds.
 ///
-/// No undamped motion grows, for any tolerance, step and number of steps. Chebyshev's and Krylov's forms err towards
-/// less energy instead: a large tolerance takes energy out, up to about twice the error of a step each time. The
-/// two-step form neither takes nor gives.
+/// No undamped motion grows, for any tolerance, step and number of steps. The errors of Chebyshev's and Krylov's forms
+/// reduce the energy instead: a large tolerance removes up to about twice the error of a step in each step. The
+/// two-step form neither removes nor adds energy.
 #[derive(Debug)]
 pub struct Propagator {
     kind: PropagatorKind,
@@ -45,7 +45,7 @@ pub struct Propagator {
     made: Option<Made>,
 }
 
-/// Series with the system and step they were made for.
+/// Series, with the system and step for which they were computed.
 #[derive(Debug)]
 struct Made {
     matrices: Revision,
@@ -58,15 +58,15 @@ struct Made {
 
 /// Kinds of polynomials, with the error that their tolerance bounds.
 ///
-/// Rounding, up to `4e-15 (omega_max dt)^2`, comes on top.
+/// Rounding, up to `4e-15 (omega_max dt)^2`, is additional.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum PropagatorKind {
     /// Chebyshev's, on the interval of the eigenvalues: proportional damping, any ramp.
     ///
-    /// The tolerance bounds the error of a step under constant loads, relative to the distance from
-    /// equilibrium before it, both in the energy norm, in any state: the fact `step_error`. No step
-    /// takes the state farther from equilibrium. A body without supports keeps its velocity; its distance
-    /// travelled and the effect of loads on it fall short by the fact `relaxation`, which is below the tolerance.
+    /// The tolerance bounds the error of a step under constant loads, relative to the distance from equilibrium before
+    /// it, both in the energy norm, in any state: the fact `step_error`. No step moves the state farther from
+    /// equilibrium. A body without supports keeps its velocity; its travelled distance and the effect of loads on it
+    /// are too small by the fact `relaxation`, which is below the tolerance.
     #[default]
     Chebyshev,
     /// Chebyshev's for the step from two displacements to the next, in half the sweeps: mass damping,
@@ -103,13 +103,13 @@ pub enum Fit {
     /// All modes alike: the tolerance bounds the error of every mode, see [`PropagatorKind::TwoStep`].
     #[default]
     Uniform,
-    /// The modes that the loads excite, in the measure in which they excite them: fewer sweeps.
+    /// The modes that the loads excite, weighted by their excitation: fewer sweeps.
     ///
-    /// The tolerance bounds an estimate of the error of a run from rest under these loads, applied suddenly and
-    /// kept: its mean square over eight periods of the loads' mean frequency (Rayleigh's quotient of the static
-    /// displacement), over that of the displacement, in the norm of the masses. It is no bound of a step.
-    /// Initial motions, forces from outside and pulses of few steps excite faster modes, and may be off by more. No
-    /// mode grows in any case: stability is kept for all of the spectrum, whatever excites it.
+    /// The tolerance bounds an estimate of the error of a run from rest under these loads, applied suddenly and kept:
+    /// its mean square over eight periods of the loads' mean frequency (Rayleigh's quotient of the static
+    /// displacement), over that of the displacement, in the norm of the masses. This is no bound for a single step.
+    /// Initial motions, forces from outside and pulses of few steps excite faster modes, and their error may be larger.
+    /// No mode grows in any case: the form is stable for the whole spectrum and any excitation.
     ///
     /// The fact `estimated_error` is the estimate; `amplitude` is the largest amplitude of any mode that starts with
     /// a velocity, over that of the exact motion, at most 2.
@@ -161,7 +161,7 @@ fn of_fit(fit: &str) -> Options {
     of_kind("two-step").with(FIT, OptionValue::Text(fit.into()))
 }
 
-/// Estimated error below which weights would be rounding.
+/// Estimated error below which the weights would be dominated by rounding.
 const LEAST_ESTIMATE: f64 = 1e-6;
 
 const KIND_OPTION: OptionHelp = OptionHelp {
@@ -221,7 +221,7 @@ impl Method for Propagator {
     }
 
     /// Options for an error of a run. Errors of steps add up; a tenth of the error leaves a margin for that and costs
-    /// few degrees. The two-step form's tolerance is one of frequencies: the phase error grows.
+    /// few degrees. The tolerance of the two-step form is for frequencies: the phase error grows.
     ///
     /// A fit to the loads estimates the error of a run; half of it leaves a margin for effects outside the estimate.
     fn options_for_error(error: f64) -> Vec<Options> {

@@ -31,8 +31,8 @@ pub(super) fn least_value(function: impl Fn(f64) -> f64, points: usize) -> f64 {
     places.map(&function).fold(f64::INFINITY, f64::min)
 }
 
-/// The angles between 0 and pi at which a polynomial, given as a function of the angle, is larger than about: each
-/// of this many points above its neighbours, and the top between them.
+/// The angles between 0 and pi at which a polynomial, given as a function of the angle, has local maxima: for each of
+/// this many points above its neighbours, the maximum near it.
 pub(super) fn tops(function: impl Fn(f64) -> f64, points: usize) -> Vec<f64> {
     let width = PI / points as f64;
     let seen: Vec<f64> = (0..=points)

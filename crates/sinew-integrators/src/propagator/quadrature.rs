@@ -2,8 +2,8 @@
 
 use sinew_core::gauss_points;
 
-/// Nodes and weights of Gauss and Legendre's rule with 8 points on panels of 0..`length` short
-/// enough for motions up to angular frequency or decay `fastest`.
+/// Nodes and weights of Gauss and Legendre's rule with 8 points on panels of 0..`length` that are short enough for
+/// motions up to angular frequency or decay `fastest`.
 pub(super) fn quadrature(length: f64, fastest: f64) -> Vec<(f64, f64)> {
     let panels = (fastest * length / 2.0).ceil().clamp(1.0, 1e4) as usize;
     let edge = |panel: usize| length * panel as f64 / panels as f64;

@@ -23,17 +23,17 @@ pub(super) struct Recurrence {
     pub(super) velocity: VelocityTime,
 }
 
-/// Registers of the sweeps that make G r.
+/// Registers of the sweeps that compute G r.
 pub(super) struct KickRegisters<const N: usize> {
     pub(super) r: Register,
-    /// Holds G r, up to a factor, after them.
+    /// The register that contains G r, up to a factor, after them.
     pub(super) sum: Register,
     /// The requested registers.
     pub(super) own: [Register; N],
     pub(super) vectors: ChebyshevVectors,
 }
 
-/// alpha (1/s) of a system that two-step forms can take.
+/// alpha (1/s) of a system that two-step forms support.
 pub(super) fn mass_damping(operators: &LinearOperators) -> Result<f64, SetupError> {
     let damping = operators.damping();
     if damping.extra.is_some() || damping.stiffness != 0.0 {
@@ -46,7 +46,7 @@ pub(super) fn mass_damping(operators: &LinearOperators) -> Result<f64, SetupErro
     Ok(damping.mass)
 }
 
-/// The sweep that makes r.
+/// The sweep that computes r.
 pub(super) fn net_force(at: LoadAt, r: Register) -> Sweep {
     Sweep::of_stiffness(1.0, Register::U, Loads::at(at)).then(r.becomes_q())
 }

@@ -3,10 +3,10 @@
 use sinew_core::SetupError;
 
 pub(super) const ID: &str = "propagator";
-/// Highest degree; above it shorter steps cost less memory and no more sweeps.
+/// Highest degree; above it shorter steps need less memory and no more sweeps.
 pub(super) const HIGHEST_DEGREE: usize = 500;
-/// Error of a step with a degree given by the user above which it is refused: a polynomial of too low
-/// a degree is violently wrong.
+/// Error of a step with a user-given degree above which the step is refused: a polynomial of too low a degree has very
+/// large errors.
 pub(super) const LOOSE: f64 = 1e-2;
 
 /// Resolution of a step.
@@ -19,8 +19,8 @@ pub(super) struct Resolution {
 }
 
 impl Resolution {
-    /// The degree to take: the given one, or the smallest whose error meets the tolerance. `left_out`
-    /// has an estimate of the error for each degree, from which the search begins.
+    /// The degree to take: the given one, or the smallest whose error meets the tolerance. `left_out` gives an estimate
+    /// of the error for each degree, from which the search begins.
     pub(super) fn degree_for(
         self,
         left_out: &[f64],

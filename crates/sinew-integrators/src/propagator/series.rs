@@ -35,7 +35,7 @@ pub(super) fn evaluate(coefficients: &[f64], x: f64, length: f64) -> f64 {
         .map_or(0.0, |first| first + x * next - after)
 }
 
-/// The sum of |coefficients| beyond each degree: the largest error of a series cut there.
+/// The sum of |coefficients| beyond each degree: the largest error of a series truncated there.
 pub(super) fn tails(coefficients: &[f64]) -> Vec<f64> {
     let mut tails = vec![0.0; coefficients.len()];
     let mut sum = 0.0;

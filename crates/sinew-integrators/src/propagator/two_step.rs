@@ -13,31 +13,29 @@ use super::recurrence::{KickRegisters, Recurrence, mass_damping, net_force};
 use super::resolution::{HIGHEST_DEGREE, Resolution};
 use super::series::{evaluate, interpolate, nodes, tails};
 
-/// Least by which sin(w dt/2) is kept below 1: rounding of it.
+/// Smallest distance of sin(w dt/2) from 1: its rounding.
 const LEAST_ROOM: f64 = 1e-13;
 
-/// Most by which sin(w dt/2) is kept below 1.
+/// Largest distance of sin(w dt/2) from 1.
 const MOST_ROOM: f64 = 0.25;
 
-/// The exact displacements of a mass-damped linear system under piecewise constant loads, for half
-/// the sweeps of the one-step form: `v+ = e^(-2 eta) v- + G(M^-1 K) M^-1 (F - K u)/dt`, `u+ = u + dt v+`, v being
-/// the mean velocity over a step. Any mode `q'' + alpha q' + lambda q = r` moves so from one
-/// step to the next (Gautschi, Numer. Math. 3, 1961; Hochbruck and Lubich, Numer. Math. 83, 1999,
-/// without damping), with `lambda G = (1 - e^-eta)^2 + 4 e^-eta sin^2(w dt/2)`, `w^2 = lambda - alpha^2/4` and
-/// `eta = alpha dt/2`.
+/// The exact displacements of a mass-damped linear system under piecewise constant loads, for half the sweeps of the
+/// one-step form: `v+ = e^(-2 eta) v- + G(M^-1 K) M^-1 (F - K u)/dt`, `u+ = u + dt v+`, v being the mean velocity over
+/// a step. Any mode `q'' + alpha q' + lambda q = r` moves in this way from one step to the next (Gautschi, Numer. Math.
+/// 3, 1961; Hochbruck and Lubich, Numer. Math. 83, 1999, without damping), with
+/// `lambda G = (1 - e^-eta)^2 + 4 e^-eta sin^2(w dt/2)`, `w^2 = lambda - alpha^2/4` and `eta = alpha dt/2`.
 ///
 /// Only `S = sin(w dt/2)/(w/2)` is replaced by a polynomial. With its square in G,
-/// `lambda G = (1 - e^-eta)^2 + e^-eta w^2 S^2` cannot fall below 0; S is scaled, by less than 5/4 of the
-/// tolerance, so that `|w S|` stays a little below 2 between its zeros too, since a mode at 2 itself grows
-/// as the number of steps; and eta is taken from `sinh(eta/2) = alpha S(0)/4`, by which lambda divides G
-/// for any S. Every mode is then stable at any step and for any tolerance, which does not hold for a
-/// polynomial for G itself.
+/// `lambda G = (1 - e^-eta)^2 + e^-eta w^2 S^2` cannot fall below 0; S is scaled, by less than 5/4 of the tolerance, so
+/// that `|w S|` stays a little below 2 between its zeros too, since a mode at 2 itself grows in proportion to the
+/// number of steps; and eta follows from `sinh(eta/2) = alpha S(0)/4`, so that the right side is divisible by lambda
+/// for any S. Every mode is then stable at any step and for any tolerance, which does not hold for a polynomial for G
+/// itself.
 ///
-/// The tolerance bounds the error of `sin(w dt/2) = w S/2` before S is scaled; after it, the error delta is
-/// at most 5/2 of the tolerance. An undamped mode then turns by `2 asin` of the wrong sine: its phase is off
-/// by about `2 delta/cos(w dt/2)` a step, by up to `2 sqrt(2 delta)` where the sine is near 1. From exact
-/// displacements a step leads to one that is off by at most 8 delta of the distance from equilibrium,
-/// as `w^2 S^2 <= 4` there.
+/// The tolerance bounds the error of `sin(w dt/2) = w S/2` before S is scaled; after it, the error delta is at most 5/2
+/// of the tolerance. The phase of an undamped mode then changes by `2 asin` of the inexact sine: its error is about
+/// `2 delta/cos(w dt/2)` per step, and up to `2 sqrt(2 delta)` if the sine is near 1. From exact displacements, the
+/// displacement after a step has an error of at most 8 delta of the distance from equilibrium, as `w^2 S^2 <= 4` there.
 #[derive(Clone, Debug)]
 pub(super) struct TwoStep {
     degree: usize,
@@ -63,7 +61,7 @@ pub(super) fn half_sine(lambda: f64, alpha: f64, dt: f64) -> f64 {
 }
 
 impl TwoStep {
-    /// Chooses the degree and makes the coefficients.
+    /// Chooses the degree and computes the coefficients.
     pub(super) fn new(
         operators: &LinearOperators,
         dt: f64,

@@ -1,4 +1,4 @@
-//! Other loads during a run cost nothing where the method allows them, and are refused where it does not.
+//! Tests that new loads during a run cost nothing if the method allows them, and are refused otherwise.
 
 use std::sync::Arc;
 

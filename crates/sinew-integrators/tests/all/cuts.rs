@@ -1,4 +1,4 @@
-//! Motion over cuts: every method goes on, and energy stays.
+//! Motion over cuts: every method continues, and the energy is kept.
 
 use std::sync::Arc;
 
@@ -17,7 +17,7 @@ fn cube(cells: usize) -> CutModel {
     CutModel::new(Arc::new(mesh), problem(), 0.0).unwrap()
 }
 
-/// A blade along y comes down in the middle to a height.
+/// Cuts with a blade along y that comes down in the middle to a height.
 fn slit(cut: &mut CutModel, state: &mut State, height: f64) -> usize {
     let blade = |z: f64| [[0.05, -0.05, z], [0.05, 0.15, z]];
     let sheet = Sheet::swept(blade(0.2), blade(height)).unwrap();

@@ -1,4 +1,4 @@
-//! After set-up, neither a step nor what a frame shows of it allocates anything.
+//! Tests that after set-up neither a step nor the display of its frame allocates memory.
 
 use std::hint::black_box;
 
@@ -81,7 +81,7 @@ fn no_integrator_allocates_after_its_second_step() {
     }
 }
 
-/// Bodies that may move as rigid ones take sums over their cells.
+/// Bodies that may move as rigid bodies need sums over their cells.
 #[test]
 fn neither_do_networks_on_a_body_that_nothing_holds() {
     let mesh = structured::cube(2, 0.1, Split::Kuhn).unwrap();
@@ -124,7 +124,7 @@ fn neither_does_a_guard_that_cuts_and_clamps() {
     assert!(saturated > 0);
 }
 
-/// A load that changes takes sweeps of its own, and damping of another kind products of its own.
+/// A load that changes needs additional sweeps, and damping of another kind additional products.
 #[test]
 fn neither_do_loads_that_change_nor_other_damping() {
     let model = cube(4);
@@ -198,7 +198,7 @@ fn neither_do_patches() {
     assert_eq!(count, 0);
 }
 
-/// Displacements, strain, stress and reactions, once the rows of held nodes are summed up.
+/// Displacements, strain, stress and reactions, once the rows of fixed nodes are summed up.
 #[test]
 fn neither_do_the_fields_of_a_frame() {
     let mesh = structured::cube(3, 0.1, Split::Kuhn).unwrap();
@@ -225,8 +225,8 @@ fn neither_do_the_fields_of_a_frame() {
     assert_eq!(CountingAllocator::count(&mut frame), 0);
 }
 
-/// In a sweep over a modulus the models share their pattern, and with it its analysis: only another pattern takes one of
-/// its own.
+/// In a sweep over a modulus the models share their pattern, and with it its analysis: only another pattern needs a new
+/// analysis.
 #[cfg(feature = "implicit")]
 #[test]
 fn a_factor_for_another_modulus_allocates_as_little_as_one_for_another_step() {
@@ -256,7 +256,7 @@ fn a_factor_for_another_modulus_allocates_as_little_as_one_for_another_step() {
     }
 }
 
-/// A hand pulls at some nodes, a clamp moves and a cuff presses, all known only as they happen; the body is
+/// A hand pulls at some nodes, a clamp moves and a cuff presses, all known only at the time they happen; the body is
 /// drawn, coloured and weighed.
 #[test]
 fn a_frame_of_a_simulator_allocates_nothing() {

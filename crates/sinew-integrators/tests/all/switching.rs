@@ -19,7 +19,7 @@ fn start(model: &Model) -> State {
     State::new(wave(1e-3, 0.7), wave(0.1, 1.3))
 }
 
-/// Displacement and velocity at forty instants, by each integrator for an equal part of them.
+/// Displacement and velocity at forty instants, each integrator takes an equal part of them.
 fn motion(model: &Model, ids: &[&str], dt: f64) -> Vec<Vec<f64>> {
     let steps = (DURATION / dt).round() as usize / 40;
     let mut state = start(model);
@@ -58,7 +58,7 @@ fn any_integrator_takes_over_from_any_other() {
     }
 }
 
-/// A velocity that is half a step behind, or an acceleration of long ago, would cost an order.
+/// A velocity that is half a step behind, or an acceleration from an earlier time, would lower the order.
 #[test]
 fn methods_of_second_order_hand_over_at_second_order() {
     let model = cube(4);
@@ -86,7 +86,7 @@ fn methods_of_second_order_hand_over_at_second_order() {
     }
 }
 
-/// The same method at another step is a switch too.
+/// The same method at another step is also a switch.
 #[test]
 fn central_difference_changes_its_step_at_second_order() {
     let model = cube(4);

@@ -1,4 +1,4 @@
-//! Statements of methods about themselves to programs that choose between them.
+//! Statements of methods about themselves, for programs that choose between methods.
 
 use crate::common::cube::paper_cube;
 use sinew_core::Options;

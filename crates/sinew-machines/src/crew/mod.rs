@@ -16,7 +16,7 @@ use sinew_sparse::sweep::Outcome;
 
 pub(crate) use patience::Patience;
 
-/// Chunks that are taken at a time, where each thread has as many.
+/// Chunks that are taken at a time, if each thread has as many.
 const BLOCK: usize = 4;
 
 /// Checks for work, or for its end, before a thread lets others run: some tens of microseconds.
@@ -25,16 +25,17 @@ const SPINS: u32 = 4_000;
 /// Times that the host lets others run before it sleeps.
 const YIELDS: u32 = 20;
 
-/// The chunks of sweeps, each of which can be made by any thread.
+/// The chunks of sweeps, each of which any thread can compute.
 pub(crate) trait Chunks: Send + Sync {
-    /// Makes some chunks of the sweep under way.
+    /// Computes some chunks of the current sweep.
     fn make(&self, chunks: Range<usize>) -> Outcome;
 }
 
-/// Threads of a machine that take part in sweeps: they are started for the first batch that needs them, and sleep between batches, so that a step starts none.
-/// Every chunk is computed by one thread, whichever; each begins with its own share, so that its rows stay in its cache, and then takes what others have left. So a
-/// thread that gets no processor delays none but the chunks it is at. Where others cost more time than they save, the
-/// host continues alone ([`Patience`]).
+/// Threads of a machine that take part in sweeps. They are started for the first batch that needs them, and sleep
+/// between batches, so that a step starts none. Any thread may compute a chunk; each begins with its own share, so that
+/// its rows stay in its cache, and then takes chunks that others have left. So a thread that gets no processor delays
+/// only its current chunks. If the other threads cost more time than they save, the host continues alone
+/// ([`Patience`]).
 #[derive(Debug, Default)]
 pub(crate) struct Crew {
     team: Option<Arc<Team>>,
@@ -80,7 +81,7 @@ impl Debug for Team {
 /// The thread that hands out sweeps.
 pub(crate) struct Host<'a> {
     work: &'a dyn Chunks,
-    /// `None` where the host is alone.
+    /// `None` if the host is alone.
     team: Option<(&'a Team, &'a [Thread])>,
     patience: &'a mut Patience,
 }
@@ -91,7 +92,7 @@ fn since(moment: Instant) -> f64 {
 }
 
 impl Crew {
-    /// A host with `threads` threads, itself included, for sweeps of `work`; fewer where no more can be started.
+    /// A host with `threads` threads, itself included, for sweeps of `work`; fewer if no more can be started.
     pub(crate) fn gather<'a>(&'a mut self, threads: usize, work: &'a Arc<dyn Chunks>) -> Host<'a> {
         let begun = Instant::now();
         if threads > 1 && !self.is_ready(threads, work) {
@@ -145,7 +146,7 @@ impl Crew {
         self.team = Some(team);
     }
 
-    /// Ends the threads. None is waited for: in a forked process there is none.
+    /// Ends the threads without waiting for them: in a forked process they do not exist.
     fn dismiss(&mut self) {
         if let Some(team) = self.team.take() {
             team.closed.store(true, Ordering::Release);
@@ -166,7 +167,7 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 }
 
 impl Team {
-    /// Makes chunks of the present sweep until none is left.
+    /// Computes chunks of the present sweep until none is left.
     fn take_part(&self, thread: usize) {
         let threads = self.threads.load(Ordering::Relaxed);
         if thread >= threads {
@@ -213,7 +214,7 @@ impl Team {
 }
 
 /// Remaining chunks of a share: the next chunk, and the end in the upper half of the same word, so that a thread that
-/// comes late from the sweep before never takes the beginning of one share for that of another.
+/// is late from the previous sweep never mistakes the beginning of one share for that of another.
 struct Left(AtomicU64);
 
 impl Left {
@@ -261,7 +262,7 @@ impl Drop for Done<'_> {
 }
 
 impl Host<'_> {
-    /// Makes a prepared sweep over `chunks` chunks. Sweeps of a kind take about the same time a chunk.
+    /// Runs a prepared sweep over `chunks` chunks. Sweeps of one kind take about the same time per chunk.
     pub(crate) fn sweep(&mut self, kind: usize, chunks: usize) -> Outcome {
         let team = self.team.filter(|_| !self.patience.is_alone(kind));
         if team.is_none() && !self.patience.is_alone(kind) {
@@ -284,7 +285,7 @@ impl Host<'_> {
 }
 
 impl Team {
-    /// Makes a sweep with the workers. Resumes the panic of a worker on this thread.
+    /// Runs a sweep with the workers. Resumes the panic of a worker on this thread.
     fn share(&self, workers: &[Thread], chunks: usize) -> Outcome {
         self.saturated.store(0, Ordering::Relaxed);
         self.exceeded.store(false, Ordering::Relaxed);
@@ -314,7 +315,7 @@ impl Team {
         }
     }
 
-    /// Waits for the chunks that others are at.
+    /// Waits for the chunks that other threads compute.
     fn wait(&self, chunks: usize) {
         let mut looks = 0;
         while self.done.load(Ordering::Acquire) < chunks {
@@ -354,7 +355,8 @@ mod tests {
         Arc::new(Work(of))
     }
 
-    /// Sweeps of different lengths, since a worker may come late from the one before, in batches of one and more, whose threads differ.
+    /// Sweeps of different lengths, since a worker may be late from the previous one, in batches of one sweep and more
+    /// with different threads.
     #[test]
     fn every_chunk_of_every_sweep_is_made_once_whatever_the_number_of_threads() {
         for most in [1, 2, 3, 8] {
@@ -392,7 +394,7 @@ mod tests {
         }
     }
 
-    /// Other work takes other threads, which nobody tells of this work any more.
+    /// A crew takes new threads for other work; these receive no reference to the earlier work.
     #[test]
     fn a_crew_is_started_again_for_other_work() {
         let mut crew = Crew::default();
@@ -432,7 +434,7 @@ mod tests {
         host.sweep(0, 8);
     }
 
-    /// Chunks of which each takes a while that a worker sleeps through: the host finds out, and makes the rest itself.
+    /// Each chunk takes a while, during which a worker sleeps: the host notices this, and computes the rest itself.
     #[test]
     fn sleeping_workers_are_not_waited_for_in_every_sweep() {
         let host = thread::current().id();

@@ -3,16 +3,16 @@
 /// Kinds of sweeps whose times are distinguished; further ones share these.
 const KINDS: usize = 8;
 
-/// Sweeps that are made alone to learn how long they take.
+/// Sweeps that the host runs alone to measure their time.
 const LEARNT: u32 = 8;
 
-/// Sweeps with others after which that is learnt again.
+/// Number of sweeps with others after which the time is measured again.
 const AGAIN: u32 = 1024;
 
-/// Part of the time that may be lost by sharing sweeps where that does not pay.
+/// Share of the time that may be lost by sharing sweeps when this is no gain.
 const PRICE: f64 = 0.03;
 
-/// Largest time that others may lose before the host continues alone, and largest gain that is counted against a loss,
+/// Largest loss of time with others before the host continues alone, and largest gain that is counted against a loss,
 /// both in times of one sweep alone.
 const MOST_LOST: f64 = 4.0;
 const MOST_GAINED: f64 = 32.0;
@@ -20,19 +20,19 @@ const MOST_GAINED: f64 = 32.0;
 /// Time (s) added to both limits: a few time slices of a scheduler, which may be as long as many sweeps.
 const SLICES: f64 = 0.01;
 
-/// The host's experience with the other threads of a crew, kept from batch to batch: on a machine that others use, or
-/// that gives fewer processors than it names, a thread that gets none for a while holds up the whole sweep. So sweeps
-/// with others are compared with what they take alone. What they lose is made up for by enough sweeps alone that the
-/// loss is a small part of the whole time, whatever the reason.
+/// The host's experience with the other threads of a crew, kept from batch to batch. On a shared machine, or one with
+/// fewer processors than it reports, a thread that gets no processor for a while delays the whole sweep. So the times
+/// of sweeps with others are compared with those of sweeps alone. After a loss the host runs enough sweeps alone to
+/// make the loss a small part of the whole time, whatever its reason.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Patience {
-    /// Time of a chunk of each kind where the host is alone (s), and how often it was measured.
+    /// Time of a chunk of each kind if the host is alone (s), and how often it was measured.
     alone_times: [(f64, u32); KINDS],
-    /// Sweeps that are still made alone.
+    /// Sweeps that are still to be run alone.
     alone: u32,
-    /// Sweeps with others since times alone were learnt.
+    /// Sweeps with others since the times alone were measured.
     shared: u32,
-    /// Time lost with others (s), or gained where it is negative.
+    /// Time lost with others (s), or gained if negative.
     lost: f64,
 }
 
@@ -48,7 +48,7 @@ impl Default for Patience {
 }
 
 impl Patience {
-    /// Experience of others who never cost time.
+    /// Experience of other threads that never cost time.
     #[cfg(test)]
     pub(super) fn trusting() -> Self {
         Self {
@@ -58,17 +58,17 @@ impl Patience {
         }
     }
 
-    /// True if the next `sweeps` sweeps are made alone in any case.
+    /// True if the next `sweeps` sweeps are run alone in any case.
     pub(crate) fn is_alone_for(&self, sweeps: usize) -> bool {
         self.alone as usize >= sweeps
     }
 
-    /// True if the next sweep, if it is of this kind, is made alone.
+    /// True if the next sweep, if it is of this kind, is run alone.
     pub(super) fn is_alone(&self, kind: usize) -> bool {
         self.alone > 0 || self.alone_times[kind % KINDS].1 == 0
     }
 
-    /// Notes the time (s) of a sweep that the host made alone.
+    /// Notes the time (s) of a sweep that the host ran alone.
     pub(super) fn note_alone(&mut self, kind: usize, chunks: usize, time: f64) {
         self.alone = self.alone.saturating_sub(1);
         if chunks > 0 {
@@ -90,12 +90,12 @@ impl Patience {
         }
     }
 
-    /// Notes the time (s) that gathering others and letting them go took.
+    /// Notes the time (s) for gathering and dismissing the other threads.
     pub(super) fn note_gathering(&mut self, time: f64) {
         self.lost += time;
     }
 
-    /// Adds to what is lost; a sweep alone takes `alone` (s).
+    /// Adds to the lost time; a sweep alone takes `alone` (s).
     fn lose(&mut self, time: f64, alone: f64) {
         self.lost = (self.lost + time).max(-MOST_GAINED * alone - SLICES);
         if self.lost > MOST_LOST * alone + SLICES {

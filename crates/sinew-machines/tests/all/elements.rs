@@ -28,7 +28,7 @@ fn problem(law: Law, element: Element) -> Problem {
     Problem::of([Region::new(law, 1060.0).with_element(element)]).with_fixed(Fixed::at("bottom"))
 }
 
-/// Bodies of every element and some laws, with components that are held, a support in motion, mass damping, and a linear region
+/// Bodies of every element and some laws, with fixed components, a moving support, mass damping, and a linear region
 /// above a hyperelastic one.
 fn models(mesh: &TetMesh) -> Vec<(String, Model)> {
     let mut problems = Vec::new();
@@ -138,7 +138,7 @@ fn kernels_move_bodies_as_plain_loops_do() {
     }
 }
 
-/// With elements enough for three threads.
+/// Bodies with enough elements for three threads.
 #[test]
 fn threads_change_no_bit() {
     let mesh = cube(14, 0.1, Split::Kuhn).unwrap();
@@ -189,7 +189,7 @@ fn steps_allocate_nothing() {
     }
 }
 
-/// The first batch may start threads; short ones after it find them.
+/// The first batch may start threads; later short batches find them ready.
 #[test]
 fn short_batches_with_threads_allocate_nothing() {
     let mesh = cube(14, 0.1, Split::Kuhn).unwrap();
@@ -208,7 +208,8 @@ fn short_batches_with_threads_allocate_nothing() {
     }
 }
 
-/// Another step keeps what the elements need, whatever the machine ran in between, and changes no bit.
+/// Steps of another length keep the data that the elements need, whatever the machine ran in between, and change no
+/// bit.
 #[test]
 fn a_machine_loaded_for_other_steps_gives_the_bits_of_a_new_one() {
     let mesh = cube(4, 0.1, Split::Kuhn).unwrap();

@@ -69,7 +69,7 @@ fn springs_repeat_as_tetrahedra_do() {
     assert_eq!(templates(&model), 3);
 }
 
-/// A held cube whose tetrahedra have moduli by data.
+/// A fixed cube whose tetrahedra have moduli from data.
 fn with_moduli(cells: usize, modulus: impl Fn(&TetMesh, usize) -> f64) -> Model {
     let mut mesh = cube(cells, 0.1, Split::Kuhn).unwrap();
     let values = (0..mesh.tets.len()).map(|tet| modulus(&mesh, tet));
@@ -89,8 +89,8 @@ fn with_moduli(cells: usize, modulus: impl Fn(&TetMesh, usize) -> f64) -> Model 
     Model::build(&mesh, &problem).unwrap()
 }
 
-/// Moduli by data leave those templates that are the same: none where each node has rows of its own, one for the inside of each layer of tetrahedra
-/// and one for each plane between two where moduli differ by layers.
+/// With moduli from data the equal templates remain: none if each node has its own rows; one for the inside of each
+/// layer of tetrahedra and one for each plane between two layers if moduli differ by layers.
 #[test]
 fn moduli_by_data_repeat_where_they_do_and_nowhere_else() {
     let same = with_moduli(9, |_, _| 3500.0);
@@ -153,8 +153,8 @@ fn voxels(cells: usize) -> Model {
     Model::build(&mesh, &problem).unwrap()
 }
 
-/// Small ones stay in a cache, where short runs cost more than they save: templates take 1.3 times as long on a ball of 12
-/// cells, and .6 on this body of 24.
+/// Small bodies stay in a cache, where short runs cost more than they save: templates take 1.3 times as long on a ball
+/// of 12 cells, and .6 on this body of 24.
 #[test]
 fn voxels_repeat_and_are_taken_by_templates_where_that_pays() {
     for (cells, taken) in [(16, "general"), (24, "repeated")] {

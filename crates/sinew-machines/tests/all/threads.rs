@@ -1,4 +1,4 @@
-//! Threads change no bit.
+//! Tests that the number of threads changes no bit.
 
 use crate::common::bodies;
 

@@ -8,13 +8,13 @@ use crate::one_thread::ThreadError;
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum AdviceError {
-    /// The question cannot be asked.
+    /// The question is not valid.
     #[error(transparent)]
     Question(#[from] QuestionError),
     /// The scene has no reference.
     #[error("no advice without a reference: {0}")]
     Case(#[from] CaseError),
-    /// The scene is too fast for the time there is.
+    /// The scene moves too fast for the available time.
     #[error(
         "the scene moves too fast to be followed: {duration:e} s of it take {needed:.0e} s of CPU time; shorten [run] duration, look for a stiffness or mass in wrong units, or give --pilot-seconds more"
     )]
@@ -57,7 +57,7 @@ pub enum AdviceError {
         /// The smallest tolerance of one digit that can be distinguished from it.
         least: f64,
     },
-    /// There is no thread to measure on.
+    /// No thread could be started for the measurement.
     #[error(transparent)]
     Thread(#[from] ThreadError),
 }

@@ -8,7 +8,7 @@ use crate::case::{Span, course};
 use crate::cpu_time::thread_cpu_time;
 use crate::reference::{Course, Expansion, Pace, Taylor, cost_of_extrapolation};
 
-/// The reference is solved twice, the second time in steps of two thirds: 1 + 3/2 solutions.
+/// The reference is solved twice, the second time with two thirds of the step: 1 + 3/2 solutions.
 const SOLUTIONS: f64 = 2.5;
 
 /// A reference by Faber series is checked over a fifth of the time, at thrice the cost.
@@ -17,22 +17,21 @@ const SOLUTIONS_BY_FABER: f64 = 1.6;
 /// Steps of the reference whose cost is measured.
 const TRIAL_STEPS: f64 = 4.0;
 
-/// Instants of the comparison where not even one interval of the scene's can be followed.
+/// Number of instants of the comparison if not even one interval of the scene can be followed.
 const INSTANTS: usize = 10;
 
 /// Smallest representative share of an interval.
 const SMALLEST_SHARE: f64 = 1e-3;
 
-/// The part of a scene that is followed, from t = 0 on, and how.
+/// The part of a scene that is followed, from t = 0 on, and its method.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Horizon {
     pub(super) span: Span,
     pub(super) pace: Pace,
 }
 
-/// The longest part of a scene whose reference takes at most `seconds` of CPU time: all of it, in
-/// long steps if the full reference takes longer, or some of its intervals, or a whole fraction
-/// of the first.
+/// The longest part of a scene whose reference takes at most `seconds` of CPU time: the whole scene, with long steps if
+/// the full reference takes longer; or some of its intervals; or a whole fraction of the first interval.
 pub(super) fn horizon(simulation: &Simulation, seconds: f64) -> Result<Horizon, AdviceError> {
     let whole = Span::of(simulation);
     let cost = ReferenceCost::new(simulation);

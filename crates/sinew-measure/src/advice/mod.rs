@@ -29,8 +29,7 @@ use horizon::horizon;
 /// Share of the pilots' time that the reference may take.
 const FOR_THE_REFERENCE: f64 = 0.5;
 
-/// Other integrators are followed to their own best while that may cost this many times the
-/// cheapest run.
+/// Other integrators are followed to their own best run while that may cost at most this multiple of the cheapest run.
 const RUNNERS_UP_WITHIN: f64 = 4.0;
 
 /// Errors for options of methods that trade error for cost, if only a cost is given.
@@ -49,7 +48,7 @@ pub enum LeftOut {
     /// It cannot be used on the scene.
     #[error(transparent)]
     Method(#[from] MethodError),
-    /// It could make no pilot.
+    /// No pilot of it could run.
     #[error(transparent)]
     Pilot(#[from] PilotError),
     /// A run beyond the measured part may be unstable.
@@ -57,14 +56,14 @@ pub enum LeftOut {
     StabilityUnknown,
 }
 
-/// Reasons why the run that the scene asks for was not measured.
+/// Reasons why the run that the scene specifies was not measured.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum NotMeasured {
     /// It takes too long.
     #[error("it would leave too little time for other pilots")]
     TooLong,
-    /// It cannot be made.
+    /// It cannot run.
     #[error(transparent)]
     Pilot(#[from] PilotError),
 }
@@ -83,7 +82,7 @@ impl Serialize for NotMeasured {
     }
 }
 
-/// The answer to a [`Question`], with the facts of the search.
+/// The answer to a [`Question`], with the details of the search.
 #[derive(Debug, Serialize)]
 pub struct Advice {
     /// The question.
@@ -95,16 +94,15 @@ pub struct Advice {
     /// True if the stiffness changes with the deformation, so that a step that was stable over that part may be
     /// unstable later.
     pub stiffness_changes: bool,
-    /// Instants (s) after that part at which loads jump or have kinks, increasing; no run covered
-    /// them.
+    /// Instants (s) after that part at which loads jump or have kinks, increasing; no run included them.
     pub unseen_changes: Vec<f64>,
     /// Description of the method of the reference and its check.
     pub reference: String,
     /// The reference's own estimated relative error (fraction).
     pub reference_error: f64,
-    /// Errors (fraction) below this are too small for the reference; 0 for one to rounding.
+    /// Errors (fraction) below this are too small for the reference; 0 for a reference that is exact to rounding.
     pub least_error: f64,
-    /// The run as the scene has it, or why it cannot be made.
+    /// The run as the scene has it, or the reason why it cannot run.
     pub written: Result<Pilot, NotMeasured>,
     /// The answer.
     pub answer: Answer,
@@ -112,11 +110,11 @@ pub struct Advice {
     pub refused: Vec<(MethodChoice, LeftOut)>,
     /// Runs measured.
     pub pilots: usize,
-    /// CPU time (s) of it all, the reference included.
+    /// CPU time (s) of the whole search, the reference included.
     pub spent_s: f64,
     /// True if the time for pilots ran out before every candidate for the answer was followed.
     pub choice_cut_short: bool,
-    /// True if it ran out before the other candidates were taken to their own best.
+    /// True if it ran out before the other candidates reached their own best runs.
     pub others_cut_short: bool,
 }
 
@@ -127,13 +125,13 @@ pub struct Advice {
 pub enum Answer {
     /// At least one run keeps to tolerance and budget.
     Met {
-        /// The cheapest run of each integrator in total, the advised one first; if only a budget was given, the most
-        /// accurate within it.
+        /// The run of each integrator with the lowest total cost, the advised one first; if only a budget was given,
+        /// the most accurate within it.
         cheapest: Vec<Pilot>,
         /// The cheapest run with a tenth of the error, at any cost.
         tenfold: Option<Box<Pilot>>,
     },
-    /// No measured run keeps to both.
+    /// No measured run keeps to both limits.
     Missed {
         /// The cheapest run within the tolerance, at any cost.
         within_tolerance: Option<Box<Pilot>>,
@@ -252,7 +250,7 @@ fn advise_here(simulation: Simulation, question: Question) -> Result<Advice, Adv
     })
 }
 
-/// The answer, with a flag: true if the time ran out before it was found. `also` adds runs off the ladder.
+/// The answer, with a flag: true if the time ran out before it was found. `also` adds runs that are not in the search.
 fn answer(
     search: &mut Search<CasePilots<'_>>,
     question: Question,
@@ -383,7 +381,7 @@ fn check_reference(case: &Case, whole: Span, tolerance: Option<f64>) -> Result<(
     }
 }
 
-/// The run that the scene asks for.
+/// The run as the scene specifies it.
 struct OwnRun {
     method: MethodChoice,
     dt: f64,
@@ -403,8 +401,7 @@ impl OwnRun {
         parts < 0.5 || (parts - parts.round()).abs() > 1e-9 * parts
     }
 
-    /// CPU time (s) of a pilot at one sweep a step, and of a reference of its own if
-    /// it needs one.
+    /// CPU time (s) of a pilot at one sweep per step, and of a separate reference if it needs one.
     fn least_cpu_s(&self, case: &Case) -> f64 {
         let steps = case.run(self.dt).steps as f64;
         let reference = case.reference_cpu_s();
@@ -444,8 +441,8 @@ impl Advice {
         self.measured.duration >= self.whole.duration
     }
 
-    /// The time (s) up to which, from t = 0 on, an advised run is known to keep to the tolerance; `None` if
-    /// nothing is advised.
+    /// The time (s) up to which, from t = 0 on, an advised run is known to keep to the tolerance; `None` without
+    /// advice.
     #[must_use]
     pub fn met_until(&self) -> Option<f64> {
         match self.answer {
@@ -467,7 +464,7 @@ impl Advice {
     }
 }
 
-/// The next number above with one digit.
+/// The next larger number with one digit.
 fn above(number: f64) -> f64 {
     let digits = format!("{number:.0e}");
     let near: f64 = digits.parse().unwrap_or(number);

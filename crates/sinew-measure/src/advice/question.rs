@@ -1,4 +1,4 @@
-//! The question to the advice.
+//! The question for the advice.
 
 use serde::{Deserialize, Serialize};
 
@@ -10,11 +10,11 @@ pub const DEFAULT_PILOT_SECONDS: f64 = 10.0;
 /// A required error, a budget, or both.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Question {
-    /// Largest relative error (fraction); without one, the smallest within the budget is requested.
+    /// Largest relative error (fraction); without it, the smallest error within the budget is requested.
     pub tolerance: Option<f64>,
-    /// Most CPU seconds per simulated second, set-up apart.
+    /// Largest CPU time per simulated second (s), without set-up.
     pub budget: Option<f64>,
-    /// CPU time (s) after which no pilot is begun.
+    /// CPU time (s) after which no pilot starts.
     pub pilot_seconds: f64,
     /// Measure of the cost of a run.
     pub cost: Cost,
@@ -34,7 +34,7 @@ pub enum QuestionError {
         "a budget of {0}: expected finite CPU seconds per simulated second above 0; 1 is real time"
     )]
     Budget(f64),
-    /// Neither of both.
+    /// Neither of them was given.
     #[error("neither a tolerance nor a budget is given; expected one of them, or both")]
     Nothing,
     /// The time for pilots.
@@ -74,7 +74,7 @@ impl Question {
     }
 }
 
-/// Checks that a tolerance can be asked for.
+/// Checks that a tolerance can be requested.
 ///
 /// # Errors
 /// [`QuestionError::Tolerance`].

@@ -40,7 +40,7 @@ pub enum Caveat {
         /// The order observed.
         order: f64,
     },
-    /// The compared solutions have errors in time that matter.
+    /// The compared solutions have errors in time that are not negligible.
     #[error(
         "{}: the solutions that are compared have an error in time of {} %, which the difference between meshes may hide; a \
          shorter dt makes it smaller",
@@ -69,7 +69,7 @@ pub enum Caveat {
          is too small; --levels 3"
     )]
     Locking,
-    /// A place differs on the finer mesh.
+    /// A region differs on the finer mesh.
     #[error(
         "{by}: its place takes {} of the scene's mesh and {} of a refined one: part of the difference; a named group of the mesh \
          does not change",
@@ -147,10 +147,10 @@ impl Caveat {
     }
 }
 
-/// Difference (fraction) beyond which terms of higher order count as much.
+/// Difference (fraction) beyond which terms of higher order are as large.
 const FAR: f64 = 0.3;
 
-/// Share of the difference between meshes from which on errors in time matter.
+/// Share of the difference between meshes above which errors in time are not negligible.
 const MATTERS: f64 = 0.3;
 
 /// Caveats that follow from the scene.
@@ -195,7 +195,7 @@ pub(super) fn hits(simulation: &Simulation) -> Vec<(String, f64, bool)> {
     hit.collect()
 }
 
-/// Caveats about places that take other parts of finer meshes.
+/// Caveats about regions that select other parts of finer meshes.
 pub(super) fn of_places(levels: &[Vec<(String, f64, bool)>]) -> Vec<Caveat> {
     let (Some(first), Some(last)) = (levels.first(), levels.last()) else {
         return Vec::new();

@@ -10,7 +10,7 @@ use crate::reference::ReferenceError;
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ConvergeError {
-    /// There is no finer mesh.
+    /// No finer mesh is possible.
     #[error(transparent)]
     Refinement(#[from] RefinementError),
     /// The integrator's options do not fit.
@@ -25,7 +25,7 @@ pub enum ConvergeError {
     /// The first steps on the scene's mesh failed.
     #[error(transparent)]
     Forecast(#[from] ForecastError),
-    /// There is no reference.
+    /// No reference could be solved.
     #[error("on mesh {level}: {source}")]
     Reference {
         /// The mesh, from 1 on.
@@ -62,7 +62,7 @@ pub enum ConvergeError {
     /// Errors are relative to the motion, and nothing moves.
     #[error("nothing moves in this scene, so that there is no error to estimate")]
     NothingMoves,
-    /// A displacement could not be found at all nodes.
+    /// A displacement could not be computed at all nodes.
     #[error("the motion of the nodes cannot be told: {0}")]
     Field(String),
 }

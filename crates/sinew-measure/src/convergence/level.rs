@@ -43,9 +43,9 @@ pub(super) struct Solved {
     pub(super) level: Level,
     /// Motion by the scene's method in its step; `None` if that diverged.
     pub(super) run: Option<Observed>,
-    /// With little or no error in time.
+    /// The motion with little or no error in time.
     pub(super) compared: Observed,
-    /// The rest in which the run ends.
+    /// The equilibrium in which the run ends.
     pub(super) rest: Option<Observed>,
     pub(super) halving: Halving,
 }
@@ -55,12 +55,12 @@ pub(super) struct Solved {
 pub(super) struct Halving {
     /// Error of the longer steps over the difference.
     pub(super) error: f64,
-    /// Error of the solution that is compared between meshes, over the difference.
+    /// Error of the solution that is compared between meshes, over that difference.
     pub(super) left: f64,
 }
 
 impl Halving {
-    /// For a method of some order, exact ones without.
+    /// The ratios for a method of some order; `None` for exact methods.
     fn of(order: Option<u8>) -> Self {
         let Some(order) = order else {
             return Self {
@@ -173,7 +173,7 @@ pub(super) fn solve(
     })
 }
 
-/// Runs the scene's method with its step cut into parts, or with half of these.
+/// Runs the scene's method with its step divided into parts, or with half of these parts.
 fn observe_run(
     simulation: &Simulation,
     prediction: &Prediction,
@@ -232,7 +232,7 @@ impl Recorder for Instants<'_> {
     }
 }
 
-/// The rest under the loads at the end of the scene.
+/// The equilibrium under the loads at the end of the scene.
 fn rest(simulation: &Simulation, places: &Places) -> Result<Option<Observed>, ConvergeError> {
     let system = simulation.system();
     // What tools hold is none of the loads.

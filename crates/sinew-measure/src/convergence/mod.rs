@@ -1,8 +1,8 @@
 //! The spatial error of a scene, estimated by the same scene on refined meshes, and its error in time.
 //!
 //! On each mesh the motion is solved twice: by the scene's method in its step, and with no or little error in time (the
-//! reference, or half the step if that costs too much). The second solutions differ between meshes by errors in space
-//! alone, which [`richardson`] continues; each differs from the first on its mesh by the error in time.
+//! reference, or half the step if the reference costs too much). The second solutions differ between meshes only by
+//! errors in space, which [`richardson`] extrapolates; each differs from the first on its mesh by the error in time.
 
 mod caveats;
 mod error;
@@ -30,7 +30,7 @@ use sinew_scene::Simulation;
 use level::Solved;
 use observed::{Observed, Places};
 
-/// Fewest and most meshes: the scene's, and its refinements.
+/// Smallest and largest number of meshes: the scene's, and its refinements.
 pub const LEVELS: std::ops::RangeInclusive<usize> = 2..=4;
 
 /// A scene on its mesh and on refined ones.
@@ -38,7 +38,7 @@ pub const LEVELS: std::ops::RangeInclusive<usize> = 2..=4;
 pub struct Convergence {
     /// The meshes, the scene's first, and the cost of the runs on them.
     pub levels: Vec<Level>,
-    /// Method by which errors in time were found.
+    /// Method for errors in time.
     pub time_check: TimeCheck,
     /// Displacements, probes, forces on tools and energies.
     pub quantities: Vec<Quantity>,
@@ -46,7 +46,7 @@ pub struct Convergence {
     pub caveats: Vec<Caveat>,
 }
 
-/// Runs a scene on its mesh and on refined ones, as [`predict`] says.
+/// Runs a scene on its mesh and on refined ones, as [`predict`] states.
 ///
 /// # Errors
 /// [`ConvergeError`].

@@ -1,4 +1,4 @@
-//! Quantities compared between meshes: displacements at places that all meshes have, forces on tools, and energies.
+//! Quantities compared between meshes: displacements at points that all meshes have, forces on tools, and energies.
 
 use sinew_scene::{BodyModel, ProbeAt, ProbePoint, Simulation, Subject as SceneSubject};
 
@@ -11,18 +11,18 @@ use super::quantity::{Subject, is_estimated};
 pub(super) struct Observed {
     /// Displacements of the nodes of the scene's mesh, which are the first of every refined one (m).
     nodes: Vec<f64>,
-    /// At the points of probes (m).
+    /// Displacements at the points of probes (m).
     probes: Vec<Vec<f64>>,
-    /// On tools, means since the instant before (N).
+    /// Forces on tools, means since the previous instant (N).
     forces: Vec<Vec<f64>>,
-    /// Elastic (J).
+    /// Elastic energy (J).
     energy: Vec<f64>,
 }
 
 /// The values of a quantity among the observed ones.
 pub(super) type Of = Box<dyn Fn(&Observed) -> &[f64]>;
 
-/// The places that are observed on every mesh.
+/// The points that are observed on every mesh.
 #[derive(Clone, Debug)]
 pub(super) struct Places {
     nodes: usize,
@@ -36,7 +36,7 @@ pub(super) struct Places {
 struct ProbePlace {
     name: String,
     at: At,
-    /// Its distance (m) from the body, if it lies outside.
+    /// Its distance (m) from the body, if it is outside.
     outside: Option<f64>,
 }
 
@@ -46,7 +46,7 @@ enum At {
     Point([f64; 3]),
     /// A node of the scene's mesh.
     Node(u32),
-    /// The mean over a group, of the probe with this place in the list.
+    /// The mean over a group, for the probe with this index in the list.
     Mean(usize),
 }
 
@@ -111,7 +111,7 @@ impl Places {
             .collect()
     }
 
-    /// Probes outside the body, of which the nearest node is taken on all meshes.
+    /// Probes outside the body, for which the nearest node is used on all meshes.
     pub(super) fn outside(&self) -> impl Iterator<Item = Caveat> {
         self.probes.iter().filter_map(|probe| {
             Some(Caveat::ProbeOutside {
@@ -122,7 +122,7 @@ impl Places {
     }
 }
 
-/// The point that the scene asks for, if any.
+/// The point that the scene specifies, if any.
 fn asked(written: &ProbePoint, name: &str) -> Option<[f64; 3]> {
     match written.at {
         ProbeAt::Point(point) if written.name == name => Some(point),
@@ -135,7 +135,7 @@ fn body_of(simulation: &Simulation) -> Result<&BodyModel, ConvergeError> {
     Ok(body.ok_or(sinew_scene::RefinementError::NoMesh)?)
 }
 
-/// The places as they lie in one of the meshes.
+/// The observed points in one of the meshes.
 pub(super) struct Eye<'a> {
     simulation: &'a Simulation,
     body: &'a BodyModel,
@@ -144,7 +144,7 @@ pub(super) struct Eye<'a> {
     probes: Vec<Vec<(u32, f64)>>,
     /// Displacement of all nodes (m).
     all: Vec<[f64; 3]>,
-    /// The instant (s) of the last observation, and the impulses (N s) of tools until then.
+    /// The instant (s) of the last observation, and the impulses (N s) of tools up to it.
     last: (f64, Vec<f64>),
     pub(super) seen: Observed,
 }
@@ -183,8 +183,8 @@ impl<'a> Eye<'a> {
         })
     }
 
-    /// Records the displacement `u` (m) of the degrees of freedom at a time (s), and the impulses (N s) of tools
-    /// until then, x, y, z of each.
+    /// Records the displacement `u` (m) of the degrees of freedom at a time (s), and the impulses (N s) of tools up to
+    /// it, x, y, z of each.
     pub(super) fn look(
         &mut self,
         t: f64,

@@ -14,9 +14,9 @@ use crate::forecast::Forecast;
 /// Methods to find errors in time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum TimeCheck {
-    /// Against a reference solution, whose own error is below 1e-6.
+    /// Comparison with a reference solution, whose own error is below 1e-6.
     Reference,
-    /// Against the same run with half the step.
+    /// Comparison with the same run with half the step.
     HalfStep,
 }
 
@@ -25,7 +25,7 @@ pub enum TimeCheck {
 pub struct Prediction {
     /// The meshes, the scene's first.
     pub levels: Vec<LevelPrediction>,
-    /// Method by which errors in time will be found.
+    /// Method by which errors in time will be computed.
     pub time_check: TimeCheck,
     /// Time (s) by this computer's clock, from a few steps and products on the scene's mesh.
     pub seconds: f64,
@@ -39,7 +39,7 @@ pub struct Prediction {
     pub(super) stride: usize,
 }
 
-/// Counts on one mesh; on refined ones expected.
+/// Counts on one mesh; on refined meshes, the expected ones.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LevelPrediction {
     /// Nodes.
@@ -58,13 +58,14 @@ pub struct LevelPrediction {
     pub bytes: usize,
 }
 
-/// Instants that are compared, at most.
+/// Largest number of compared instants.
 const INSTANTS: usize = 50;
 
 /// Sweeps of a reference by Faber series for each radian of the fastest motion, its check included.
 const REFERENCE_SWEEPS: f64 = 3.0;
 
-/// Blocks multiplied up to which a reference is taken, some ten seconds; beyond, where half steps multiply no fewer.
+/// Number of multiplied blocks up to which a reference is used, some ten seconds; beyond it, a reference is used only
+/// if half steps multiply at least as many.
 const REFERENCE_BLOCKS: f64 = 5e9;
 
 /// Time of a sweep of the reference over that of a product.

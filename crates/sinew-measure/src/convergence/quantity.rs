@@ -11,18 +11,18 @@ pub enum Subject {
     Displacement,
     /// The displacement at the point of a probe (m).
     Probe(String),
-    /// The force on a tool (N), the mean between the instants that are compared.
+    /// The force on a tool (N), the mean between the compared instants.
     Force(String),
     /// The elastic energy (J).
     ElasticEnergy,
 }
 
-/// The time of a quantity.
+/// The time to which a quantity refers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum When {
     /// The whole run.
     Run,
-    /// The rest in which the run ends, solved as such.
+    /// The equilibrium in which the run ends, solved as a static problem.
     Rest,
 }
 

@@ -1,11 +1,11 @@
-//! Richardson's extrapolation over meshes of which each has edges of half the length of the one before.
+//! Richardson's extrapolation over meshes, each with edges of half the length of the previous one.
 
 use serde::{Deserialize, Serialize};
 
-/// The order, in the length of edges, of linear elements on smooth solutions: of displacements in the mean
-/// square, and of energies (Strang and Fix, An Analysis of the Finite Element Method, 1973, chapters 3 and 8). At the edges of
-/// supports and at corners that point inwards stresses are singular as `r^(a-1)`, `a` between 1/2 and 1, and both have order
-/// `2 a` on meshes that are refined everywhere alike (Szabo and Babuska, Finite Element Analysis, 1991, chapter 10).
+/// The order, in the length of edges, of linear elements on smooth solutions: of displacements in the mean square, and
+/// of energies (Strang and Fix, An Analysis of the Finite Element Method, 1973, chapters 3 and 8). At the edges of
+/// supports and at re-entrant corners stresses are singular as `r^(a-1)`, `a` between 1/2 and 1, and both have order
+/// `2 a` on uniformly refined meshes (Szabo and Babuska, Finite Element Analysis, 1991, chapter 10).
 const SMOOTH: f64 = 2.0;
 
 /// The order below which differences give no estimate: their sum would diverge.
@@ -21,7 +21,8 @@ pub struct Estimate {
     pub differences: Vec<f64>,
     /// The order of the last two differences; `None` for two meshes, or if no difference is above 1e-6.
     pub observed_order: Option<f64>,
-    /// The order that the errors are taken from: the observed one, at most that of smooth solutions, or else that.
+    /// The order used for the errors: the observed one, but at most that of smooth solutions; without an observed one,
+    /// that of smooth solutions.
     pub order: f64,
     /// The error on the scene's mesh (fraction); `None` if differences do not fall.
     pub error: Option<f64>,
@@ -29,11 +30,11 @@ pub struct Estimate {
     pub error_of_finest: Option<f64>,
 }
 
-/// Continues the differences between neighbouring meshes (fractions, coarse ones first) as a geometric series: with order `p` each
-/// is `2^-p` of the one before, so that with a last difference `d` the error of the finest mesh is `d / (2^p - 1)`
-/// (Richardson, Phil. Trans. R. Soc. A 210, 1911; Roache, J. Fluids Eng. 116, 1994). An observed order above that of smooth
-/// solutions is a coincidence and not believed (Oberkampf and Roy, Verification and Validation in Scientific Computing, 2010,
-/// section 8.6).
+/// Extrapolates the differences between neighbouring meshes (fractions, coarse ones first) as a geometric series: with
+/// order `p` each is `2^-p` times the previous one, so that with a last difference `d` the error of the finest mesh is
+/// `d / (2^p - 1)` (Richardson, Phil. Trans. R. Soc. A 210, 1911; Roache, J. Fluids Eng. 116, 1994). An observed order
+/// above that of smooth solutions is a coincidence and is not used (Oberkampf and Roy, Verification and Validation in
+/// Scientific Computing, 2010, section 8.6).
 ///
 /// ```
 /// use sinew_measure::convergence::richardson;

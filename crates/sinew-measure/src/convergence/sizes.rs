@@ -1,4 +1,4 @@
-//! Counts of a mesh and of its refinements, known before these are made.
+//! Counts of a mesh and of its refinements, computed before these are built.
 
 use sinew_scene::BodyModel;
 
@@ -25,8 +25,8 @@ impl Sizes {
         }
     }
 
-    /// With each tetrahedron cut into eight: a node in the middle of each edge, three new edges in each face and one in each
-    /// tetrahedron, eight new faces in each tetrahedron.
+    /// The counts after each tetrahedron is divided into eight: a node in the middle of each edge, three new edges in
+    /// each face and one in each tetrahedron, eight new faces in each tetrahedron.
     pub(super) fn refined(self) -> Self {
         let Self {
             nodes,

@@ -1,4 +1,4 @@
-//! Errors in space against solutions that are known.
+//! Errors in space compared with known solutions.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -31,8 +31,8 @@ const DENSITY: f64 = 1000.0;
 const TRACTION: f64 = 10.0;
 const RISE: f64 = 0.1;
 
-/// The displacement (m) of the column's top by d'Alembert's solution: waves of the load that come back from the fixed
-/// end, turned round, after each way there and back.
+/// The displacement (m) of the column's top by d'Alembert's solution: waves of the load that return from the fixed end
+/// with reversed sign after each round trip.
 fn top_of_column(t: f64) -> f64 {
     let modulus = 3000.0 * 0.7 / (1.3 * 0.4);
     let speed = (modulus / DENSITY).sqrt();
@@ -224,7 +224,8 @@ fn a_place_between_nodes_and_one_of_single_nodes_are_named() {
     assert!(points.contains("point-place"), "{points}");
 }
 
-/// A plate that comes down slowly on a light bar which does not widen feels `E A d/L` all the way, on every mesh.
+/// A plate that moves down slowly on a light bar without lateral contraction receives `E A d/L` at all times, on every
+/// mesh.
 #[test]
 fn the_force_on_a_tool_is_one_of_the_quantities() {
     let (speed, duration) = (-0.01, 0.2);
@@ -256,7 +257,7 @@ fn the_force_on_a_tool_is_one_of_the_quantities() {
     assert_eq!(rests.count(), 0);
 }
 
-/// A cube of large deformation under a traction, in steps that are cut by its stiffness unless `dt` says otherwise.
+/// A cube of large deformation under a traction, in steps divided by its stiffness unless `dt` states otherwise.
 fn squeezed(dt: &str) -> String {
     format!(
         "[mesh]\ncube = {{ cells = 2, edge = 0.1 }}\n[[region]]\ndensity = 1000.0\nmodel = \"neo-hookean\"\nyoungs_modulus = 3500.0\n\
@@ -265,7 +266,8 @@ fn squeezed(dt: &str) -> String {
     )
 }
 
-/// Half of a step that is cut in two by the stiffness is one part of the same length, so that the two runs would be the same.
+/// Half of a step that the stiffness divides in two is one substep of the same length, so the two runs would be the
+/// same.
 #[test]
 fn steps_that_are_cut_by_the_stiffness_have_the_error_in_time_that_fine_steps_tell() {
     let (cut, fine) = (
@@ -291,7 +293,7 @@ fn steps_that_are_cut_by_the_stiffness_have_the_error_in_time_that_fine_steps_te
     assert!((0.7..1.4).contains(&(said / truth)), "{said} for {truth}");
 }
 
-/// A free body that nothing pushes, in steps of a power of two.
+/// A free body without loads, in steps of a power of two.
 #[test]
 fn runs_of_equal_bits_are_no_comparison() {
     let text = "[mesh]\ncube = { cells = 1, edge = 0.125 }\n[[region]]\ndensity = 1000.0\nmodel = \"neo-hookean\"\nyoungs_modulus = 1000.0\n\

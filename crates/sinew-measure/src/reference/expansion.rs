@@ -9,35 +9,36 @@ use sinew_core::{Clock, LinearOperators, State};
 use super::faber::Ellipse;
 use super::fastest_turn;
 
-/// Derivatives of a load's factor that count: in a step a factor turns by at most pi, and pi^32/32! is 3e-20.
+/// Number of relevant derivatives of a load's factor: the phase of a factor changes by at most pi in a step, and
+/// pi^32/32! is 3e-20.
 const DERIVATIVES: usize = 32;
 
-/// Share by which the ellipse is larger than the spectrum, whose ends are found from inside.
+/// Share by which the ellipse is larger than the spectrum, whose ends are approached from inside.
 const MARGIN: f64 = 0.01;
 
-/// Largest capacity times step. A longer step takes fewer products per second, and more observations.
+/// Largest capacity times step. A longer step needs fewer products per second, but more observations.
 const REACH: f64 = 32.0;
 
-/// Steps of a run, at least, so that a check has some to choose from; as long as they reach this far.
+/// Minimum number of steps of a run, so that a check has some to choose from; steps are not shortened below the least
+/// reach for this.
 const STEPS: f64 = 5.0;
 const LEAST_REACH: f64 = 10.0;
 
 /// Largest capacity times the time between two observations of the motion.
 const GAP: f64 = 4.0;
 
-/// Most observations of the motion in a step, its end included.
+/// Largest number of observations of the motion in a step, its end included.
 const LOOKS: usize = 16;
 
 /// Numbers that are updated together, small enough for a cache.
 const CHUNK: usize = 2048;
 
-/// Steps a linear system by the Faber series of `exp(t A)`, A being the matrix of its equation of order 1
-/// (Novati, Numerical Linear Algebra with Applications 10, 2003), with loads as variables of their own
-/// whose derivatives are one another (as in Al-Mohy and Higham, SIAM Journal on Scientific Computing 33,
-/// 2011).
+/// Steps a linear system by the Faber series of `exp(t A)`, A being the matrix of its equation of order 1 (Novati,
+/// Numerical Linear Algebra with Applications 10, 2003), with loads as additional variables whose derivatives are one
+/// another (as in Al-Mohy and Higham, SIAM Journal on Scientific Computing 33, 2011).
 ///
-/// In the norm of energy the numerical range of A lies within `-damping..0` by `-omega..omega`, whatever
-/// the damping. Any instant of a step is a sum of the same vectors.
+/// In the norm of energy the numerical range of A lies within `-damping..0` by `-omega..omega`, for any damping. The
+/// state at any instant of a step is a sum of the same vectors.
 #[derive(Debug)]
 pub(crate) struct Expansion<'a> {
     operators: &'a LinearOperators,
@@ -98,8 +99,8 @@ impl<'a> Expansion<'a> {
     }
 
     /// Takes a step from `state`, whose velocity must be at the displacement's time, towards the last of `times` (s),
-    /// increasing and all later; returns the number of them that it has reached. `look` receives the motion at these,
-    /// with its second argument true, and at instants between.
+    /// increasing and all later; returns the number of times that it has reached. `look` receives the motion at these
+    /// times, with its second argument true, and at instants between them.
     pub(crate) fn step(
         &mut self,
         state: &mut State,
@@ -211,7 +212,7 @@ impl<'a> Expansion<'a> {
         self.sweeps += 1;
     }
 
-    /// Adds a term to the observed states and makes the next one.
+    /// Adds a term to the observed states and computes the next one.
     fn advance(&mut self, n: usize, shares: &[(usize, f64)], is_last: bool, whole: f64) {
         let (first, second) = self.ellipse.recurrence(n);
         let shift = -self.ellipse.centre;

@@ -1,4 +1,4 @@
-//! Reference solutions of force laws, extrapolated to steps of no length.
+//! Reference solutions of force laws, extrapolated to steps of zero length.
 
 use sinew_core::{ElasticLaw, Integrator, Run, State, System};
 use sinew_integrators::Method;
@@ -10,19 +10,19 @@ use super::error_norm::ErrorNorm;
 use super::track::{ReferenceError, ReferenceMethod, Sight, Track};
 use crate::cpu_time::thread_cpu_time;
 
-/// Largest difference from the second solution with which a reference is still called one.
+/// Largest difference from the second solution for which a reference is accepted.
 const ALLOWED: f64 = 1e-2;
 
-/// Steps by which the cost of a solution is predicted.
+/// Number of steps from which the cost of a solution is predicted.
 const TRIAL_STEPS: u32 = 2;
 
-/// A method whose error falls as a power of the step, and how far its steps are halved.
+/// A method whose error falls as a power of the step, and the halving of its steps.
 struct Falling {
     integrator: Box<dyn Integrator>,
     order: i32,
-    /// Longest step (s) to begin with.
+    /// Longest step (s), with which it begins.
     first: f64,
-    /// Most halvings of it.
+    /// Largest number of halvings of this step.
     halvings: u32,
     /// Relative difference of two solutions in halved steps below which no shorter ones are tried.
     aim: f64,
@@ -60,8 +60,9 @@ impl Falling {
         ]
     }
 
-    /// With tools: methods for which contact is exact at the end of each step, and which do not know when within it a node met its tool. So
-    /// the check takes steps of another length as well, which end elsewhere.
+    /// Methods for bodies with tools: contact is exact at the end of each step, but the methods do not know the time
+    /// within the step at which a node met its tool. So the check also takes steps of another length, which end at
+    /// other times.
     fn touched(first: f64) -> [Self; 2] {
         let falling = |integrator: Box<dyn Integrator>, first: f64| Self {
             integrator,
@@ -77,7 +78,7 @@ impl Falling {
     }
 
     /// Methods for stiffness damping, under which explicit steps would have to be as short as the square of their
-    /// stable length: the average acceleration method, and generalised-alpha as the check. Their errors are alike in
+    /// stable length: the average acceleration method, and generalised-alpha as the check. Their errors are similar in
     /// steps of the same length, so that their difference would hide a common part: the check's steps are twice as
     /// long.
     #[cfg(feature = "implicit")]
@@ -99,7 +100,7 @@ impl Falling {
     }
 }
 
-/// Halvings after which most solutions hardly change.
+/// Number of halvings after which most solutions hardly change.
 const USUAL_HALVINGS: i32 = 3;
 
 /// CPU time (s) per simulated second of [`by_extrapolation`] with the usual number of halvings, estimated from some
@@ -134,9 +135,10 @@ struct Converged<'a> {
     sweeps: u64,
 }
 
-/// Follows a system from `start` through `times` (s), increasing: by Runge and Kutta's method in steps halved until they hardly matter,
-/// extrapolated by Richardson's rule, and once more by central difference, which has another order and no formula in common, extrapolated
-/// as well. Bodies with stiffness damping are followed by implicit methods, those that tools touch by the two methods of order 1.
+/// Follows a system from `start` through `times` (s), increasing: by Runge and Kutta's method in steps that are halved
+/// until the solution hardly changes, extrapolated by Richardson's rule; and a second time by central difference, which
+/// has another order and no formula in common, also extrapolated. Bodies with stiffness damping are followed by
+/// implicit methods, bodies in contact with tools by the two methods of order 1.
 ///
 /// # Errors
 /// [`ReferenceError`] if neither converges, or the two solutions differ by more than 1 %.
@@ -207,9 +209,9 @@ fn converge<'a>(
         .ok_or(ReferenceError::NotConverged { method })
 }
 
-/// The motion in a whole number of equal steps between each two instants, halved a given number of times; `None` if
-/// it cannot be computed. Each halving has exactly twice as many steps everywhere, without which Richardson's rule
-/// would remove a wrong error.
+/// The motion in a whole number of equal steps between each two instants, halved a given number of times; `None` if it
+/// cannot be computed. Each halving has exactly twice as many steps everywhere, because Richardson's rule would
+/// otherwise remove a wrong error.
 fn follow<'a>(
     method: &mut Falling,
     system: &dyn System,
@@ -301,7 +303,7 @@ mod tests {
         assert!(error < 2.0 * track.error, "{error} {}", track.error);
     }
 
-    /// Instants are rounded, so that intervals are longer or shorter than the first step by some last digits.
+    /// Instants are rounded, so that some intervals differ from the first step in their last digits.
     #[cfg(feature = "implicit")]
     #[test]
     fn implicit_steps_are_halved_between_all_instants_alike() {
@@ -317,7 +319,7 @@ mod tests {
         assert!(error < 1e-4 && error < 2.0 * stated, "{error} {stated}");
     }
 
-    /// Between instants that the first step does not divide, too.
+    /// Halving between instants that the first step does not divide.
     #[test]
     fn halving_takes_twice_the_steps_where_the_first_does_not_divide_the_interval() {
         let (model, start, _) = oscillator();

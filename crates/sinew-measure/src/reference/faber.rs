@@ -1,15 +1,15 @@
 //! The Faber series of the exponential function on an ellipse.
 
-/// Terms whose sum is below this are left out.
+/// Largest sum of the terms that are left out.
 const LEFT_OUT: f64 = 1e-12;
 
-/// Size at which numbers of a recurrence are scaled down.
+/// Size above which numbers of a recurrence are scaled down.
 const HUGE: f64 = 1e250;
 
 /// An ellipse about a point of the real axis, with axes along the real and the imaginary one.
 ///
-/// Its Faber polynomials, `F_0 = 1`, are `F_n(z) = w^n + (k/w)^n` where
-/// `z = centre + capacity (w + k/w)`: Chebyshev polynomials up to a factor, of which none overflows.
+/// Its Faber polynomials, `F_0 = 1`, are `F_n(z) = w^n + (k/w)^n` where `z = centre + capacity (w + k/w)`: Chebyshev
+/// polynomials up to a factor, none of which overflows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Ellipse {
     /// Centre (1/s).
@@ -21,8 +21,8 @@ pub(super) struct Ellipse {
 }
 
 impl Ellipse {
-    /// The ellipse of least capacity around `-damping..0` by `-omega..omega` (1/s), the box of roots of motions
-    /// that neither grow nor are faster.
+    /// The ellipse of least capacity around `-damping..0` by `-omega..omega` (1/s), the box that contains the roots of
+    /// motions that do not grow and are not faster.
     pub(super) fn round(omega: f64, damping: f64) -> Self {
         let half = damping / 2.0;
         // Of all axes a, b with (half/a)^2 + (omega/b)^2 = 1, those of the least a + b.
@@ -94,7 +94,7 @@ impl Ellipse {
 mod tests {
     use super::*;
 
-    /// A number of the complex plane.
+    /// A complex number.
     type Complex = (f64, f64);
 
     fn product(a: Complex, b: Complex) -> Complex {

@@ -1,4 +1,4 @@
-//! References of systems by all methods there are.
+//! References of systems by all available methods.
 
 use sinew_core::spectrum::Spectrum;
 use sinew_core::vectors::dot;
@@ -10,7 +10,7 @@ use super::spot_checks::SpotChecks;
 use super::track::{ReferenceError, ReferenceMethod, Sight, Track};
 use super::{Expansion, Taylor};
 
-/// Largest error of a reference that is still called one.
+/// Largest error of an accepted reference.
 const ALLOWED: f64 = 1e-6;
 
 /// Ratio of the check's number of steps to that of the solution.
@@ -19,10 +19,10 @@ const CHECK: f64 = 1.5;
 /// Length of a Taylor series's steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Pace {
-    /// Short enough to see the peaks of the fastest motion.
+    /// Short enough to show the peaks of the fastest motion.
     Short,
-    /// Four times as long, if short ones cost too much. At |lambda| h = 2 the last term of the series
-    /// is below 2^24/24! = 3e-17, still under rounding; sizes of the fastest motion are less exact.
+    /// Four times as long, if short ones cost too much. At |lambda| h = 2 the last term of the series is below 2^24/24!
+    /// = 3e-17, still below rounding; amplitudes of the fastest motion are less exact.
     Long,
 }
 
@@ -36,14 +36,14 @@ impl Pace {
     }
 }
 
-/// A method with its steps.
+/// A method and its steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Course {
     /// Taylor series.
     Taylor(Pace),
     /// Faber series.
     Faber,
-    /// Extrapolation, for force laws and bodies that tools touch.
+    /// Extrapolation, for force laws and bodies in contact with tools.
     Extrapolated,
 }
 
@@ -57,10 +57,10 @@ pub fn follow(system: &dyn System, start: &State, times: &[f64]) -> Result<Track
 }
 
 /// Like [`follow`], with a twentieth of the products: by Faber series in long steps, a fifth of them checked by the
-/// Taylor series. The largest displacement is sought at fewer instants.
+/// Taylor series. The largest displacement is searched at fewer instants.
 ///
 /// # Errors
-/// [`ReferenceError`] when the system is not linear or the error to expect is above 1e-6.
+/// [`ReferenceError`] when the system is not linear or the expected error is above 1e-6.
 pub fn follow_affordably(
     system: &dyn System,
     start: &State,

@@ -1,9 +1,9 @@
 //! Reference solutions, against which runs are measured.
 //!
-//! A linear system under loads that are smooth between breakpoints is solved by its Taylor series
-//! in time, to rounding. If that costs too much, Faber series of its exponential solve it in a
-//! twentieth of the products, and the Taylor series checks parts. No method under test is involved. Force laws are solved
-//! by a method of order 4 in steps that are halved and extrapolated, and by one of order 2 as a check.
+//! A linear system under loads that are smooth between breakpoints is solved by its Taylor series in time, to rounding.
+//! If that costs too much, Faber series of its exponential solve it in a twentieth of the products, and the Taylor
+//! series checks parts. No method under test is involved. Force laws are solved by a method of order 4 with halved
+//! steps and extrapolation, and by one of order 2 as a check.
 
 mod error_norm;
 mod expansion;

@@ -2,9 +2,8 @@
 
 use sinew_core::State;
 
-/// The largest |component| of the motion between two states, or `largest_so_far` if that is
-/// larger: of the cubic through displacement and velocity at both ends (Hermite). It is finite for
-/// finite states of any size.
+/// The largest |component| of the motion between two states, or `largest_so_far` if that is larger. The motion is the
+/// cubic through displacement and velocity at both ends (Hermite). The result is finite for finite states of any size.
 pub(super) fn peak_between(before: &State, after: &State, largest_so_far: f64) -> f64 {
     let h = after.t() - before.t();
     let mut peak = largest_so_far;
@@ -27,8 +26,8 @@ struct Hermite {
 }
 
 impl Hermite {
-    /// The largest of its Bezier points `u0, u0 + d0/3, u1 - d1/3, u1`, whose hull it never leaves;
-    /// by the triangle inequality.
+    /// The largest of its Bezier points `u0, u0 + d0/3, u1 - d1/3, u1`, whose hull contains the cubic; bounded by the
+    /// triangle inequality.
     fn bound(&self) -> f64 {
         largest_of(self.ends) + largest_of(self.slopes) / 3.0
     }
@@ -87,8 +86,8 @@ mod tests {
         peak_between(&State::new(vec![u[0]], vec![v[0]]), &after, 0.0)
     }
 
-    /// The largest |value| of the same cubic at many points, by the blending of its four Bezier
-    /// points, all of it scaled by a power of two.
+    /// The largest |value| of the same cubic at many points, by the blending of its four Bezier points, all scaled by a
+    /// power of two.
     fn sampled(u: [f64; 2], v: [f64; 2], h: f64) -> f64 {
         let scale = u
             .iter()

@@ -44,8 +44,8 @@ impl<'a> SpotChecks<'a> {
         }
     }
 
-    /// Takes a step from one state to another, and solves it again if it is due: the first, then
-    /// a fifth of the time.
+    /// Receives a step from one state to another, and solves it again if it is due: the first step, then a fifth of the
+    /// time.
     pub(super) fn see(&mut self, before: &State, after: &State) {
         self.displacement.note_size(&after.u);
         self.velocity.note_size(&after.v);
@@ -63,10 +63,10 @@ impl<'a> SpotChecks<'a> {
         }
     }
 
-    /// The error to expect of displacements, relative to `size` (m): the sum of the differences of all
-    /// steps, as if none decayed and those not solved again were like the others, and the standard error of that mean where
-    /// the differences spread as widely as they are large. A relative error of the velocity counts as one of the
-    /// displacement.
+    /// The expected error of displacements, relative to `size` (m): the sum of the differences of all steps, as if no
+    /// difference decayed and the steps not solved again were like the others, plus the standard error of that mean if
+    /// the spread of the differences is as large as the differences. A relative error of the velocity counts as one of
+    /// the displacement.
     pub(super) fn error(&self, size: f64) -> f64 {
         let all = match self.solved > 0.0 {
             true => self.offered / self.solved,

@@ -11,7 +11,7 @@ use super::fastest_turn;
 /// few; shorter steps show the peaks of the motion between them.
 const REACH: f64 = 0.5;
 
-/// Terms of the series. At |lambda| h = 1/2 the last is below 2^-24/24!, far under rounding.
+/// Terms of the series. At |lambda| h = 1/2 the last is below 2^-24/24!, far below rounding.
 const TERMS: usize = 24;
 
 /// Largest |lambda| h of a check: terms up to e^12 leave ten digits of the fastest motion.
@@ -20,8 +20,8 @@ const REACH_OF_CHECK: f64 = 12.0;
 /// Terms of a check. At |lambda| h = 12 the last is below 12^50/50! = 3e-11.
 const TERMS_OF_CHECK: usize = 50;
 
-/// Derivatives of a load's factor that count in a check: in a step a factor turns by at most pi, and
-/// pi^32/32! is 3e-20.
+/// Number of relevant derivatives of a load's factor in a check: the phase of a factor changes by at most pi in a step,
+/// and pi^32/32! is 3e-20.
 const DERIVATIVES_OF_CHECK: usize = 32;
 
 /// Steps a linear system by the Taylor series of its motion (Moler and Van Loan, SIAM Review 45,
@@ -32,7 +32,7 @@ pub struct Taylor<'a> {
     longest_step: f64,
     terms: usize,
     breakpoints: Vec<f64>,
-    /// Derivatives of each load's factor; those beyond are 0.
+    /// Derivatives of each load's factor; higher ones are 0.
     ramps: Vec<Vec<f64>>,
     displacement: Vec<f64>,
     velocity: Vec<f64>,
@@ -58,7 +58,7 @@ impl<'a> Taylor<'a> {
         }
     }
 
-    /// The series in long steps of many terms, which costs a tenth and is right to about ten digits.
+    /// The series in long steps of many terms, which costs a tenth and is correct to about ten digits.
     pub(crate) fn checking(operators: &'a LinearOperators, spectrum: &Spectrum) -> Self {
         let counts = [TERMS_OF_CHECK, DERIVATIVES_OF_CHECK];
         Self::with(operators, spectrum, REACH_OF_CHECK, counts)

@@ -12,8 +12,8 @@ pub struct Track {
     pub times: Vec<f64>,
     /// Displacement (m) at each instant.
     pub displacements: Vec<Vec<f64>>,
-    /// The impulses (N s) until each instant of the things that touch the body, x, y, z of each; empty if nothing
-    /// does.
+    /// The impulses (N s) until each instant of the objects in contact with the body, x, y, z of each; empty without
+    /// contact.
     pub impulses: Vec<Vec<f64>>,
     /// Largest |component| (m) over the run.
     pub max_u: f64,
@@ -28,8 +28,8 @@ pub struct Track {
 }
 
 impl Track {
-    /// Smallest relative error of a run that the reference measures as a number: of a smaller one it says
-    /// only that it is below. 0 for a reference to rounding.
+    /// Smallest relative error of a run that the reference can measure: for smaller errors it gives only this bound. 0
+    /// for a reference that is exact to rounding.
     #[must_use]
     pub fn least_error(&self) -> f64 {
         match self.method {
@@ -41,16 +41,17 @@ impl Track {
     }
 }
 
-/// The method of a reference.
+/// The method by which a reference was solved.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ReferenceMethod {
-    /// The Taylor series of the motion in time, to rounding; its error is the difference from the same with
-    /// steps of two thirds the length.
+    /// The Taylor series of the motion in time, to rounding; its error is the difference from the same series with
+    /// steps of two thirds of the length.
     Taylor,
     /// Faber series of the exponential function in long steps; its error is the difference from the Taylor
     /// series over a fifth of the time, as if the rest were like it.
     Faber,
-    /// A method in halved steps, extrapolated to steps of no length; its error is the difference from another method, extrapolated too.
+    /// A method in halved steps, extrapolated to steps of zero length; its error is the difference from another method,
+    /// extrapolated too.
     Extrapolated {
         /// Id of the method.
         method: &'static str,
@@ -66,7 +67,7 @@ pub enum ReferenceError {
     /// The system is not linear.
     #[error("a reference solution needs the matrices of a linear system")]
     NotLinear,
-    /// A method's solutions do not come together in any of the steps that were tried.
+    /// A method's solutions do not converge for any of the tried steps.
     #[error("no reference solution: `{method}` does not converge in any of the steps tried")]
     NotConverged {
         /// Id of the method.
@@ -112,7 +113,7 @@ impl<'a> Sight<'a> {
         }
     }
 
-    /// Takes the extremes of the motion since the last call.
+    /// Records the extremes of the motion since the last call.
     pub(super) fn pass(&mut self, state: &State) {
         let most = self.max_u.max(largest(&state.u));
         self.max_u = peak_between(&self.before, state, most);
@@ -122,7 +123,7 @@ impl<'a> Sight<'a> {
         }
     }
 
-    /// Keeps the displacement at the next of the instants.
+    /// Stores the displacement at the next of the instants.
     pub(super) fn keep(&mut self, state: &State) {
         self.displacements.push(state.u.clone());
     }

@@ -1,4 +1,4 @@
-//! Numbers that should be there and cannot be shown: JSON has no NaN and no infinity.
+//! Required numbers that cannot be shown: JSON has no NaN and no infinity.
 
 use std::collections::BTreeMap;
 
@@ -11,7 +11,7 @@ use super::{CaseInfo, Row, RowOutcome};
 pub struct Gap {
     /// The field that it belongs to.
     pub field: String,
-    /// The text that replaces it, such as `inf`; `None` without any.
+    /// The text that replaces it, such as `inf`; `None` without such a text.
     pub value: Option<String>,
     /// Reason why it cannot be shown.
     pub reason: &'static str,
@@ -32,7 +32,7 @@ impl Gaps {
         }
     }
 
-    /// A number that need not be there.
+    /// A number that may be absent.
     fn maybe(&mut self, field: &str, value: Option<f64>) {
         if let Some(value) = value {
             self.number(field, value);
@@ -59,7 +59,7 @@ impl Gaps {
 }
 
 impl Row {
-    /// The numbers of the run that should be there and cannot be shown.
+    /// The numbers of the run that are required and cannot be shown.
     #[must_use]
     pub fn gaps(&self) -> Vec<Gap> {
         // All fields by name, so that a new one is not forgotten here.
@@ -129,7 +129,7 @@ impl Row {
 }
 
 impl CaseInfo {
-    /// The numbers of the case that should be there and cannot be shown.
+    /// The numbers of the case that are required and cannot be shown.
     #[must_use]
     pub fn gaps(&self) -> Vec<Gap> {
         let Self {
@@ -156,7 +156,7 @@ impl CaseInfo {
     }
 }
 
-/// Reads a number, NaN for the `null` that replaces one that could not be shown.
+/// Reads a number, NaN for the `null` that replaces a number that could not be shown.
 pub(super) fn null_is_nan<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
     Ok(Option::deserialize(from)?.unwrap_or(f64::NAN))
 }

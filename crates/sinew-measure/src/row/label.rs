@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use serde_json::Value;
 use sinew_integrators::OptionLabel;
 
-/// The integrator's id and its options, abbreviated as the method says: `cnn Q=4`,
-/// `central-difference substeps=3`, `cnn-stabilised chebyshev 4`.
+/// The integrator's id and its options, abbreviated as the method defines: `cnn Q=4`, `central-difference substeps=3`,
+/// `cnn-stabilised chebyshev 4`.
 pub(crate) fn label(integrator: &str, options: &BTreeMap<String, Value>) -> String {
     let entry = sinew_integrators::entry(integrator);
     let labelled = options.iter().map(|(key, value)| {
@@ -35,7 +35,7 @@ fn option(label: OptionLabel, key: &str, value: &Value) -> String {
     }
 }
 
-/// The values of these keys of a table; none if it is no table or lacks the first key.
+/// The values of these keys of a table; none if the value is no table or lacks the first key.
 fn phrase(keys: &[&str], value: &Value) -> Option<String> {
     let table = value.as_object()?;
     table.get(*keys.first()?)?;

@@ -1,4 +1,4 @@
-//! The runs that nothing else beats.
+//! The runs that no other run beats.
 
 use std::collections::BTreeMap;
 
@@ -10,8 +10,8 @@ const LARGEST_ON_FRONT: f64 = 0.5;
 /// Sets `pareto` on every row: true if no other finished run of the same case is at least as
 /// cheap (`cpu_s_per_s`) and at least as accurate (`error`), and better in one of the two.
 ///
-/// Equal runs are on the front together. Diverged runs never are, and neither are runs with an
-/// error above 50 %: a zero solution has 100 % at no cost.
+/// Equal runs are on the front together. Diverged runs are never on the front, and neither are runs with an error above
+/// 50 %: a zero solution has 100 % at no cost.
 pub fn mark_pareto(rows: &mut [Row]) {
     let mut cases: BTreeMap<&str, Vec<(usize, f64, f64)>> = BTreeMap::new();
     for (index, row) in rows.iter().enumerate() {

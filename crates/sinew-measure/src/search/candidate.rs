@@ -11,12 +11,12 @@ use crate::method_choice::{MethodChoice, MethodError};
 pub struct Candidate {
     /// The method.
     pub method: MethodChoice,
-    /// The largest step (s) at which it is stable; infinite if it always is or cannot compute it, 0
-    /// if it never is.
+    /// The largest step (s) at which it is stable; infinite if it is always stable or cannot compute the step, 0 if it
+    /// is never stable.
     pub stable_step: f64,
     /// True if the method can compute that step.
     pub stable_step_is_known: bool,
-    /// The highest order it declares; none if it is exact at any step.
+    /// The highest order it declares; none if the method is exact at any step.
     pub order: Option<u8>,
     /// True if its set-up factorises a matrix, which on a large mesh costs more than many runs.
     pub factorises: bool,

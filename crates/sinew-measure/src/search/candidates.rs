@@ -5,9 +5,8 @@ use sinew_scene::Simulation;
 use super::Candidate;
 use crate::method_choice::{MethodChoice, MethodError};
 
-/// Every integrator with its defaults, the scene's own also with the scene's options, and those
-/// that trade error for cost by an option set to fit each of `errors`. Those that cannot run on
-/// the scene come with the reason.
+/// Every integrator with its defaults, the scene's own also with the scene's options, and those that trade error for
+/// cost by an option, set for each of `errors`. Integrators that cannot run on the scene are returned with the reason.
 #[must_use]
 pub fn candidates(
     simulation: &Simulation,

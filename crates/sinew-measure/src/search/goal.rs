@@ -7,10 +7,9 @@ use crate::row::Row;
 /// The largest error and cost of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Goal {
-    /// Largest relative error over the whole scene (fraction), to be expected where not all of it
-    /// is compared.
+    /// Largest relative error over the whole scene (fraction), the expected one if only a part is compared.
     pub error: f64,
-    /// Most CPU seconds per simulated second, set-up apart; infinite where cost is no matter.
+    /// Largest CPU time per simulated second (s), without set-up; infinite if cost does not matter.
     pub budget: f64,
 }
 

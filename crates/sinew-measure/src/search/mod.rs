@@ -1,10 +1,9 @@
 //! The cheapest runs for an error, found without measuring every method at every step.
 //!
-//! Each candidate is followed from its longest stable step to shorter ones, by the order it
-//! declares and the errors measured so far, for as long as it can still become cheaper than
-//! the best run so far; the most promising one goes first. Steps divide the time between two
-//! instants of the comparison, so that all errors are taken at the same instants; those of methods
-//! that need loads to change between steps meet these changes too, anywhere in the scene.
+//! Each candidate is followed from its longest stable step to shorter ones, by the order it declares and the errors
+//! measured so far, for as long as it can still become cheaper than the best run so far; the most promising candidate
+//! is first. Steps divide the time between two instants of the comparison, so that all errors are taken at the same
+//! instants; those of methods that need loads to change between steps meet these changes too, anywhere in the scene.
 
 mod candidate;
 mod candidates;
@@ -26,13 +25,13 @@ use crate::timing::Effort;
 use crate::{Row, Span};
 use trail::{Aim, Trail};
 
-/// Costs that differ by less than this share count as equal: times repeat no better.
+/// Costs that differ by less than this share count as equal: times are not reproducible more accurately.
 const NOISE: f64 = 0.1;
 
-/// Most pilots of one candidate for one goal.
+/// Largest number of pilots of one candidate for one goal.
 const MOST_PILOTS: usize = 16;
 
-/// Most runs that are made again for one goal.
+/// Largest number of repeated runs for one goal.
 const MOST_AGAIN: usize = 4;
 
 /// A search over candidates; measurements for one goal are reused for the next.
@@ -48,7 +47,7 @@ pub struct Search<P> {
 }
 
 impl<P: Pilots> Search<P> {
-    /// A search by pilots over `span`, for runs over `duration` (s): set-up counts once a run.
+    /// A search with pilots over `span`, for runs over `duration` (s): set-up counts once per run.
     pub fn new(pilots: P, span: Span, duration: f64) -> Self {
         Self {
             pilots,
@@ -61,7 +60,7 @@ impl<P: Pilots> Search<P> {
         }
     }
 
-    /// Adds a candidate, unless its method is one already.
+    /// Adds a candidate, unless its method is already a candidate.
     pub fn add(&mut self, candidate: Candidate) {
         let known = |trail: &Trail| trail.candidate.method == candidate.method;
         if !self.trails.iter().any(known) {
@@ -72,14 +71,13 @@ impl<P: Pilots> Search<P> {
         }
     }
 
-    /// Follows all candidates towards a goal, always the one that promises to reach it at the
-    /// lowest cost.
+    /// Follows all candidates towards a goal, always the one that may reach it at the lowest cost.
     pub fn seek(&mut self, goal: Goal) {
         self.pursue(goal, |search, _| search.lowest_cost(goal, |_| true));
     }
 
-    /// Follows every integrator to its own cheapest run for a goal, as long as that may cost less
-    /// than `times` the cheapest of all.
+    /// Follows every integrator to its own cheapest run for a goal, as long as that may cost less than `times` times
+    /// the cheapest of all.
     pub fn survey(&mut self, goal: Goal, times: f64) {
         self.pursue(goal, |search, trail| {
             let integrator = &trail.candidate.method.integrator;
@@ -126,20 +124,20 @@ impl<P: Pilots> Search<P> {
         }
     }
 
-    /// Measures one more run, of any stable step (s).
+    /// Measures one more run, with any stable step (s).
     ///
     /// # Errors
-    /// [`PilotError`] when the method cannot make it.
+    /// [`PilotError`] when the method cannot run with it.
     pub fn include(&mut self, method: &MethodChoice, dt: f64) -> Result<Pilot, PilotError> {
         let pilot = self.show(method, dt)?;
         self.others.push(pilot.clone());
         Ok(pilot)
     }
 
-    /// Measures a run that must not be chosen, of any step (s).
+    /// Measures a run that must not be chosen, with any step (s).
     ///
     /// # Errors
-    /// As [`Search::include`].
+    /// Same as [`Search::include`].
     pub fn show(&mut self, method: &MethodChoice, dt: f64) -> Result<Pilot, PilotError> {
         let row = self.pilots.measure(method, dt, Effort::QUICK)?;
         self.count += 1;
@@ -150,7 +148,7 @@ impl<P: Pilots> Search<P> {
     }
 
     /// Repeats the cheapest runs for a goal in single precision, if its rounding error may be accepted: kernels then
-    /// take half the memory, and errors are measured as usual.
+    /// need half the memory, and errors are measured as usual.
     pub fn try_single_precision(&mut self, goal: Goal) {
         // Errors of rounding add to the method's own.
         if goal.error < 2.0 * LEAST_F32_ROUNDING {
@@ -186,8 +184,8 @@ impl<P: Pilots> Search<P> {
         can
     }
 
-    /// Measures the cost of the cheapest runs for a goal again and longer, so that the choice
-    /// between them does not hang on one short time.
+    /// Measures the cost of the cheapest runs for a goal again and longer, so that the choice between them does not
+    /// depend on one short time.
     pub fn confirm(&mut self, goal: Goal) {
         const EFFORT: Effort = Effort {
             repeats: 5,
@@ -266,7 +264,7 @@ impl<P: Pilots> Search<P> {
         self.count
     }
 
-    /// True if a candidate was given up because the time for pilots had run out.
+    /// True if a candidate was abandoned because the time for pilots had run out.
     #[must_use]
     pub fn cut_short(&self) -> bool {
         self.cut_short
@@ -297,7 +295,7 @@ impl<P: Pilots> Search<P> {
         trail.candidate.factorises && trail.runs().next().is_none() && self.runs().any(costly)
     }
 
-    /// Measures a candidate in `parts` parts of the interval; false if no time is left for it.
+    /// Measures a candidate in `parts` parts of the interval; returns false if no time is left for it.
     fn follow(&mut self, index: usize, parts: u32) -> bool {
         let trail = &mut self.trails[index];
         let price = trail.price(parts, self.span.duration, self.pilots.least_step_cpu_s());

@@ -1,4 +1,4 @@
-//! The runs a search learns from.
+//! The runs from which a search learns.
 
 use std::time::Duration;
 
@@ -14,7 +14,7 @@ use crate::method_choice::MethodChoice;
 use crate::row::Row;
 use crate::timing::Effort;
 
-/// A run that was measured, with the method that made it.
+/// A measured run, with its method.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Pilot {
     /// The method.
@@ -23,7 +23,7 @@ pub struct Pilot {
     pub row: Row,
 }
 
-/// Reasons why a pilot was not made.
+/// Reasons why a pilot was not run.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum PilotError {
@@ -45,7 +45,7 @@ pub enum PilotError {
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("a load changes at t = {instant} s of the scene, and is not {} of {dt} s", .needed.describe())]
 pub struct UnfitLoads {
-    /// The first instant (s) at which one does.
+    /// The first instant (s) at which a load changes so.
     pub instant: f64,
     /// The behaviour of loads over each step that the method needs.
     pub needed: LoadOverStep,
@@ -58,7 +58,7 @@ pub trait Pilots {
     /// Measures a method in steps of `dt` (s).
     ///
     /// # Errors
-    /// [`PilotError`] when it cannot run so.
+    /// [`PilotError`] when it cannot run with this step.
     fn measure(
         &mut self,
         method: &MethodChoice,
@@ -66,11 +66,11 @@ pub trait Pilots {
         effort: Effort,
     ) -> Result<Row, PilotError>;
 
-    /// The fewest parts of an interval (s), whose multiples serve as well, at which a method takes
-    /// the loads.
+    /// The smallest number of parts of an interval (s) for which a method accepts the loads; its multiples are accepted
+    /// as well.
     ///
     /// # Errors
-    /// [`PilotError`] when it takes them at no step that is worth a pilot.
+    /// [`PilotError`] when the method accepts them at no step that is worth a pilot.
     fn parts_for_loads(&self, _method: &MethodChoice, _interval: f64) -> Result<u32, PilotError> {
         Ok(1)
     }
@@ -80,17 +80,17 @@ pub trait Pilots {
         f64::INFINITY
     }
 
-    /// CPU time (s) below which no step of a method of some order stays.
+    /// Minimum CPU time (s) of a step of a method of some order.
     fn least_step_cpu_s(&self) -> f64 {
         0.0
     }
 }
 
-/// Most parts of an interval that are tried to meet the instants at which loads change.
+/// Largest number of parts of an interval that are tried to meet the instants at which loads change.
 const MOST_PARTS: u32 = 100;
 
-/// Pilots on a case, until some CPU time of this thread. A run that the loads of the whole scene
-/// would end with an error is refused, wherever in the scene that is.
+/// Pilots on a case, until some CPU time of this thread. A run is refused if loads anywhere in the scene would end it
+/// with an error.
 #[derive(Debug)]
 pub struct CasePilots<'a> {
     case: &'a mut Case,
@@ -117,7 +117,7 @@ impl<'a> CasePilots<'a> {
         }
     }
 
-    /// Takes the cost of runs from this.
+    /// Sets the measure of the cost of runs.
     #[must_use]
     pub fn charging(self, cost: Cost) -> Self {
         Self { cost, ..self }
@@ -154,7 +154,7 @@ impl Pilots for CasePilots<'_> {
         })
     }
 
-    /// A sweep of the reference also sums its series: half of it is no more than a sweep.
+    /// A sweep of the reference also sums its series: half of its time is no more than a plain sweep.
     fn least_step_cpu_s(&self) -> f64 {
         let sweeps = self.case.samples().sweeps.max(1);
         let sweep = 0.5 * self.case.reference_cpu_s() / sweeps as f64;

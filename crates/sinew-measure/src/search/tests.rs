@@ -8,7 +8,7 @@ use sinew_core::LoadOverStep;
 use super::*;
 use crate::{Row, Work};
 
-/// `error = factor dt^order`, never below `floor` nor above `cap`; one unit of cost a step.
+/// `error = factor dt^order`, never below `floor` nor above `cap`; one unit of cost per step.
 #[derive(Clone, Copy, Debug)]
 struct Law {
     order: u8,
@@ -35,7 +35,7 @@ const PLAIN: Law = Law {
 #[derive(Debug, Default)]
 struct Laws {
     laws: BTreeMap<String, Law>,
-    /// Parts of a kink: steps that do not divide it are refused.
+    /// Number of parts that meets a kink: steps that do not divide it are refused.
     kink: Option<f64>,
     /// Number of parts of an interval that the loads require, if any.
     for_loads: Option<Result<u32, UnfitLoads>>,
@@ -247,7 +247,7 @@ fn a_smaller_error_never_costs_less() {
     }
 }
 
-/// Parts that would save less than this are not sought.
+/// Savings below this share are not sought.
 const WORTH_IT_MARGIN: f64 = 0.021;
 
 #[test]

@@ -8,10 +8,10 @@ use crate::{Row, Span};
 /// Parts of the interval that are tried after the longest steps were refused.
 const RUNGS: [u32; 15] = [1, 2, 3, 4, 5, 6, 8, 10, 13, 16, 20, 32, 50, 64, 100];
 
-/// Refusals after which a candidate is left alone.
+/// Number of refusals after which a candidate is abandoned.
 const MOST_REFUSALS: usize = 8;
 
-/// Parts that save less than this share of the steps are not sought.
+/// Numbers of parts that save less than this share of the steps are not tried.
 const WORTH_IT: f64 = 0.02;
 
 /// Order below which the error of an exact method is its own tolerance, not the step's.
@@ -25,13 +25,13 @@ pub(super) struct Aim {
     pub(super) best: f64,
     /// Simulated time (s) over which set-up is spread.
     pub(super) duration: f64,
-    /// CPU time (s) below which no step stays.
+    /// Minimum CPU time (s) of a step.
     pub(super) least_step: f64,
 }
 
 impl Aim {
-    /// Total cost (s) of a method in `parts` that ran in `at` parts, its cost a step unchanged; none
-    /// if it cannot win.
+    /// Total cost (s) of a method in `parts` that ran in `at` parts, its cost per step unchanged; none if it cannot
+    /// win.
     fn promise(&self, row: &Row, at: u32, parts: f64) -> Option<f64> {
         let cost = row.cpu_s_per_s * parts / f64::from(at);
         let total = row.setup_cpu_s + cost * self.duration;
@@ -48,7 +48,7 @@ pub(super) struct Next {
     pub(super) promise: f64,
 }
 
-/// A candidate's runs by the number of parts into which they cut the interval.
+/// A candidate's runs by the number of parts into which they divide the interval.
 #[derive(Debug)]
 pub(super) struct Trail {
     pub(super) candidate: Candidate,
@@ -63,7 +63,7 @@ pub(super) struct Trail {
 }
 
 impl Trail {
-    /// A candidate whose steps are the interval in multiples of `unit` parts, or why it has none.
+    /// A candidate whose steps are the interval in multiples of `unit` parts, or the reason why it has none.
     pub(super) fn new(candidate: Candidate, span: Span, unit: Result<u32, PilotError>) -> Self {
         // The subtrahend as in `Run::covering`.
         let parts = (span.interval() / candidate.stable_step - 1e-9)
@@ -117,7 +117,7 @@ impl Trail {
         pilot.row.setup_cpu_s + 2.0 * run
     }
 
-    /// CPU s per simulated s of steps that cost no more than they must.
+    /// CPU time (s) per simulated second of steps with the minimum cost.
     fn least_cost(&self, parts: u32, least_step: f64) -> f64 {
         f64::from(parts) * least_step / self.interval
     }
@@ -127,7 +127,7 @@ impl Trail {
         longer.or_else(|| self.runs.first_key_value())
     }
 
-    /// The most parts not tried yet that keep within a budget (CPU s per simulated s).
+    /// The largest number of untried parts that keeps within a budget (CPU s per simulated s).
     pub(super) fn parts_within(&self, budget: f64) -> Option<u32> {
         let affordable = |(_, pilot): &(&u32, &Pilot)| pilot.row.cpu_s_per_s <= budget;
         let (&at, pilot) = self.runs.iter().rfind(affordable)?;
@@ -138,7 +138,7 @@ impl Trail {
         new.then_some(parts)
     }
 
-    /// The step to try next; none if the candidate has done what it can for this aim.
+    /// The step to try next; none if the candidate has nothing more to try for this aim.
     pub(super) fn next(&self, aim: &Aim) -> Option<Next> {
         let met = |(_, pilot): &(&u32, &Pilot)| {
             let error = pilot.row.sound_error_over_scene();
@@ -162,9 +162,9 @@ impl Trail {
         (next.parts < below && self.refused.len() < MOST_REFUSALS).then_some(next)
     }
 
-    /// The first step. The cost of a candidate is known once it has run; before, only a lower bound
-    /// is. Those that
-    /// factorise go last: set-up is in no bound, and one may show that all cost too much.
+    /// The first step. The cost of a candidate is known once it has run; before, only a lower bound is known.
+    /// Candidates that factorise come last: the bound does not include set-up, and one run may show that all cost too
+    /// much.
     fn start(&self, aim: &Aim) -> Option<Next> {
         let parts = match self.refused.last() {
             None => self.first?,
@@ -219,8 +219,8 @@ impl Trail {
     }
 }
 
-/// The step between a run that falls short and one that is accurate enough, if the errors of
-/// both put the goal; none if there is nothing to gain.
+/// The step between a run that falls short and one that is accurate enough, if the errors of both enclose the goal;
+/// none if nothing can be gained.
 fn between(short: (u32, &Row), enough: (u32, &Row), aim: &Aim) -> Option<Next> {
     let (low, high) = (short.0, enough.0);
     let least = low + 1;

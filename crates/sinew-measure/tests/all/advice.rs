@@ -1,4 +1,4 @@
-//! Advice on the scenes of the repository: true when its run is repeated, and hard to beat.
+//! Advice on the scenes of the repository: correct when its run is repeated, and hard to beat.
 
 use std::path::PathBuf;
 
@@ -19,7 +19,7 @@ fn simulation(scene: &str) -> Simulation {
     Scene::load(path(scene)).unwrap().build().unwrap()
 }
 
-/// Time enough that nothing is cut short on any machine, and costs that are the same on all.
+/// A question with enough time that nothing is cut short on any machine, and with costs that are the same on all.
 fn question(tolerance: f64) -> Question {
     Question {
         pilot_seconds: 1e6,
@@ -39,7 +39,7 @@ fn small_cube() -> Simulation {
     Scene::parse(source).unwrap().build().unwrap()
 }
 
-/// A cube that is pressed, with whatever else stands at the end of its scene.
+/// A cube that is pressed, with additional text at the end of its scene.
 fn pressed_cube(cells: usize, rest: &str) -> Simulation {
     let text = pressed_text(cells, rest);
     let scene = Scene::parse(SceneSource::new("pressed.toml", text)).unwrap();
@@ -66,7 +66,7 @@ ramp = {{ kind = \"step\" }}
     )
 }
 
-/// It settles, and is pressed ten times as hard long after the pilots' time is up.
+/// A cube that settles, and is pressed ten times as hard long after the end of the pilots' time.
 fn pressed_late() -> Simulation {
     pressed_cube(
         6,
@@ -458,7 +458,7 @@ fn a_method_that_cannot_tell_its_stable_step_is_not_trusted_beyond_what_was_foll
     assert!(matches!(reason, LeftOut::StabilityUnknown), "{reason}");
 }
 
-/// A cube that nothing damps, for a hundred seconds.
+/// An undamped cube, for a hundred seconds.
 fn undamped_cube(run: &str) -> Simulation {
     pressed_cube(
         3,

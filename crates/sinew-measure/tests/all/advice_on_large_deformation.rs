@@ -5,7 +5,7 @@ use sinew_measure::search::Pilot;
 use sinew_measure::{Advice, Answer, MethodChoice, Question, advise};
 use sinew_scene::{Scene, SceneSource, Simulation};
 
-/// A block that is let go from a stretch of a third.
+/// A block that is released from a stretch of a third.
 const RELEASED: &str = "title = \"released\"
 [mesh]
 block = { cells = [2, 2, 4], size = [0.02, 0.02, 0.04] }
@@ -60,8 +60,8 @@ fn advised(advice: &Advice) -> &Pilot {
     }
 }
 
-/// The error that stands beside the advice is that against the mean acceleration method in steps a hundred times shorter, which had no
-/// part in the reference.
+/// The error stated with the advice agrees with that against the mean acceleration method in steps a hundred times
+/// shorter, which is independent of the reference.
 #[test]
 fn the_advised_run_has_the_error_that_was_promised() {
     let advice = advise(built(RELEASED), Question::new(1e-2)).unwrap();
@@ -79,7 +79,7 @@ fn the_advised_run_has_the_error_that_was_promised() {
     );
 }
 
-/// The stable step at rest is too long for a body that is stretched by a third: what diverges there is no answer.
+/// The stable step at rest is too long for a body that is stretched by a third: a run that diverges there is no answer.
 #[test]
 fn methods_without_matrices_are_left_out_by_name_and_the_scene_s_own_run_is_measured() {
     let advice = advise(built(RELEASED), Question::new(3e-2)).unwrap();

@@ -1,5 +1,5 @@
-//! The reference of large bodies: against closed forms, against the reference to rounding, and what it
-//! costs.
+//! The reference of large bodies: compared with closed forms and with the reference that is exact to rounding, and its
+//! cost.
 
 use std::sync::Arc;
 
@@ -209,7 +209,7 @@ fn bodies() -> Vec<(&'static str, Simulation)> {
     ]
 }
 
-/// omega t over some time (s).
+/// omega t after some time (s).
 fn turned(simulation: &Simulation, duration: f64) -> f64 {
     let operators = simulation.system().as_linear().unwrap().operators();
     Spectrum::of(operators).omega_max * duration

@@ -35,7 +35,7 @@ fn a_push_goes_where_another_program_sees_it() {
     assert!(case.samples().error < 1e-6, "{}", case.samples().error);
 }
 
-/// The motion is followed over .1 s with a step of its own; a longer run would take a minute.
+/// The motion is followed over .1 s with a separate step; a longer run would take a minute.
 #[test]
 fn a_release_swings_as_another_program_sees_it() {
     let case = case("release.toml", &["run.duration=0.1", "run.samples=10"]);
@@ -96,7 +96,8 @@ fn true_and_stated(text: &str, dt: f64) -> [f64; 2] {
     [(apart / size).sqrt(), case.samples().error]
 }
 
-/// Instants at equal distances are rounded, which is no reason for steps of other lengths, and the check has errors of its own.
+/// Instants at equal distances are rounded, which must not cause steps of other lengths, and the check has its own
+/// errors.
 #[test]
 fn stiffness_damping_leaves_the_error_of_a_reference_what_it_states() {
     let cube = |cells: usize, more: &str, law: &str, duration: f64| {

@@ -1,4 +1,4 @@
-//! Work foretold by a few steps against that of whole runs, by counts.
+//! Work predicted from a few steps, compared by counts with that of whole runs.
 
 use std::path::Path;
 
@@ -19,7 +19,7 @@ fn cube(integrator: &str) -> Simulation {
         .unwrap()
 }
 
-/// Asserts that sweeps and solutions of a run are foretold within a factor, 1 where it is looked at whole.
+/// Asserts that sweeps and solutions of a run are predicted within a factor, which is 1 if the whole run is observed.
 fn assert_foretold(simulation: &Simulation, within: f64) {
     let mut integrator = simulation.integrator().unwrap();
     let said = Forecast::of(simulation, &mut *integrator).unwrap();
@@ -57,7 +57,8 @@ fn sweeps_and_solutions_of_a_run_are_foretold() {
     }
 }
 
-/// Products that looks at the stiffness take, and parts that steps are cut into where the ball meets the tissue, are known by taking all steps of a run that takes a second.
+/// Products for checks of the stiffness, and substeps at the contact of the ball with the tissue, are known because a
+/// run of a second is observed with all its steps.
 #[test]
 fn steps_that_follow_the_stiffness_are_foretold_to_the_sweep() {
     let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/ready/press.toml");

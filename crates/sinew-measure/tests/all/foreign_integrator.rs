@@ -1,4 +1,4 @@
-//! An integrator that is in no list is measured as those in the list are.
+//! Tests that an integrator outside the list is measured like those in the list.
 
 use std::time::Duration;
 
@@ -116,7 +116,7 @@ fn what_it_refuses_is_the_error_of_the_measurement() {
     );
 }
 
-/// A device takes 1 ms for each of 100 steps, in which the thread that waits for it spends next to nothing.
+/// A device takes 1 ms for each of 100 steps, in which the waiting thread uses almost no CPU time.
 #[test]
 fn its_cost_is_told_by_the_clock_that_it_names() {
     let mut case = cube();

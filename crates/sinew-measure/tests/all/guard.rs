@@ -1,5 +1,5 @@
-//! The guard on the repository's scenes: untouched where a run is sound, bounded and said so where
-//! its step is too long.
+//! The guard on the repository's scenes: it does not act on a sound run, and bounds and reports a run whose step is too
+//! long.
 
 use std::path::PathBuf;
 
@@ -18,8 +18,8 @@ fn with_word(options: Options, key: &str, word: &str) -> Options {
     options.with(key, OptionValue::Text(word.into()))
 }
 
-/// The scene's run by central difference: how many were saturated, and every displacement and
-/// velocity on the way.
+/// The scene's run by central difference: the number of saturated components, and every displacement and velocity of
+/// the motion.
 fn run(simulation: &Simulation, options: &Options) -> (u64, Vec<u64>) {
     let mut integrator = sinew_integrators::build("central-difference", options).unwrap();
     let mut state = simulation.initial_state().clone();
@@ -63,7 +63,7 @@ fn row(case: &mut Case, integrator: &str, saturation: &str, dt: f64) -> Row {
     measure(case, &method, dt, Effort::QUICK).unwrap()
 }
 
-/// A step that is cut as far as the method's stable one is as good as any stable run.
+/// A step that is divided down to the method's stable one is as good as any stable run.
 #[test]
 fn on_the_papers_cube_a_step_too_long_is_cut_and_said_so() {
     let mut case = Case::load(&scene("paper-cube")).unwrap();

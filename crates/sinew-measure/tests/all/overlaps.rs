@@ -1,4 +1,4 @@
-//! A row tells that bodies pass through each other.
+//! A row reports that bodies penetrate each other.
 
 use std::fs;
 use std::path::Path;
@@ -6,7 +6,7 @@ use std::path::Path;
 use sinew_measure::{Case, Effort, MethodChoice, Row, measure, on_one_thread};
 use sinew_scene::Scene;
 
-/// A held tetrahedron with an edge of 0.1 m at a corner of the axes, and a loose one with its tip down over it.
+/// A fixed tetrahedron with an edge of 0.1 m at a corner of the axes, and a loose one with its tip down over it.
 const MESH: &str = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n2\n3 1 \"held\"\n3 2 \"loose\"\n$EndPhysicalNames\n$Nodes\n8\n\
     1 0 0 0\n2 0.1 0 0\n3 0 0.1 0\n4 0 0 0.1\n5 0.01 0.01 0.09\n6 0.05 0.01 0.15\n7 0.01 0.05 0.15\n8 0.01 0.01 0.17\n$EndNodes\n\
     $Elements\n2\n1 4 2 1 1 1 2 3 4\n2 4 2 2 2 5 6 7 8\n$EndElements\n";

@@ -1,5 +1,5 @@
-//! The peers' cube: the scene that other programs were measured on, and what errors cost there. The errors themselves are rows of the
-//! verification.
+//! The peers' cube: the scene on which other programs were measured, and the cost of errors there. The errors
+//! themselves are rows of the verification.
 
 use std::path::PathBuf;
 use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use sinew_measure::{Case, Effort, MethodChoice, measure};
 
-/// Against the Taylor series of the motion, which is no method of this workspace.
+/// Comparison with the Taylor series of the motion, which is no method of this workspace.
 #[test]
 fn the_held_cube_as_written_is_off_by_less_than_one_percent() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/ready/held-cube.toml");

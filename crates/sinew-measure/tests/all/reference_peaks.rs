@@ -1,5 +1,5 @@
-//! The largest displacement of references, on bodies many cells deep: ahead of the wave front the
-//! motion is as small as numbers can be.
+//! The largest displacement of references, on bodies many cells deep: ahead of the wave front the motion is as small as
+//! representable numbers.
 
 use std::path::{Path, PathBuf};
 

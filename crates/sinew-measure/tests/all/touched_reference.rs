@@ -1,9 +1,9 @@
-//! References of bodies that tools touch.
+//! References of bodies in contact with tools.
 
 use sinew_measure::{Case, Effort, MethodChoice, measure};
 use sinew_scene::{Scene, SceneSource};
 
-/// A plate comes down on a bar of one cell that does not widen.
+/// A plate moves down on a bar of one cell without lateral contraction.
 const PLATE: &str = r#"
 title = "a plate on a bar"
 [mesh]
@@ -38,8 +38,8 @@ fn case() -> Case {
     Case::new("plate", scene.build().unwrap()).unwrap()
 }
 
-/// From the touch at .05 s on every node of the top moves with the plate: the force is that of the strain and of damping, and at the touch
-/// the momentum of the lumped mass of the top is given at once.
+/// From the contact at .05 s on, every node of the top moves with the plate: the force is that of the strain and of
+/// damping, and at first contact the momentum of the lumped mass of the top is transferred at once.
 #[test]
 fn a_pressed_bar_follows_the_plate_and_its_impulse_is_the_closed_form() {
     let case = case();

@@ -43,7 +43,7 @@ impl Elimination {
         self.column_blocks.iter().map(|n| u64::from(*n)).sum()
     }
 
-    /// Products of blocks that factorising takes, up to a factor that all orders share.
+    /// Products of blocks of a factorisation, up to a factor that is the same for all orders.
     #[must_use]
     pub fn products(&self) -> u64 {
         self.column_blocks

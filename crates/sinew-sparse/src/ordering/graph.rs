@@ -21,7 +21,8 @@ impl Graph {
         }
     }
 
-    /// The graph of some cells of a pattern. `number` is scratch: one entry a cell of the pattern, all [`NONE`], and left so.
+    /// The graph of some cells of a pattern. `number` is scratch space: one entry per cell of the pattern, all [`NONE`]
+    /// before and after.
     pub(super) fn of_cells(pattern: &Pattern, cells: &[u32], number: &mut [u32]) -> Self {
         for (cell, new) in cells.iter().zip(0..) {
             number[*cell as usize] = new;

@@ -4,10 +4,10 @@ use super::graph::Graph;
 use super::random::Random;
 use super::refinement::{Division, Place, SEPARATOR};
 
-/// Places from which a side is grown.
+/// Number of vertices from which a side is grown.
 const STARTS: usize = 8;
 
-/// The best of some separators: a side grown by breadth from a random vertex to half of the weight, refined.
+/// The best of some separators: a side grown breadth-first from a random vertex to half of the weight, refined.
 pub(super) fn initial_division(graph: &Graph, random: &mut Random) -> Division {
     let mut best = grown(graph, random.below(graph.len()) as u32);
     for _ in 1..STARTS {

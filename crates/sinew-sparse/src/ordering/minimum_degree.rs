@@ -2,11 +2,12 @@
 
 use crate::Pattern;
 
-/// Orders some cells, each time the one with the fewest neighbours left (Rose, Graph Theory and Computing, 1972). Neighbours
-/// outside, which are eliminated later, count.
+/// Orders some cells; the next one is always the one with the fewest remaining neighbours (Rose, Graph Theory and
+/// Computing, 1972). Neighbours outside, which are eliminated later, also count.
 ///
-/// The graph of eliminated cells is kept as rows of bits, exactly: for graphs of some hundred cells that is the fastest.
-/// `number` is scratch: one entry a cell of the pattern, all [`NONE`](super::graph::NONE), and left so.
+/// The graph of eliminated cells is kept as rows of bits, exactly: for graphs of some hundred cells that is the
+/// fastest. `number` is scratch space: one entry per cell of the pattern, all [`NONE`](super::graph::NONE) before and
+/// after.
 pub(super) fn minimum_degree(
     pattern: &Pattern,
     cells: &[u32],

@@ -1,7 +1,7 @@
 //! Orders in which the unknowns of a symmetric matrix are eliminated, so that its factor fills in little.
 //!
-//! All of it works on the graph of cells, whose blocks a factor takes as wholes: with three layers that graph has a ninth of
-//! the entries.
+//! All algorithms work on the graph of cells, since a factor treats their blocks as units: with three layers that graph
+//! has a ninth of the entries.
 
 mod coarsening;
 mod elimination;

@@ -10,9 +10,9 @@ use crate::Pattern;
 /// Number of cells below which a part is not divided.
 const SMALL: usize = 60;
 
-/// The cells of a pattern in an order of elimination: two parts that no pair of neighbours joins, then the cells between
-/// them, and the same within the parts (George, SIAM J. Numer. Anal. 10, 1973). Small parts are in minimum degree order.
-/// The same pattern gives the same order.
+/// The cells of a pattern in an order of elimination: two parts that are not connected by neighbours, then the cells
+/// between them, and the same within the parts (George, SIAM J. Numer. Anal. 10, 1973). Small parts are in minimum
+/// degree order. The same pattern gives the same order.
 #[must_use]
 pub fn nested_dissection(pattern: &Pattern) -> Vec<u32> {
     let mut dissection = Dissection {

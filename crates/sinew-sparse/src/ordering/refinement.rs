@@ -19,7 +19,7 @@ pub(super) struct Division {
     pub(super) weights: [u64; 3],
 }
 
-/// Most moves without a better separator before a pass ends.
+/// Largest number of moves without a better separator before a pass ends.
 const PATIENCE: usize = 100;
 
 /// Largest number of passes.
@@ -45,9 +45,9 @@ impl Division {
         (excess, self.weights[2], larger)
     }
 
-    /// Lowers the cost by passes of Fiduccia and Mattheyses (Design Automation Conference 19, 1982) on vertices: a vertex of the
-    /// separator goes to one side, and its neighbours on the other side take its place (Hendrickson and Rothberg, SIAM J. Sci.
-    /// Comput. 20, 1998).
+    /// Lowers the cost by passes of Fiduccia and Mattheyses (Design Automation Conference 19, 1982) on vertices: a
+    /// vertex of the separator moves to one side, and its neighbours on the other side replace it (Hendrickson and
+    /// Rothberg, SIAM J. Sci. Comput. 20, 1998).
     pub(super) fn refine(&mut self, graph: &Graph) {
         for _ in 0..PASSES {
             if !Pass::new(self, graph).run() {
@@ -68,7 +68,7 @@ struct Pass<'a> {
     /// Weight of a separator vertex's neighbours on each side.
     beside: Vec<[i64; 2]>,
     moved: Vec<bool>,
-    /// For each side: gains and vertices of the separator, some outdated.
+    /// Gains and vertices of the separator for each side, some outdated.
     queues: [BinaryHeap<(i64, Reverse<u32>)>; 2],
     /// Vertices with their places before each change.
     log: Vec<(u32, Place)>,
@@ -125,7 +125,7 @@ impl<'a> Pass<'a> {
         i64::from(self.graph.weight(vertex)) - self.beside[vertex as usize][1 - side]
     }
 
-    /// The best move that leaves the side small enough: to the lighter side if both are as good.
+    /// The best move that keeps the side small enough: to the lighter side if both are equally good.
     fn next(&mut self) -> Option<(u32, usize)> {
         let weights = self.division.weights;
         let lighter = usize::from(weights[1] < weights[0]);
@@ -194,7 +194,7 @@ impl<'a> Pass<'a> {
         self.log.push((vertex, before));
     }
 
-    /// Takes up a vertex that is now in the separator.
+    /// Adds a vertex that is now in the separator.
     fn enter(&mut self, vertex: u32) {
         let mut beside = [0; 2];
         for neighbour in self.graph.neighbours(vertex) {

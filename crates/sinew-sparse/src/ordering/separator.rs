@@ -6,13 +6,13 @@ use super::initial::initial_division;
 use super::random::Random;
 use super::refinement::Division;
 
-/// Vertices below which a graph is not made coarser.
+/// Number of vertices below which a graph is not made coarser.
 const COARSEST: usize = 100;
 
 /// A coarser graph that keeps more than this share of the vertices, in percent, is not worth a level.
 const SLOW: usize = 90;
 
-/// Vertices above which two divisions are made: large separators decide most of the fill.
+/// Number of vertices above which two divisions are made: large separators decide most of the fill.
 const LARGE: usize = 500;
 
 /// Divides a graph: the better of two divisions if it is large.

@@ -6,12 +6,12 @@ use std::marker::PhantomData;
 use std::mem::MaybeUninit;
 use std::ops::{Deref, DerefMut};
 
-/// 64 bytes at an address that a cache line begins at.
+/// 64 bytes, aligned to a cache line.
 #[derive(Clone, Copy)]
 #[repr(C, align(64))]
 struct Line([MaybeUninit<u8>; 64]);
 
-/// Plain values whose first begins at a cache line, so that a vector of them lies in one line and not across two.
+/// Plain values whose first begins at a cache line, so that a vector of them is in one line and not in two.
 pub struct Aligned<T> {
     lines: Vec<Line>,
     count: usize,
@@ -19,8 +19,8 @@ pub struct Aligned<T> {
 }
 
 impl<T: Copy> Aligned<T> {
-    /// `count` copies of this value. As with vectors of the standard library, an allocation beyond all memory is a
-    /// panic.
+    /// `count` copies of this value. An allocation beyond the available memory panics, as with vectors of the standard
+    /// library.
     #[must_use]
     pub fn filled(value: T, count: usize) -> Self {
         const { assert!(align_of::<T>() <= 64, "values that fit a line") };

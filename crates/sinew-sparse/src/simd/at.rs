@@ -1,4 +1,4 @@
-//! Addresses that carry, in debug builds, the bounds of the memory that may be used through them.
+//! Addresses that carry, in debug builds, the bounds of the memory that they may access.
 
 #![allow(unsafe_code, reason = "the contract stands at `At`")]
 
@@ -10,8 +10,8 @@ use super::real::Real;
 /// written through it is checked against them first.
 ///
 /// # Safety
-/// As for pointers: all that a method reads or writes has to lie within the array that the address was made from,
-/// which is still there, and which no other thread writes meanwhile. Vectors need the instruction set of their type.
+/// Same as for pointers: all that a method reads or writes has to be within the array of the address, which must still
+/// exist, and which no other thread writes in the meantime. Vectors need the instruction set of their type.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct At<T> {
     pointer: *mut T,
@@ -27,7 +27,7 @@ impl<T> PartialEq for At<T> {
 
 #[allow(unsafe_code, reason = "one contract for all methods stands above")]
 impl<T: Copy> At<T> {
-    /// An address of which `before` numbers in front of it and `after` numbers from it on may be used.
+    /// An address from which `before` numbers in front of it and `after` numbers from it on may be used.
     #[inline(always)]
     pub(crate) fn new(pointer: *mut T, before: usize, after: usize) -> Self {
         #[cfg(not(debug_assertions))]
@@ -45,7 +45,7 @@ impl<T: Copy> At<T> {
         Self::new(values.as_ptr().cast_mut(), 0, values.len())
     }
 
-    /// The address `count` numbers further; it may lie outside if nothing is used through it.
+    /// The address `count` numbers further; it may be outside the array if nothing is accessed through it.
     #[inline(always)]
     #[must_use]
     pub(crate) fn add(self, count: usize) -> Self {
@@ -65,7 +65,7 @@ impl<T: Copy> At<T> {
         }
     }
 
-    /// This address, of which only `count` numbers may be used from it on.
+    /// The same address, from which only `count` numbers may be used.
     #[inline(always)]
     #[must_use]
     pub(crate) fn first(self, count: usize) -> Self {
@@ -132,7 +132,7 @@ impl<T: Real> At<T> {
         unsafe { V::gather(self.pointer, index.pointer) }
     }
 
-    /// Prefetches the 64 bytes at this address, which may lie outside, into the first cache.
+    /// Prefetches the 64 bytes at this address, which may be outside the array, into the first cache.
     #[inline(always)]
     pub(crate) unsafe fn prefetch<V: Lanes<T>>(self) {
         // SAFETY: the instruction set is there; no address is wrong.
@@ -141,7 +141,7 @@ impl<T: Real> At<T> {
 }
 
 impl At<u32> {
-    /// Prefetches the 64 bytes at this address, which may lie outside, into the first cache.
+    /// Prefetches the 64 bytes at this address, which may be outside the array, into the first cache.
     #[inline(always)]
     pub(crate) unsafe fn prefetch_index<T: Real, V: Lanes<T>>(self) {
         // SAFETY: the instruction set is there; no address is wrong.

@@ -53,7 +53,7 @@ unsafe fn quarter(rows: &[*const [f32; 4]; MOST], first: usize) -> __m512 {
     }
 }
 
-/// Every fourth of sixteen rows, side by side, by the places of their first numbers.
+/// Every fourth of sixteen rows, side by side, given by the positions of their first numbers.
 ///
 /// # Safety
 /// As for the methods of [`Lanes`].
@@ -68,7 +68,7 @@ unsafe fn quarter_at(from: *const f32, places: *const u32, first: usize) -> __m5
     }
 }
 
-/// The first three columns of sixteen rows, by every fourth of them side by side.
+/// The first three columns of sixteen rows, from every fourth of them side by side.
 ///
 /// # Safety
 /// As for the methods of [`Lanes`].

@@ -2,7 +2,7 @@
 
 use super::real::Real;
 
-/// Lanes at most, for arrays.
+/// Largest number of lanes, for arrays.
 pub(crate) const MOST: usize = 16;
 
 /// A vector of `T::LANES` numbers: 64 bytes for every instruction set, so that layouts in memory do
@@ -60,7 +60,7 @@ pub(crate) trait Lanes<T: Real>: Copy {
             ]
         }
     }
-    /// [`Lanes::from_rows`] of the rows whose first numbers are at `from + places`, for each lane one.
+    /// [`Lanes::from_rows`] of the rows whose first numbers are at `from + places`, one for each lane.
     #[inline(always)]
     unsafe fn gather_rows(from: *const T, places: *const u32) -> [Self; 3] {
         let mut rows = [std::ptr::null(); MOST];

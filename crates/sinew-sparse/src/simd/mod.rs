@@ -1,7 +1,7 @@
 //! Vectors of numbers that one instruction works on, for each instruction set.
 //!
 //! Kernels are written once over a trait of vectors and compiled once for each [`InstructionSet`]; one is chosen when
-//! the program runs, so that a portable build uses the instructions of the machine. All code that touches a kernel's
+//! the program runs, so that a portable build uses the instructions of the machine. All code that accesses a kernel's
 //! memory by address is here and in [`crate::sweep`].
 
 mod aligned;

@@ -1,4 +1,4 @@
-//! Numbers that formulas are written over.
+//! Numbers for which formulas are written.
 
 #![allow(unsafe_code, reason = "a kernel; ARCHITECTURE.md names it")]
 
@@ -10,7 +10,7 @@ use super::real::Real;
 
 /// A number, or a vector of them that one instruction works on: a formula is written once and compiled for each.
 ///
-/// All arithmetic is lane by lane. Branches are choices between two values ([`Number::select_le`]); iterations ask whether
+/// All arithmetic is lane by lane. Branches are choices between two values ([`Number::select_le`]); iterations check if
 /// all lanes are done ([`Number::all_le`]).
 pub trait Number:
     Copy
@@ -44,9 +44,8 @@ pub trait Number:
     fn store(self, to: &mut [Self::Real]);
 
     /// The first three numbers of some rows, one row per lane: each of `places` is the index of a row's first number
-    /// among the numbers of all rows, four times the row, so that no address takes an instruction of its own. That
-    /// they are within `from` is not checked: with a check before each row, compilers keep all places on the stack
-    /// meanwhile.
+    /// among the numbers of all rows, four times the row, so that no address needs a separate instruction. The bounds
+    /// of `from` are not checked: with a check before each row, compilers keep all places on the stack.
     ///
     /// # Safety
     /// All places are four times a number below the length of `from`.
@@ -66,7 +65,7 @@ pub trait Number:
     #[must_use]
     fn sqrt(self) -> Self;
 
-    /// 2 to the power of the number, which is a whole one; of the range that exponents have.
+    /// 2 to the power of the number, which is whole and within the range of exponents.
     #[must_use]
     fn two_to_it(self) -> Self;
 
@@ -93,7 +92,7 @@ pub trait Number:
         Self::lanes_le(a, b) != 0
     }
 
-    /// The size.
+    /// The absolute value.
     #[inline(always)]
     #[must_use]
     fn abs(self) -> Self {

@@ -19,8 +19,8 @@ pub trait Real:
     const LANES: usize;
     /// Relative rounding error of one operation.
     const ROUNDING: f64;
-    /// Size below which results are 0: far below anything that is measured, and as far above the numbers that
-    /// processors compute with slowly (denormals) that products of a step do not get there either.
+    /// Size below which results are set to 0: far below any measured quantity, and so far above the numbers that
+    /// processors handle slowly (denormals) that products in a step do not reach these either.
     const TINY: f64;
     /// Largest number.
     const LARGEST: f64;
@@ -31,7 +31,7 @@ pub trait Real:
     /// This number, exactly.
     fn to_f64(self) -> f64;
 
-    /// 2 to the power of this number, a whole one whose power is neither 0 nor without end.
+    /// 2 to the power of this number, which is whole; the result is neither 0 nor infinite.
     fn two_to_it(self) -> Self;
 
     /// m and e of `m 2^e`, for a number above 0: m from the root of 1/2 to that of 2, e whole.

@@ -12,14 +12,14 @@ pub enum InstructionSet {
 }
 
 impl InstructionSet {
-    /// The best one that this machine has.
+    /// The best set of this machine.
     #[must_use]
     pub fn best() -> Self {
         let available = Self::available();
         available.last().copied().unwrap_or(Self::Portable)
     }
 
-    /// All that this machine has, slowest first.
+    /// All sets of this machine, slowest first.
     #[must_use]
     pub fn available() -> Vec<Self> {
         let all = [Self::Portable, Self::Avx2, Self::Avx512];

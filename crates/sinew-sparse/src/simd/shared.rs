@@ -8,7 +8,7 @@ use std::ops::Range;
 
 use super::aligned::Aligned;
 
-/// Numbers that threads write at the same time, each in places of its own.
+/// Numbers that threads write at the same time, each thread in its own places.
 pub struct Shared<T> {
     first: *mut T,
     /// The memory that `first` points to, used only through that pointer.
@@ -74,7 +74,7 @@ unsafe impl<T: Send + Sync> Send for SharedSlice<'_, T> {}
 unsafe impl<T: Send + Sync> Sync for SharedSlice<'_, T> {}
 
 impl<'a, T: Copy> SharedSlice<'a, T> {
-    /// The numbers of a slice, which nobody else uses meanwhile.
+    /// The numbers of a slice, which no other code uses in the meantime.
     #[inline(always)]
     #[must_use]
     pub fn of(values: &'a mut [T]) -> Self {
@@ -95,7 +95,7 @@ impl<'a, T: Copy> SharedSlice<'a, T> {
     /// Some of the numbers, to be read.
     ///
     /// # Safety
-    /// Nobody writes any of them as long as the slice is used.
+    /// No code writes any of them as long as the slice is used.
     ///
     /// # Panics
     /// If the range goes beyond the numbers.
@@ -111,7 +111,7 @@ impl<'a, T: Copy> SharedSlice<'a, T> {
     /// time.
     ///
     /// # Safety
-    /// The place is below [`Self::count`], and nobody writes the number meanwhile.
+    /// The place is below [`Self::count`], and no code writes the number in the meantime.
     #[inline(always)]
     #[must_use]
     pub unsafe fn get(self, place: usize) -> &'a T {
@@ -123,7 +123,7 @@ impl<'a, T: Copy> SharedSlice<'a, T> {
     /// Some of the numbers, to be written.
     ///
     /// # Safety
-    /// Nobody else uses any of them as long as the slice is used.
+    /// No other code uses any of them as long as the slice is used.
     ///
     /// # Panics
     /// If the range goes beyond the numbers.

@@ -14,26 +14,26 @@ use super::set::InstructionSet;
 #[cfg(target_arch = "x86_64")]
 use super::{avx2::Avx2, avx512::Avx512};
 
-/// Work that is written over any [`Number`], and compiled for each instruction set.
+/// Work that is generic over [`Number`], and compiled for each instruction set.
 pub trait WithNumber {
     /// Result of the work.
     type Output;
 
-    /// Does the work. `#[inline(always)]`, as all that it calls in its loops, or it is compiled without the instructions that it
-    /// is for: right, and slow.
+    /// Does the work. It needs `#[inline(always)]`, as do all functions that it calls in its loops; otherwise it is
+    /// compiled without the intended instructions: correct, but slow.
     fn run<N: Number>(self) -> Self::Output;
 }
 
-/// Work in one precision that is written over any [`Number`] of it.
+/// Work in one precision that is generic over its [`Number`]s.
 pub trait WithReal<T: Real> {
     /// Result of the work.
     type Output;
 
-    /// Does the work, as [`WithNumber::run`] does.
+    /// Does the work, with the requirements of [`WithNumber::run`].
     fn run<N: Number<Real = T>>(self) -> Self::Output;
 
-    /// Does the work with instructions of AVX2. A method, since the compiler's threads share a crate by the modules of its types:
-    /// as a function all loops would be one's.
+    /// Does the work with instructions of AVX2. It is a method because the compiler's threads divide a crate by the
+    /// modules of its types: all loops of a function would be compiled by one thread.
     ///
     /// # Safety
     /// The instructions are available.
@@ -62,7 +62,7 @@ pub trait WithReal<T: Real> {
     }
 }
 
-/// Numbers that there are vectors of.
+/// Numbers for which vectors exist.
 pub trait Vectors: Real + Number<Real = Self> {
     /// Does work with vectors, or with plain numbers if only the instructions of the build are available.
     fn with_vectors_or_numbers<W: WithReal<Self>>(set: InstructionSet, work: W) -> W::Output;
@@ -147,7 +147,7 @@ unsafe fn on_avx512<N: Number, W: WithNumber>(work: W) -> W::Output {
 /// A vector of `T::LANES` numbers.
 ///
 /// The type is private and only the methods of [`InstructionSet`] above pass it on, after they have checked that the
-/// machine has its instructions. So any code that has the type may use it, which is the proof of all blocks below.
+/// machine has its instructions. So any code that has the type may use it, which justifies all unsafe blocks below.
 #[derive(Clone, Copy)]
 struct Vector<T, V>(V, PhantomData<T>);
 
@@ -316,7 +316,7 @@ impl<T: Real, V: Lanes<T>> Number for Vector<T, V> {
 mod tests {
     use super::*;
 
-    /// One of everything, in each lane.
+    /// One value of each kind, in each lane.
     struct Everything;
 
     impl WithNumber for Everything {

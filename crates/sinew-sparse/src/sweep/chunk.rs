@@ -25,7 +25,7 @@ pub struct Sweep<'a, T> {
     pub limit: T,
 }
 
-/// A precision that there are kernels for.
+/// A precision for which kernels exist.
 pub trait Precision: Real {
     /// Its name, as scenes and results show it.
     const NAME: &'static str;
@@ -79,15 +79,15 @@ impl<T: Precision> Sweep<'_, T> {
         self.fields.positions().div_ceil(CHUNK * T::LANES)
     }
 
-    /// Makes the sweep on a range of chunks.
+    /// Runs the sweep on a range of chunks.
     ///
     /// # Safety
     /// While this runs, no other thread runs the same sweep on any of these chunks, or another sweep on
     /// the same fields.
     ///
     /// # Panics
-    /// Where the machine lacks the instruction set, the map names a vector or a matrix that is not there, or a product
-    /// reads a vector that an update writes.
+    /// If the machine lacks the instruction set, the map names an absent vector or matrix, or a product reads a vector
+    /// that an update writes.
     pub unsafe fn run(&self, set: InstructionSet, chunks: Range<usize>) -> Outcome {
         assert!(set.is_available(), "an instruction set of this machine");
         assert!(chunks.end <= self.chunks(), "chunks that there are");
@@ -96,7 +96,7 @@ impl<T: Precision> Sweep<'_, T> {
         unsafe { T::run(self, set, chunks) }
     }
 
-    /// Checks that all that the map names is there.
+    /// Checks that all vectors and matrices of the map exist.
     fn check(&self) {
         let map = self.map;
         assert!(matches!(self.fields.layers(), 1 | 3), "one layer or three");
@@ -137,7 +137,7 @@ impl<T: Precision, const L: usize> Place<'_, T, L> {
     }
 }
 
-/// Values of a chunk: one vector more than a chunk, which runs of a lattice may reach into.
+/// Values of a chunk: one vector more than a chunk, which runs of a lattice may use.
 #[repr(C, align(64))]
 struct Buffer([[[u64; 8]; CHUNK + 1]; 3]);
 
@@ -156,10 +156,10 @@ impl Buffer {
     }
 }
 
-/// Bits of the values of a chunk at which a clamp was reached: one word a vector.
+/// Bits of the values of a chunk at which a clamp was reached: one word per vector.
 type Marks = [[u32; CHUNK]; 3];
 
-/// Makes a sweep on a range of chunks.
+/// Runs a sweep on a range of chunks.
 ///
 /// # Safety
 /// As for [`Sweep::run`], on an instruction set that is available, for a checked sweep of L layers.
@@ -356,7 +356,7 @@ unsafe fn quotient<T: Precision, V: Lanes<T>, const L: usize>(
     }
 }
 
-/// `q += factor mass field`, with the mass if there is one.
+/// `q += factor mass field`, with the mass if any.
 #[inline(always)]
 unsafe fn add_own<T: Precision, V: Lanes<T>, const L: usize>(
     factor: V,
@@ -381,7 +381,7 @@ unsafe fn add_own<T: Precision, V: Lanes<T>, const L: usize>(
     }
 }
 
-/// Most vectors that one pass adds up.
+/// Largest number of vectors that one pass adds up.
 const MOST: usize = 4;
 
 /// `target <- sum of weight r + of_q q`.

@@ -1,11 +1,11 @@
 //! Bounds on the vectors of cells.
 
-/// Share by which a vector may be longer than its limit before it is shortened: the rounding of one that
-/// was shortened just before.
+/// Share by which a vector may be longer than its limit before it is shortened: the rounding error of a vector that has
+/// just been shortened.
 pub(super) const ROUNDING: f64 = 1e-9;
 
-/// Shortens a cell's vector, measured from `from` or from 0, to `limit` if it is longer; returns true
-/// if it was. A vector within the limit keeps its bits.
+/// Shortens a cell's vector, measured from `from` or from 0, to `limit` if it is longer; returns true if it shortened
+/// the vector. A vector within the limit keeps its bits.
 pub fn clamp_vector(vector: &mut [f64], from: Option<&[f64]>, limit: f64) -> bool {
     clamp_within(vector, from, limit, ROUNDING)
 }

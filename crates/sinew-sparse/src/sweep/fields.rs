@@ -8,7 +8,7 @@ use std::ops::Range;
 
 use crate::simd::{At, Real};
 
-/// 64 bytes at an address that a cache line begins at.
+/// 64 bytes, aligned to a cache line.
 #[repr(C, align(64))]
 struct Line([u8; 64]);
 
@@ -99,10 +99,10 @@ impl<T: Real> Fields<T> {
     /// Values of a layer at some positions, to be read.
     ///
     /// # Safety
-    /// Nobody writes any of them as long as the slice is used.
+    /// No code writes any of them as long as the slice is used.
     ///
     /// # Panics
-    /// Where they are not there.
+    /// If they do not exist.
     #[must_use]
     pub unsafe fn read(&self, field: usize, layer: usize, positions: Range<usize>) -> &[T] {
         let first = self.first_of(field, layer, &positions);
@@ -113,10 +113,10 @@ impl<T: Real> Fields<T> {
     /// Values of a layer at some positions, to be written.
     ///
     /// # Safety
-    /// Nobody else uses any of them as long as the slice is used.
+    /// No other code uses any of them as long as the slice is used.
     ///
     /// # Panics
-    /// Where they are not there.
+    /// If they do not exist.
     #[must_use]
     #[allow(clippy::mut_from_ref, reason = "that is what the promise is for")]
     pub unsafe fn write(&self, field: usize, layer: usize, positions: Range<usize>) -> &mut [T] {
@@ -135,7 +135,7 @@ impl<T: Real> Fields<T> {
         unsafe { first.add(layer * self.stride + positions.start) }
     }
 
-    /// The values of several layers, each by the number of its vector and its own, one for each position.
+    /// The values of several layers, each given by the number of its vector and of the layer, one for each position.
     #[must_use]
     pub fn layers_of<const N: usize>(&mut self, layers: [(usize, usize); N]) -> [&[T]; N] {
         layers.map(|(field, layer)| {

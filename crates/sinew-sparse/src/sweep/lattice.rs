@@ -85,9 +85,9 @@ impl<T: Real> Lattice<T> {
     /// `out = A source` for a chunk.
     ///
     /// # Safety
-    /// The instruction set of `V` is available. `source` and `out` are the first positions of their
-    /// layers, `out` that of the chunk: `source` valid for all positions and as far before and after
-    /// them as an offset goes, `out` for the chunk and one vector more. L is the number of layers.
+    /// The instruction set of `V` is available. `source` and `out` are the first positions of their layers, `out` that
+    /// of the chunk: `source` valid for all positions and as far before and after them as the largest offset, `out` for
+    /// the chunk and one vector more. L is the number of layers.
     #[inline(always)]
     pub(super) unsafe fn product<V: Lanes<T>, const L: usize>(
         &self,

@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 
 use crate::Pattern;
 
-/// Position of a cell that is none.
+/// Position of an absent cell.
 const NONE: u32 = u32::MAX;
 
 /// Number of consecutive rows that are sorted by length.
@@ -18,8 +18,8 @@ pub struct Numbering {
 }
 
 impl Numbering {
-    /// Cells one after the other by reverse Cuthill-McKee (Liu and Sherman, SIAM J. Numer. Anal. 13, 1976), which keeps
-    /// neighbours near each other; of each 256, those with the same number of neighbours are stored together.
+    /// Cells in reverse Cuthill-McKee order (Liu and Sherman, SIAM J. Numer. Anal. 13, 1976), which keeps neighbours
+    /// near each other; in each group of 256, those with the same number of neighbours are stored together.
     #[must_use]
     pub fn near_neighbours(pattern: &Pattern, lanes: usize) -> Self {
         let mut order = reverse_cuthill_mckee(pattern);
@@ -33,7 +33,7 @@ impl Numbering {
         Self::of_positions(pattern.cells(), cell)
     }
 
-    /// Each cell at a position of its own below `positions`.
+    /// Places each cell at its own position below `positions`.
     #[must_use]
     pub fn at(position: Vec<u32>, positions: usize) -> Self {
         let mut cell = vec![NONE; positions];
@@ -85,7 +85,7 @@ impl Numbering {
     }
 }
 
-/// The cells in reverse Cuthill-McKee order, part by part of the graph, each from a cell at its edge.
+/// The cells in reverse Cuthill-McKee order, for each connected part of the graph, starting from a cell at its edge.
 fn reverse_cuthill_mckee(pattern: &Pattern) -> Vec<u32> {
     let cells = pattern.cells();
     let mut order: Vec<u32> = Vec::with_capacity(cells);
@@ -158,7 +158,7 @@ fn edge_cell(pattern: &Pattern, start: u32, level: &mut [u32], queue: &mut VecDe
 mod tests {
     use super::*;
 
-    /// A path whose cells are numbered in leaps.
+    /// A path whose cells are numbered with a stride.
     fn path(cells: u32, leap: u32) -> Pattern {
         let at = |index: u32| index * leap % cells;
         let links = (1..cells).map(|index| [at(index - 1), at(index)]);

@@ -1,12 +1,12 @@
-//! Reading and multiply-adds at the rate of a processor, for comparison.
+//! Reading and multiply-adds at the peak rate of a processor, for comparison.
 
 #![allow(unsafe_code, reason = "a kernel; ARCHITECTURE.md names it")]
 
 use super::chunk::Precision;
 use crate::simd::{At, InstructionSet, Lanes};
 
-/// Number of independent sums, in 12 registers of any width: enough to hide the latency of a multiply-add, and no
-/// more than there are registers for.
+/// Number of independent sums, in 12 registers of any width: enough to hide the latency of a multiply-add, and not more
+/// than the registers allow.
 const fn sums(set: InstructionSet) -> usize {
     match set {
         InstructionSet::Portable => PORTABLE,
@@ -22,11 +22,11 @@ pub(super) const AVX2: usize = 6;
 /// Sums on registers of 512 bits.
 pub(super) const AVX512: usize = 12;
 
-/// Makes multiply-adds in registers alone, as fast as an instruction set can; returns the number of floating-point
+/// Runs multiply-adds in registers alone, as fast as an instruction set can; returns the number of floating-point
 /// operations, two for each, and their result.
 ///
 /// # Panics
-/// Where the machine lacks the instruction set.
+/// If the machine lacks the instruction set.
 #[must_use]
 pub fn multiply_adds<T: Precision>(set: InstructionSet, rounds: u32) -> (f64, T) {
     assert!(set.is_available(), "an instruction set of this machine");
@@ -68,7 +68,7 @@ pub(super) unsafe fn chains<T: Precision, V: Lanes<T>, const N: usize>(rounds: u
 /// Reads all numbers, as fast as an instruction set can; returns their sum, of whole vectors only.
 ///
 /// # Panics
-/// Where the machine lacks the instruction set.
+/// If the machine lacks the instruction set.
 #[must_use]
 pub fn read_all<T: Precision>(set: InstructionSet, values: &[T]) -> T {
     assert!(set.is_available(), "an instruction set of this machine");

@@ -7,7 +7,7 @@ use crate::simd::Real;
 const MOST_ENTRIES: usize = 9;
 
 /// Precision (relative) from which each entry is rounded separately: the rounding error of a sum of them is then far
-/// below any error that is measured.
+/// below any measured error.
 const FINE: f64 = 1e-12;
 
 /// Margin for a diagonal entry, which grows by the rounding errors of all others of its row.
@@ -33,7 +33,7 @@ impl Units {
         self.0.is_empty()
     }
 
-    /// The unit of the block between two cells, the larger of theirs; 0 if there are none.
+    /// The unit of the block between two cells, the larger of theirs; 0 without units.
     pub(super) fn between(&self, cell: usize, other: usize) -> f64 {
         let of = |cell: usize| self.0.get(cell).copied().unwrap_or(0.0);
         of(cell).max(of(other))
@@ -42,12 +42,12 @@ impl Units {
 
 /// Rounds a row of blocks, each to its unit, and keeps its sum: `write(block, entry, value)` receives each entry.
 ///
-/// A translation of the whole body strains nothing, since the blocks of a row add up to zero. Entries that are
-/// rounded one by one add up to something else: springs to the ground, whose stiffness is a rounding error of the
+/// A translation of the whole body causes no strain, since the blocks of a row add up to zero. The sum of entries that
+/// are rounded one by one is not zero: it acts like springs to the ground, whose stiffness is a rounding error of the
 /// diagonal, and thus large compared to the stiffness with which a body resists its slow motions. Here the sums are
 /// exact, and the block on the diagonal (`own`) takes the rounding errors of the others. The matrix stays symmetric,
-/// without which motions would gain energy: two cells use one unit in the block between them, and the diagonal block
-/// takes only the symmetric part of the rounding errors. The rest does no work in a translation.
+/// because motions would gain energy otherwise: two cells use one unit in the block between them, and the diagonal
+/// block takes only the symmetric part of the rounding errors. The rest does no work in a translation.
 pub(super) fn round_row<'a, T: Real>(
     row: impl Iterator<Item = (&'a [f64], f64)> + Clone,
     own: usize,
@@ -99,7 +99,7 @@ pub(super) fn round_row<'a, T: Real>(
     }
 }
 
-/// The power of two of which the entries of a cell's row are made multiples; 0 if there are no others.
+/// The power of two of which the entries of a cell's row are made multiples; 0 if the row has no other entries.
 fn unit<T: Real>(matrix: &BlockMatrix, cell: usize) -> f64 {
     let entries = matrix.row_blocks(cell).flat_map(|(_, block)| block);
     let largest = entries.fold(0.0, |most: f64, entry| entry.abs().max(most));

@@ -9,12 +9,13 @@ use super::rounding::{Units, round_row};
 use crate::BlockMatrix;
 use crate::simd::{At, Lanes, Real};
 
-/// Bytes above which a matrix lies in memory rather than in a cache.
+/// Number of bytes above which a matrix is in memory rather than in a cache.
 const IN_CACHE: usize = 32 << 20;
 
 /// A block matrix in sliced ELLPACK form, SELL-C-sigma (Kreutzer et al., SIAM J. Sci. Comput. 36, 2014): as many rows
 /// as a vector has lanes are stored side by side, entry by entry, so that one instruction works on all of them. Short
-/// rows of a slice are filled up with zeros; sorting rows by length, which the numbering did, keeps those few.
+/// rows of a slice are filled up with zeros; the numbering has sorted the rows by length, so that there are few such
+/// zeros.
 #[derive(Clone, Debug)]
 pub struct Sell<T> {
     layers: usize,

@@ -8,18 +8,18 @@ use super::{CHUNK, Numbering};
 use crate::BlockMatrix;
 use crate::simd::Real;
 
-/// Share of the spacing by which a cell may miss its place.
+/// Largest distance of a cell from its place, as a share of the spacing.
 const OFF_PLACE: f64 = 1e-4;
 
-/// Most places for each cell: vectors have space for empty ones too.
+/// Largest number of places for each cell: vectors also have space for empty ones.
 const MOST_PLACES: f64 = 12.0;
 
 /// Difference between entries that counts as rounding of the same template, as a share of the largest
 /// entry of the row: coordinates of cells are rounded.
 const SAME: f64 = 1e-13;
 
-/// The difference between entries of a row that counts as rounding. In powers of two, so that rows that are equal but
-/// for rounding have the same.
+/// The difference between entries of a row that counts as rounding. A power of two, so that rows that are equal up to
+/// rounding have the same value.
 fn same<'a>(entries: impl Iterator<Item = &'a f64>) -> f64 {
     let largest = entries.fold(0.0, |most: f64, entry| entry.abs().max(most));
     match largest > 0.0 {
@@ -28,14 +28,14 @@ fn same<'a>(entries: impl Iterator<Item = &'a f64>) -> f64 {
     }
 }
 
-/// Fewest cells for each template, on average: with fewer, little is repeated.
+/// Smallest mean number of cells for each template: with fewer, there is little repetition.
 const FEWEST_CELLS: usize = 8;
 
-/// Templates into which others are merged.
+/// Number of templates into which others are merged.
 const MERGED_INTO: usize = 32;
 
-/// Places of cells on a lattice: one position more than there are cells along each line, and one line
-/// more in each plane, so that beyond a body's sides every position is empty.
+/// Places of cells on a lattice: one position more than there are cells along each line, and one line more in each
+/// plane, so that every position outside a body's sides is empty.
 #[derive(Clone, Debug)]
 pub struct Grid {
     numbering: Numbering,
@@ -47,8 +47,8 @@ pub struct Grid {
 }
 
 impl Grid {
-    /// The lattice of cells at these points, for kernels with `lanes` lanes; `None` if they are on none, or too far
-    /// apart.
+    /// The lattice of cells at these points, for kernels with `lanes` lanes; `None` if they are not on a lattice, or
+    /// too far apart.
     #[must_use]
     pub fn find(points: &[[f64; 3]], lanes: usize) -> Option<Self> {
         let axes = [0, 1, 2].map(|axis| places(points, axis));
@@ -120,7 +120,7 @@ impl Grid {
     }
 }
 
-/// Place of each point along an axis, in equal steps from the first; `None` if they are not.
+/// Index of each point along an axis, in equal steps from the first; `None` if the steps are not equal.
 fn places(points: &[[f64; 3]], axis: usize) -> Option<Vec<i32>> {
     let mut sorted: Vec<f64> = points.iter().map(|point| point[axis]).collect();
     sorted.sort_unstable_by(f64::total_cmp);
@@ -146,7 +146,7 @@ fn places(points: &[[f64; 3]], axis: usize) -> Option<Vec<i32>> {
     points.iter().map(place).collect()
 }
 
-/// Rows that differ by their numbers only in rounding.
+/// Rows whose numbers differ only by rounding.
 struct Template {
     offsets: Vec<i32>,
     /// Unit of each block's entries, see [`units`].
@@ -237,7 +237,7 @@ impl<T: Real> Lattice<T> {
     }
 }
 
-/// A sum of entries with weights from 0 to 1 that no symmetry of a row shares: plain sums of rows of K are all 0.
+/// A sum of entries with weights from 0 to 1 without any symmetry of a row: plain sums of rows of K are all 0.
 fn fingerprint<'a>(entries: impl Iterator<Item = &'a f64>) -> f64 {
     const GOLDEN: f64 = 0.618_033_988_749_894_9;
     let weights = (1..).map(|number| (f64::from(number) * GOLDEN).fract());
@@ -247,7 +247,7 @@ fn fingerprint<'a>(entries: impl Iterator<Item = &'a f64>) -> f64 {
         .sum()
 }
 
-/// The templates of all rows, and which is whose.
+/// The templates of all rows, and the template of each cell.
 fn find(matrix: &BlockMatrix, units: &Units, grid: &Grid) -> Option<(Vec<Template>, Vec<u32>)> {
     let cells = matrix.pattern().cells();
     let layers = matrix.layers().count();
@@ -322,8 +322,8 @@ fn find(matrix: &BlockMatrix, units: &Units, grid: &Grid) -> Option<(Vec<Templat
     Some((templates, of_cell))
 }
 
-/// Gives a row that lacks neighbours the template of rows that have them, if the missing positions are empty
-/// and add nothing: rows next to fixed cells.
+/// Gives a row that lacks neighbours the template of rows that have them, if the missing positions are empty and add
+/// nothing: this concerns rows next to fixed cells.
 fn merge(templates: &[Template], grid: &Grid, of_cell: &mut [u32]) {
     let mut frequent: Vec<usize> = (0..templates.len()).collect();
     frequent.sort_by_key(|number| std::cmp::Reverse(templates[*number].rows));
@@ -360,7 +360,7 @@ impl Template {
         places.zip(self.blocks.chunks_exact(len))
     }
 
-    /// The offsets that this has and `small` has not; `None` if anything else differs.
+    /// The offsets that only this template has and not `small`; `None` if anything else differs.
     fn more_than(&self, small: &Self) -> Option<Vec<i32>> {
         if self.offsets.len() <= small.offsets.len() {
             return None;

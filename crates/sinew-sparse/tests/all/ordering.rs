@@ -31,7 +31,7 @@ fn holds_each_cell_once(order: &[u32], cells: usize) -> bool {
     sorted.into_iter().eq(0..cells as u32)
 }
 
-/// Blocks of the factor by eliminating cell after cell from a dense graph.
+/// Number of blocks of the factor, found by eliminating cell after cell from a dense graph.
 fn fill_by_hand(cells: usize, edges: &[[u32; 2]], order: &[u32]) -> u64 {
     let mut joined = vec![vec![false; cells]; cells];
     for [a, b] in edges.iter().map(|edge| edge.map(|cell| cell as usize)) {

@@ -1,5 +1,5 @@
-//! Kernels against their definition, computed literally in f64 by dense loops, for each instruction set,
-//! precision, number of layers and way of cutting rows into chunks.
+//! Kernels against their definition, computed literally in f64 by dense loops, for each instruction set, precision,
+//! number of layers and division of rows into chunks.
 
 mod dense;
 mod rows;
@@ -84,7 +84,7 @@ fn clamped<T: Real>(clamp: Clamp<T>) -> CellMap<T> {
     map
 }
 
-/// Sweeps that differ in what they read and how they divide.
+/// Sweeps that differ in their inputs and in the definition of q.
 fn maps<T: Real>() -> Vec<(&'static str, CellMap<T>)> {
     let blocks = Quotient::Blocks {
         mass: MASS,

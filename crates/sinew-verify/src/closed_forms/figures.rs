@@ -476,7 +476,7 @@ pub(super) const INCOMPRESSIBLE: &[(&str, [f64; 3])] = &[
     ),
 ];
 
-/// A law, P11 (Pa) by the stretch along x, and the energies (J/m^3) at F = 0 and at a mirrored state.
+/// A law, P11 (Pa) for stretches along x, and the energies (J/m^3) at F = 0 and at a mirrored state.
 type Inversion = (&'static str, &'static [(f64, f64)], [f64; 2]);
 
 /// The corotational law jumps at a mirrored state, and has no stress there.

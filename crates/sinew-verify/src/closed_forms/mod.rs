@@ -1,4 +1,4 @@
-//! Closed forms of laws: the required figures, and those of the code here.
+//! Closed forms of laws: the required figures, and those computed by the code here.
 //!
 //! E = 3500 Pa and nu = .45 throughout, C1 : C2 = 4 : 1.
 
@@ -19,7 +19,7 @@ const POISSONS_RATIO: f64 = 0.45;
 /// Largest error that passes, relative to the required figure, or to Young's modulus if that is 0.
 const TOLERANCE: f64 = 1e-8;
 
-/// A figure of a law that is known from elsewhere.
+/// A figure of a law that is known from another source.
 pub(crate) struct ClosedForm {
     /// The law's id.
     pub(crate) law: &'static str,

@@ -1,6 +1,6 @@
 //! The 10-node tetrahedron with quadratic displacement and straight edges.
 //!
-//! It bends without locking and hardly locks in volume, so that its figures converge fast. It shares only sparse
+//! It bends without locking and has little volumetric locking, so that its figures converge fast. It shares only sparse
 //! matrices and their factors with the library's elements.
 
 use std::collections::BTreeMap;
@@ -17,8 +17,9 @@ use crate::vector::{cross, difference, dot, norm};
 /// Corners of the edges, in the order of the nodes 4 to 9.
 const EDGES: [[usize; 2]; 6] = [[0, 1], [1, 2], [0, 2], [0, 3], [1, 3], [2, 3]];
 
-/// Barycentric coordinates of four points of equal weight, each near one corner: a rule that is exact for polynomials of
-/// degree 2 (Hammer, Marlowe and Stroud, Math. Tables Aids Comput. 10, 1956), as the energy of straight elements is.
+/// Barycentric coordinates of four points of equal weight, each near one corner: a rule that is exact for polynomials
+/// of degree 2 (Hammer, Marlowe and Stroud, Math. Tables Aids Comput. 10, 1956), such as the energy of straight
+/// elements.
 const NEAR: f64 = 0.585_410_196_624_968_5;
 const FAR: f64 = 0.138_196_601_125_010_5;
 
@@ -67,8 +68,9 @@ impl Tet10 {
         }
     }
 
-    /// The force (N) on each node of a traction (Pa) on triangles of corners: a third of each triangle's on the middles of its
-    /// edges and none on its corners, as the integrals of quadratic shape functions are.
+    /// The force (N) on each node of a traction (Pa) on triangles of corners: a third of the force on each triangle
+    /// acts on each middle of its edges and none on its corners, as follows from the integrals of quadratic shape
+    /// functions.
     pub fn traction(&self, triangles: &[[u32; 3]], traction: [f64; 3]) -> Vec<[f64; 3]> {
         let mut force = vec![[0.0; 3]; self.points.len()];
         for triangle in triangles {
@@ -86,7 +88,7 @@ impl Tet10 {
         force
     }
 
-    /// The body of this material with all nodes fixed at places for which `is_held` is true.
+    /// The body of this material with all nodes fixed at positions for which `is_held` is true.
     ///
     /// # Errors
     /// [`LabError`].
@@ -141,11 +143,11 @@ impl Tet10 {
 
 /// A body of 10-node tetrahedra with its supports.
 pub struct HeldTet10 {
-    /// The stiffness of the nodes that move. Its lumped mass means nothing.
+    /// The stiffness of the free nodes. Its lumped mass has no meaning.
     system: LinearModel,
     /// The consistent mass (kg).
     mass: BlockMatrix,
-    /// The nodes that move.
+    /// The free nodes.
     moving: Vec<usize>,
 }
 
@@ -261,7 +263,7 @@ mod tests {
         density: 1060.0,
     };
 
-    /// K u, with u given by a function of the place.
+    /// K u, with u given by a function of the position.
     fn forces(body: &Tet10, u: impl Fn([f64; 3]) -> [f64; 3]) -> Vec<f64> {
         let free = body.held(TISSUE, |_| false).unwrap();
         let u: Vec<f64> = body.points.iter().flat_map(|point| u(*point)).collect();
@@ -292,8 +294,8 @@ mod tests {
         }
     }
 
-    /// Quadratic fields are among those that the element represents: u = (x^2, 0, 0) has div sigma = (2 (lambda + 2 mu), 0, 0),
-    /// and the work of the force on a rigid shift of inner nodes is the integral of it.
+    /// The element represents quadratic fields exactly: u = (x^2, 0, 0) has div sigma = (2 (lambda + 2 mu), 0, 0), and
+    /// the work of the force in a rigid translation of inner nodes is the integral of div sigma.
     #[test]
     fn the_energy_of_a_quadratic_field_is_exact() {
         let mesh = cube(2, 1.0, Split::Kuhn).unwrap();

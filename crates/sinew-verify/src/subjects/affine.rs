@@ -104,7 +104,7 @@ fn checks() -> Vec<Check> {
     checks
 }
 
-/// Uneven cubes, three of each of both splits.
+/// Uneven cubes, three with each of both splits.
 fn uneven_cubes(cells: usize) -> impl Iterator<Item = Result<TetMesh, LabError>> {
     let splits = [Split::Kuhn, Split::Mirrored].into_iter();
     splits.flat_map(move |split| (1..=3).map(move |seed| uneven_cube(cells, split, seed)))
@@ -311,7 +311,7 @@ fn forces(mesh: &TetMesh, kind: Kind) -> Result<Vec<f64>, LabError> {
     ])
 }
 
-/// The reaction (N) at the top of a unit cube that is pressed down by a tenth, with u_x = u_y = 0 at its surface.
+/// The reaction (N) at the top of a unit cube that is compressed by a tenth, with u_x = u_y = 0 at its surface.
 fn confined_compression(mesh: &TetMesh, kind: Kind) -> Result<f64, LabError> {
     let (low, high) = mesh.bounding_box();
     let face =

@@ -114,7 +114,7 @@ fn problem(element: sinew_fem::Element) -> Problem {
     problem
 }
 
-/// The first Piola-Kirchhoff stress (Pa) by the forces at the ends.
+/// The first Piola-Kirchhoff stress (Pa) from the forces at the ends.
 fn stress(body: &Uniform) -> Result<Tensor<f64>, LabError> {
     let (_, force) = body.forces()?;
     let entry = |axis: usize, end: usize| body.at_end(&force, end, axis) / (EDGE * EDGE);
@@ -146,7 +146,7 @@ fn principal(stretches: [f64; 3]) -> [f64; 3] {
     [0, 1, 2].map(|i| (work(i) - mean + BULK * (j - 1.0) * j) / stretches[i])
 }
 
-/// The shear stress (Pa) at a shear of axis `of` along axis `along`, which keeps the volume: the strains are half of the
+/// The shear stress (Pa) at a volume-preserving shear of axis `of` along axis `along`: the strains are half of the
 /// shear between the two and half of its square along `of`.
 fn shear_stress(amount: f64, along: usize, of: usize) -> f64 {
     let normal = FORM[of];

@@ -1,4 +1,4 @@
-//! A beam that is bent far by a force at its tip, in four equal parts.
+//! A beam that is bent far by a force at its tip, in four equal increments.
 
 use sinew_core::Ramp;
 use sinew_fem::{Element, LoadKind, LoadSpec, Model, On};
@@ -62,7 +62,7 @@ fn checks() -> Vec<Check> {
     rows.collect()
 }
 
-/// Newton iterations of each part, and rise and displacement of the tip, the mean of its nodes.
+/// Newton iterations of each increment, and rise and displacement of the tip, the mean of its nodes.
 fn bent(id: &'static str) -> Result<(Vec<u64>, [f64; 2]), LabError> {
     const THICK: f64 = 0.1;
     let mesh = block([20, 2, 2], [1.0, THICK, THICK], Split::Mirrored)?;

@@ -33,7 +33,7 @@ pub(super) const SUBJECT: Subject = Subject {
     ],
 };
 
-/// Poisson's ratio, element, cells a side, press (a fraction), force.
+/// Poisson's ratio, element, cells per side, compression (a fraction), force.
 const FORCES: &[(f64, Kind, usize, f64, f64)] = &[
     (0.45, Kind::P1, 4, 0.3, -0.6118),
     (0.45, Kind::P1, 8, 0.3, -0.5485),

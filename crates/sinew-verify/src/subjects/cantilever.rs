@@ -93,14 +93,14 @@ const HALF: BeamMesh = BeamMesh::Gmsh("cantilever-2");
 /// A file whose edges are a quarter of the thickness.
 const QUARTER: BeamMesh = BeamMesh::Gmsh("cantilever-4");
 
-/// Figures that were there before the library.
+/// Figures from before the library.
 const LOCKING: Source = Source::Independent(
     "figures worked out once for this project, as the price of locking; their digits as printed",
 );
 
 const DEFLECTION_NAME: &str = "deflection over Timoshenko's";
 
-/// Poisson's ratios and the figures there.
+/// Poisson's ratios and the corresponding figures.
 type Figures = &'static [(f64, f64)];
 
 const DEFLECTION: &[(BeamMesh, Kind, Figures)] = &[
@@ -202,7 +202,7 @@ const OF_TET10: &[(usize, Figures)] = &[
     (4, &[(0.3, 0.992), (0.499, 0.969)]),
 ];
 
-/// Deflection of plain tetrahedra to two digits, with the prototype's.
+/// Deflection of plain tetrahedra to two digits, with those of the prototype.
 const TWO_DIGITS: &[(BeamMesh, Figures)] = &[
     (BeamMesh::Kuhn(2), &[(0.0, 0.55)]),
     (BeamMesh::Kuhn(4), &[(0.0, 0.82)]),
@@ -212,7 +212,7 @@ const TWO_DIGITS: &[(BeamMesh, Figures)] = &[
     ),
 ];
 
-/// First frequency of plain tetrahedra on long cells.
+/// First frequency of plain tetrahedra on elongated cells.
 const FREQUENCY_OF_LONG: Figures = &[(0.3, 1.057), (0.45, 1.119), (0.49, 1.354)];
 
 const FREQUENCY_NAME: &str = "f1 over Euler's and Bernoulli's";
@@ -353,7 +353,7 @@ impl BeamMesh {
         }
     }
 
-    /// Digits as printed on meshes that are the same to the last node; patches grow differently on meshes without a
+    /// The printed digits for meshes that are identical to the last node; patches grow differently on meshes without a
     /// grid.
     fn asked(self, kind: Kind, value: f64) -> Asked {
         match self {
@@ -377,7 +377,7 @@ impl BeamMesh {
     }
 }
 
-/// A beam to be bent.
+/// A beam that is to be bent.
 struct Beam {
     mesh: TetMesh,
     root: &'static str,

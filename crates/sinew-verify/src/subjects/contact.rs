@@ -1,4 +1,4 @@
-//! Tools on a block of tissue, against the laws of motion.
+//! Tools on a block of tissue, compared with the laws of motion.
 
 use std::f64::consts::PI;
 
@@ -33,7 +33,7 @@ const EDGE: f64 = 0.1;
 /// Gravity (m/s^2).
 const GRAVITY: f64 = 9.81;
 
-/// The method whose steps have an inertia of their own, which its energy counts.
+/// The method whose steps have a separate inertia, which its energy includes.
 const NETWORK: &str = "cnn-stabilised";
 
 /// The rotation of a plate that faces down.
@@ -238,7 +238,7 @@ fn plate_on_a_bar() -> Result<Vec<f64>, LabError> {
     plate_by(("symplectic-euler", Options::new()), None)
 }
 
-/// Figures of a plate on a bar by a method, in steps of `dt` (s) or half the stable one.
+/// Figures of a plate on a bar with a method, in steps of `dt` (s) or half the stable one.
 fn plate_by((id, options): (&str, Options), dt: Option<f64>) -> Result<Vec<f64>, LabError> {
     let (length, width, depth) = (0.1, 0.02, 0.002);
     let down = [(0.0, [0.0, 0.0, length]), (0.1, [0.0, 0.0, length - depth])];
@@ -293,8 +293,8 @@ fn settled_forces() -> Result<Vec<f64>, LabError> {
     Ok(vec![worst, expected])
 }
 
-/// Differences of the forces after a ball was pressed into a cube and drawn aside, by sweeps, from those of central
-/// difference, over these.
+/// Differences, with sweeps, of the forces after a ball was pressed into a cube and moved sideways from those of
+/// central difference, over the latter.
 fn rubbed_by_sweeps() -> Result<Vec<f64>, LabError> {
     let down = [
         (0.0, [0.03, 0.03, 0.0725]),
@@ -314,7 +314,7 @@ fn rubbed_by_sweeps() -> Result<Vec<f64>, LabError> {
         .into())
 }
 
-/// A free slab on a floor that rubs, under an acceleration (m/s^2).
+/// A free slab on a floor with friction, under an acceleration (m/s^2).
 fn slab(nu: f64, gravity: [f64; 3], friction: f64) -> Result<Pressed, LabError> {
     let floor = tool(Convex::Plane, Motion::Held(Pose::identity()), friction);
     let problem = Problem {
@@ -338,8 +338,8 @@ fn slowed(sweeps: u32) -> Result<f64, LabError> {
     Ok(pressed.mean_velocity(0).0 / (start - friction * GRAVITY * dt * steps as f64))
 }
 
-/// Mean acceleration of a slab that is pulled sideways, over that of a point, and its mean force on the floor over its
-/// weight.
+/// Mean acceleration of a slab that is pulled sideways, over that of a point mass, and its mean force on the floor over
+/// its weight.
 fn drawn(id: &str, options: &Options, share: f64) -> Result<Vec<f64>, LabError> {
     let (friction, pull, weight) = (0.1, 1.5, 6.0);
     let mut pressed = slab(0.3, [pull, 0.0, -weight], friction)?;
@@ -388,8 +388,8 @@ fn bounce() -> Result<Vec<f64>, LabError> {
     ])
 }
 
-/// The largest rise in a step of the step's own energy less the work of a tool, over the largest energy: the tool is pressed 10 mm into the cube,
-/// kept there and withdrawn, in tenths of a second or in a few steps.
+/// The largest rise in a step of the method's discrete energy less the work of a tool, over the largest energy: the
+/// tool is pressed 10 mm into the cube, kept there and withdrawn, within tenths of a second or a few steps.
 fn rise_under(
     id: &str,
     convex: Convex,
@@ -494,8 +494,8 @@ fn depth_in_a_fast_ball(speed: f64) -> Result<f64, LabError> {
     }
 }
 
-/// A cube under a ball that rubs, after .1 s, by this many threads, its world turned by a rotation vector about the
-/// origin.
+/// A cube under a ball with friction, after .1 s, with this number of threads, the whole scene rotated by a rotation
+/// vector about the origin.
 fn rubbed(threads: f64, turn: [f64; 3]) -> Result<Vec<f64>, LabError> {
     let pose = Pose::new([0.0; 3], turn);
     let mut mesh = block([8; 3], [0.06; 3], Split::Kuhn)?;

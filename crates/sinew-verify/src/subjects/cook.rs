@@ -47,7 +47,7 @@ pub(super) const SUBJECT: Subject = Subject {
 
 const CORNER_OF_FINE_MESHES: f64 = 8.05;
 
-/// The corner's rise over that of fine meshes for each number of cells a side.
+/// The corner's rise over that of fine meshes for each number of cells per side.
 const TABLE: &[(Kind, [(usize, f64); 4])] = &[
     (Kind::P1, [(4, 0.267), (8, 0.270), (16, 0.277), (32, 0.300)]),
     (

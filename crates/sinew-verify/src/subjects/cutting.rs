@@ -1,4 +1,4 @@
-//! Cut bodies, and quantities that no cut may change.
+//! Cut bodies, and quantities that a cut must not change.
 
 use std::sync::Arc;
 
@@ -266,7 +266,7 @@ fn cuttable(cells: usize, nu: f64, snap: f64) -> Result<CutModel, LabError> {
     Ok(CutModel::new(Arc::new(mesh), held_cube(nu), snap)?)
 }
 
-/// A blade along y comes down in the middle to a height (m).
+/// Cuts with a blade along y that comes down in the middle to a height (m).
 fn slit(cut: &mut CutModel, state: &mut State, height: f64) -> Result<usize, LabError> {
     let blade = |z: f64| [[0.05, -0.05, z], [0.05, 0.15, z]];
     let sheet = Sheet::swept(blade(0.2), blade(height)).ok_or_else(LabError::no_body)?;
@@ -307,7 +307,7 @@ fn inner_faces(cut: &CutModel) -> Vec<(u32, usize)> {
     faces.filter(is_first).collect()
 }
 
-/// The largest eigenvalue of K relative to its own blocks, by iteration.
+/// The largest eigenvalue of K relative to its diagonal blocks, by iteration.
 fn block_factor(model: &Model) -> Result<f64, LabError> {
     let k = model.operators().stiffness();
     let mut inverse = Vec::new();
@@ -574,7 +574,7 @@ fn planes() -> Result<Vec<f64>, LabError> {
     Ok(worst.to_vec())
 }
 
-/// A sheet through a point, far beyond the cube on all sides, with this normal.
+/// A sheet through a point with this normal, which extends far beyond the cube on all sides.
 fn plane(centre: [f64; 3], normal: [f64; 3]) -> Option<Sheet> {
     let cross = |a: [f64; 3], b: [f64; 3]| {
         [

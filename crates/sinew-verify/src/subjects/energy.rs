@@ -1,4 +1,4 @@
-//! Laws that methods keep to rounding.
+//! Laws that methods fulfil to rounding.
 
 use sinew_core::spectrum::critical_step;
 use sinew_core::vectors::{dot, largest, noise, weighted_dot};
@@ -106,7 +106,7 @@ fn start(model: &Model) -> State {
     State::new(u, vec![0.0; model.dofs()])
 }
 
-/// The largest change of the energy that a method keeps, over its first value.
+/// The largest change of the energy that a method conserves, over its first value.
 fn energy_change(
     method: &str,
     kind: Kind,

@@ -37,7 +37,7 @@ const X: [f64; 3] = [1.0, 0.0, 0.0];
 const Z: [f64; 3] = [0.0, 0.0, 1.0];
 const ROOT_OF_HALF: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
-/// A pull or push along z, with the stretches along x and y that it leaves free, and its stress.
+/// A pull or push along z, with the free stretches along x and y, and its stress.
 struct Uniaxial {
     name: &'static str,
     stiffening: Stiffening,

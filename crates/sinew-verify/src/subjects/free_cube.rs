@@ -58,7 +58,7 @@ const KUHN_3: CubeMesh = CubeMesh::Grid(Split::Kuhn, 3);
 const KUHN_6: CubeMesh = CubeMesh::Grid(Split::Kuhn, 6);
 const MIRRORED_3: CubeMesh = CubeMesh::Grid(Split::Mirrored, 3);
 const MIRRORED_6: CubeMesh = CubeMesh::Grid(Split::Mirrored, 6);
-/// Edges of a quarter and an eighth of the cube's.
+/// Edges of a quarter and an eighth of the cube's edge.
 const COARSE: CubeMesh = CubeMesh::Gmsh("cube-4", 8);
 const FINE: CubeMesh = CubeMesh::Gmsh("cube-8", 8);
 const FINE_TWELVE: CubeMesh = CubeMesh::Gmsh("cube-8", 12);
@@ -77,7 +77,7 @@ const COERCIVITY: &[(CubeMesh, Kind, f64)] = &[
     (COARSE, Kind::Edge(0.9), 0.26),
 ];
 
-/// Pairs of meshes, the finer with half the edges, and the smallest part of the coercivity that may be left.
+/// Pairs of meshes, the finer one with half the edges, and the smallest allowed ratio of their coercivities.
 const FALL: &[(CubeMesh, CubeMesh, f64)] = &[
     (KUHN_3, KUHN_6, 0.95),
     (MIRRORED_3, MIRRORED_6, 0.85),
@@ -266,8 +266,8 @@ fn free(mesh: &TetMesh, nu: f64, element: Element) -> Result<Model, LabError> {
     Ok(Model::build(mesh, &body(YOUNGS_MODULUS, nu, element))?)
 }
 
-/// Supports of six components that take away rigid motions and nothing else: both forms of energy vanish on these motions, so
-/// that the eigenvalues between the forms are unchanged.
+/// Supports of six components that remove rigid motions and nothing else: both forms of energy vanish on these motions,
+/// so that the eigenvalues between the forms are unchanged.
 fn against_rigid_motions(mesh: &TetMesh) -> Vec<Fixed> {
     let (low, high) = mesh.bounding_box();
     let corner = |place| On::Nodes(vec![mesh.nearest_node(place).0]);
@@ -293,7 +293,7 @@ fn coercivity(mesh: &TetMesh, element: Element) -> Result<f64, LabError> {
     Ok(largest_beside_stiffness(&model, multiply)?.recip())
 }
 
-/// The mean number of blocks in the rows of nodes none of whose tetrahedra is at the surface.
+/// The mean number of blocks in the rows of nodes without a tetrahedron at the surface.
 fn inner_blocks(mesh: &TetMesh, element: Element) -> Result<f64, LabError> {
     let mut is_outer = vec![false; mesh.points.len()];
     let surface = on_surface(mesh);

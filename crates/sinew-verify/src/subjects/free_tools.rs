@@ -1,4 +1,4 @@
-//! Tools that are bodies of their own, and tips that are finer than the surface.
+//! Tools that are separate bodies, and tips that are finer than the surface.
 
 use std::f64::consts::PI;
 
@@ -197,7 +197,7 @@ pub(super) fn checks() -> Vec<Check> {
     checks
 }
 
-/// The damped oscillation of a tool that its path leaves.
+/// The damped oscillation of a tool after its path has stopped.
 const SWING: Source = Source::ClosedForm("v/w e^(-z q t) sin(w t), q^2 = k/m, w^2 = q^2 (1 - z^2)");
 
 fn cube(damping: f64) -> Problem {
@@ -238,7 +238,7 @@ fn place(pressed: &Pressed) -> [f64; 3] {
     pose(pressed).position()
 }
 
-/// The largest difference (m) of a swing from its closed form, after the path stopped.
+/// The largest difference (m) of an oscillation from its closed form, after the path has stopped.
 fn off_swing(dt: f64) -> Result<f64, LabError> {
     let (stop, speed, damping) = (0.05, 0.06, 0.1);
     let rows = [(0.0, [0.0, 0.0, 1.0]), (stop, [speed * stop, 0.0, 1.0])];
@@ -259,8 +259,8 @@ fn off_swing(dt: f64) -> Result<f64, LabError> {
     Ok(worst)
 }
 
-/// Orders along and about of the differences of a swing from its closed form, and the largest difference along over the
-/// swing.
+/// Orders, along and about an axis, of the differences of an oscillation from its closed form, and the largest
+/// difference along the axis over the size of the oscillation.
 fn orders(id: &str, options: &Options) -> Result<Vec<f64>, LabError> {
     let [coarse, fine] = [1e-4, 5e-5].map(|dt| off_both(id, options, dt));
     let (coarse, fine) = (coarse?, fine?);
@@ -271,7 +271,7 @@ fn orders(id: &str, options: &Options) -> Result<Vec<f64>, LabError> {
     ])
 }
 
-/// The largest difference of a swing along x, and of one about y, from its closed form, over its size.
+/// The largest difference of an oscillation along x, and of one about y, from its closed form, over its size.
 fn off_both(id: &str, options: &Options, dt: f64) -> Result<[f64; 2], LabError> {
     let (stop, end, damping) = (0.05, 0.1, 0.1);
     let (speed, spin) = (0.06, 0.4);
@@ -446,7 +446,7 @@ fn rise(coupling: f64) -> Result<f64, LabError> {
     largest_rise(under(5, &cube(0.0), plate(coupling)?)?, 0.3)
 }
 
-/// A plate of 50 g that is pressed 10 mm down and lifted; it may not turn, so that its normal does not.
+/// A plate of 50 g that is pressed 10 mm down and lifted; it cannot rotate, so that its normal is constant.
 fn plate(coupling: f64) -> Result<Tool, LabError> {
     let at = |z: f64| [0.03, 0.03, EDGE + z];
     let rows = [
@@ -467,8 +467,8 @@ fn plate(coupling: f64) -> Result<Tool, LabError> {
     })
 }
 
-/// The largest rise of the energy above its minimum before, over the largest, of balls of several masses and dampings
-/// in a second: with friction and without; and the smallest of the largest energies (J).
+/// The largest rise of the energy above its earlier minimum, over the largest energy, of balls of several masses and
+/// dampings in a second: with friction and without; and the smallest of the largest energies (J).
 fn light_tools(id: &str, share: f64) -> Result<Vec<f64>, LabError> {
     let rows = [
         (0.0, [0.025, 0.03, EDGE + 0.0121]),
@@ -522,7 +522,7 @@ fn largest_rise_in_steps(
     Ok(rise / largest)
 }
 
-/// The same above its minimum before, and the largest energy (J).
+/// The same above the earlier minimum of the energy, and the largest energy (J).
 fn rise_above_lowest(
     pressed: Pressed,
     id: &str,
@@ -538,8 +538,7 @@ fn rise_above_lowest(
     Ok((rise, largest))
 }
 
-/// Shows the energy of body, tool and coupling after each step, and the rest of it without the work of the hand
-/// (J).
+/// Reports the energy of body, tool and coupling after each step, and the rest of it without the work of the hand (J).
 fn follow(
     mut pressed: Pressed,
     id: &str,
@@ -567,8 +566,8 @@ fn follow(
     Ok(())
 }
 
-/// The solid angle of the surface of a block, over 4 pi, as seen from a tip of a tenth of an edge that is shot at it: 0
-/// outside, 1 inside.
+/// The solid angle of the surface of a block, over 4 pi, as seen from a tip with the size of a tenth of an edge that is
+/// shot at it: 0 outside, 1 inside.
 fn shot(speed: f64, meets_triangles: bool) -> Result<f64, LabError> {
     let edge = EDGE / 6.0;
     let free = body(YOUNGS_MODULUS, 0.3, Element::P1);

@@ -70,7 +70,7 @@ fn of_law(law: usize, poissons_ratio: f64) -> Problem {
     problem
 }
 
-/// A blade: its middle at the start, half of it, and its path through the body.
+/// A blade: its middle at the start, its half length as a vector, and its path through the body.
 struct Blade {
     begins: Vector,
     half: Vector,
@@ -116,7 +116,7 @@ impl Left {
     }
 }
 
-/// A state that has a displacement and a velocity at each place of a mesh.
+/// A state with a displacement and a velocity at each position of a mesh.
 fn state_of(
     model: &Model,
     mesh: &TetMesh,
@@ -132,8 +132,8 @@ fn state_of(
     Ok(state)
 }
 
-/// 20 sheets through a strip under a constant stretch of 0 to 30 %, each with three laws: strokes that leave other
-/// than two pieces, and area reported as uncut.
+/// 20 sheets through a strip under a constant stretch of 0 to 30 %, each with three laws: strokes that do not leave two
+/// pieces, and area reported as uncut.
 pub(super) fn under_tension() -> Result<Vec<f64>, LabError> {
     let size = [0.08, 0.04, 0.01];
     let mut left = Left::default();
@@ -179,8 +179,8 @@ pub(super) fn under_tension() -> Result<Vec<f64>, LabError> {
     Ok(vec![left.not_two, left.uncut])
 }
 
-/// 100 strokes along 20 sheets through a free cube that begins at strains of 0 to 30 % with random velocities, by three laws: strokes that leave other than
-/// two pieces, and area reported as uncut.
+/// 100 strokes along 20 sheets through a free cube that begins at strains of 0 to 30 % with random velocities, by three
+/// laws: strokes that do not leave two pieces, and area reported as uncut.
 pub(super) fn free() -> Result<Vec<f64>, LabError> {
     let mut left = Left::default();
     let middle = [0.05; 3];

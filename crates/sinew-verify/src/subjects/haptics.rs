@@ -23,7 +23,7 @@ pub(super) const SUBJECT: Subject = Subject {
     quoted: &[],
 };
 
-/// Energy (J) that a device may get out.
+/// Energy (J) that a device may gain.
 const MOST: f64 = 1e-6;
 
 /// Edge of the cube (m).
@@ -87,7 +87,8 @@ fn checks() -> Vec<Check> {
     checks
 }
 
-/// A cube of a law under a ball of this radius (m) that begins at a place (m), as a body on a coupling if there is one.
+/// A cube of a law under a ball of this radius (m) that begins at a position (m), as a body on a coupling if one is
+/// given.
 fn cube(
     model: &str,
     (radius, start): (f64, [f64; 3]),
@@ -122,7 +123,7 @@ struct Felt {
     forces: Vec<f64>,
 }
 
-/// A user's hand that presses, lets go and moves aside for some seconds.
+/// A user's hand that presses, releases and moves sideways for some seconds.
 fn felt(is_rigid: bool, hertz: f64, stiffness: f64, seconds: u32) -> Result<Felt, LabError> {
     let radius = 0.012;
     let (height, depth) = if is_rigid {
@@ -181,7 +182,7 @@ where
     Ok(felt)
 }
 
-/// The delay, in steps, at which forces are nearest to those of a simulation at 1000 Hz.
+/// The delay, in steps, for which forces are nearest to those of a simulation at 1000 Hz.
 fn lag(hertz: f64) -> Result<f64, LabError> {
     let (ticks, skipped) = (1000.0 / hertz, 1000);
     let [fast, slow] = [1000.0, hertz].map(|hertz| felt(false, hertz, 400.0, 5));

@@ -33,13 +33,13 @@ pub(super) const SUBJECT: Subject = Subject {
 };
 
 const EDGE: f64 = 0.1;
-/// Pull on the top (Pa).
+/// Traction on the top (Pa).
 const TRACTION: f64 = 100.0;
-/// Cells a side of the 10-node tetrahedra for compliance and for frequencies.
+/// Cells per side of the 10-node tetrahedra for compliance and for frequencies.
 const FOR_COMPLIANCE: usize = 8;
 const FOR_FREQUENCIES: usize = 6;
 
-/// Poisson's ratio, element, cells a side, and the compliance over that of 10-node tetrahedra.
+/// Poisson's ratio, element, cells per side, and the compliance over that of 10-node tetrahedra.
 const COMPLIANCE: &[(f64, Kind, usize, f64)] = &[
     (0.45, Kind::P1, 10, 0.921),
     (0.45, Kind::Edge(1.0), 5, 0.946),
@@ -50,7 +50,7 @@ const COMPLIANCE: &[(f64, Kind, usize, f64)] = &[
     (0.499, Kind::Edge(1.0), 10, 1.003),
 ];
 
-/// Element and first frequency (Hz) at nu = .45: lumped mass with 10 and 14 cells a side, consistent mass with 10.
+/// Element and first frequency (Hz) at nu = .45: lumped mass with 10 and 14 cells per side, consistent mass with 10.
 const FREQUENCY: &[(Kind, [f64; 3])] = &[
     (Kind::P1, [7.2725, 7.2272, 7.393]),
     (Kind::Fbar, [7.1799, 7.1487, 7.304]),
@@ -59,7 +59,7 @@ const FREQUENCY: &[(Kind, [f64; 3])] = &[
     (Kind::Edge(1.0), [6.9928, 7.0364, 7.120]),
 ];
 
-/// Element and stable step (ms) with 10 cells a side at nu = .45 and .49.
+/// Element and stable step (ms) with 10 cells per side at nu = .45 and .49.
 const STEP: &[(Kind, [f64; 2])] = &[
     (Kind::P1, [2.0209, 0.9522]),
     (Kind::Fbar, [2.8698, 1.3575]),
@@ -258,7 +258,7 @@ fn compliance(kind: Kind, cells: usize, nu: f64) -> Result<f64, LabError> {
     Ok(dot(&loads(&model), &equilibrium(&model)?))
 }
 
-/// 10-node tetrahedra, and their moving part.
+/// 10-node tetrahedra, and their free part.
 fn tet10(cells: usize, nu: f64) -> Result<(Tet10, HeldTet10), LabError> {
     let body = Tet10::new(&cube(cells, EDGE, Split::Kuhn)?);
     let tissue = Tissue {
@@ -281,7 +281,8 @@ fn compliance_of_tet10(cells: usize, nu: f64) -> Result<f64, LabError> {
     Ok(dot(force.as_flattened(), u.as_flattened()))
 }
 
-/// The first frequency (Hz) with the mass of linear shape functions, V rho/20 between two nodes and twice that on a node.
+/// The first frequency (Hz) with the mass of linear shape functions, V rho/20 between two nodes and twice that for a
+/// node.
 fn frequency_consistent(model: &Model) -> Result<f64, LabError> {
     let pattern = Arc::clone(model.operators().stiffness().pattern());
     let mut mass = BlockMatrix::zeros(pattern, Layers::Three);

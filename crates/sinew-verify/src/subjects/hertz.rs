@@ -31,10 +31,10 @@ const CONTACT: f64 = 1e-3;
 /// Radius of the ball (m).
 const BALL: f64 = 10.0 * CONTACT;
 
-/// Length of each cell over the one before, beyond the contact.
+/// Length of each cell over the previous one, outside the contact.
 const GROWTH: f64 = 1.3;
 
-/// The smoothed element of tissue that hardly changes its volume.
+/// The smoothed element for nearly incompressible tissue.
 const SMOOTHED: Element = Element::FbarEdge {
     edge_share: 0.9,
     patch: None,
@@ -65,7 +65,7 @@ impl Press {
     }
 }
 
-/// a/h, nu, size over a, F/F_Hertz by the other program.
+/// a/h, nu, size over a, F/F_Hertz from the other program.
 const PRESSES: &[(f64, f64, f64, f64)] = &[
     (1.0, 0.3, 20.0, 1.208),
     (2.0, 0.3, 20.0, 1.125),

@@ -78,7 +78,7 @@ fn confined() -> Check {
     )
 }
 
-/// Turns of a body as one, by any angle, on every element.
+/// Rotations of a body as a whole, by any angle, on every element.
 fn rotations_of(id: &'static str) -> Check {
     let figures = [
         ("largest force (N)", Asked::at_most(1e-11)),
@@ -222,14 +222,15 @@ fn slope(of: impl Fn(f64) -> Tensor<f64>, step: f64) -> Tensor<f64> {
         })
 }
 
-/// The smallest eigenvalue of a symmetric tensor, by the singular values of one that is shifted to have none below 0.
+/// The smallest eigenvalue of a symmetric tensor, from the singular values of the tensor shifted to be positive
+/// semidefinite.
 fn least_eigenvalue(tensor: Tensor<f64>) -> f64 {
     let shift = 3.0 * tensor.largest();
     let [_, _, least] = SingularValues::of(tensor.symmetric() + Tensor::diagonal(shift)).values;
     least - shift
 }
 
-/// The largest stress (Pa) of linear elasticity in a cube that is turned by 30 degrees as one.
+/// The largest stress (Pa) of linear elasticity in a cube that is rotated as a whole by 30 degrees.
 fn linear_stress_of_a_turn() -> Result<f64, LabError> {
     let model = Model::build(
         &cube(2, 0.1, Split::Kuhn)?,

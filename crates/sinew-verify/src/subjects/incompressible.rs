@@ -1,4 +1,4 @@
-//! Large deformation that hardly changes the volume.
+//! Large deformation of nearly incompressible bodies.
 
 use sinew_core::Ramp;
 use sinew_core::vectors::largest;
@@ -43,14 +43,14 @@ fn checks() -> Vec<Check> {
     checks
 }
 
-/// Displacements of a push at 50 instants.
+/// Displacements under a push at 50 instants.
 fn pressed(nu: f64) -> Result<Vec<Vec<f64>>, LabError> {
     let law = tissue::law("neo-hookean", tissue::YOUNGS_MODULUS, nu);
     let specimen = tissue::pressed(6, law, EDGES, 10.0, Ramp::Sin2 { rise: 0.2 })?;
     Ok(specimen.by_central_difference(1e-4, 100, 50)?)
 }
 
-/// The largest turn (rad) of the column's top with `across` cells across.
+/// The largest rotation (rad) of the column's top with `across` cells over the width.
 fn farthest_turn(across: usize) -> Result<f64, LabError> {
     let law = tissue::law("neo-hookean", 17e6, 0.495);
     let mut problem = tissue::standing(law, EDGES);

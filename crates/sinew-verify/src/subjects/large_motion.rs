@@ -25,7 +25,7 @@ pub(super) const SUBJECT: Subject = Subject {
 const DURATION: f64 = 0.5;
 const INSTANTS: usize = 50;
 
-/// Steps a second of the finer of the two motions that are extrapolated.
+/// Number of steps per second of the finer one of the two motions for extrapolation.
 const FINEST: usize = 16_000;
 
 /// A scene.
@@ -58,13 +58,13 @@ impl Scene {
     }
 }
 
-/// The displacements at `rate` steps a second by central difference.
+/// The displacements by central difference with `rate` steps per second.
 fn track(specimen: &Specimen, rate: usize, instants: usize) -> Result<Vec<Vec<f64>>, LabError> {
     let steps = (DURATION * rate as f64 / instants as f64).round() as usize;
     Ok(specimen.by_central_difference(1.0 / rate as f64, steps, instants)?)
 }
 
-/// The same, extrapolated to steps of no length.
+/// The same, extrapolated to steps of zero length.
 fn exact(specimen: &Specimen, instants: usize) -> Result<Vec<Vec<f64>>, LabError> {
     let coarse = track(specimen, FINEST / 2, instants)?;
     let mut fine = track(specimen, FINEST, instants)?;
@@ -74,7 +74,7 @@ fn exact(specimen: &Specimen, instants: usize) -> Result<Vec<Vec<f64>>, LabError
     Ok(fine)
 }
 
-/// The vertical displacement (m) of the middle of the top at numbered instants.
+/// The vertical displacement (m) of the middle of the top at instants given by their numbers.
 fn tops(specimen: &Specimen, track: &[Vec<f64>], instants: &[usize]) -> Result<Vec<f64>, LabError> {
     let mesh = specimen.model.mesh();
     let (_, high) = mesh.bounding_box();
@@ -120,7 +120,7 @@ fn checks() -> Vec<Check> {
     checks
 }
 
-/// Energies of starts.
+/// Energies of initial states.
 fn energies() -> Check {
     let figures = [
         ("release: elastic (J)", Asked::value(0.730_783_744, 1e-9)),
@@ -168,7 +168,7 @@ fn released() -> Check {
     })
 }
 
-/// Kinetic and elastic energy (J) at a time (s), by the finest steps.
+/// Kinetic and elastic energy (J) at a time (s), with the finest steps.
 fn energies_at(specimen: &Specimen, t: f64) -> Result<[f64; 2], LabError> {
     let mut integrator = sinew_integrators::build("central-difference", &Options::new())?;
     let mut state: State = specimen.start.clone();
@@ -247,7 +247,7 @@ fn pressed() -> Check {
     })
 }
 
-/// Errors of central difference by steps a second.
+/// Errors of central difference for numbers of steps per second.
 fn errors(scene: Scene, table: &'static [(usize, f64)]) -> Check {
     let figures = table.iter().map(|(rate, error)| {
         // Half a unit of two digits is up to 5 %, as much as is asked.
@@ -268,7 +268,7 @@ fn errors(scene: Scene, table: &'static [(usize, f64)]) -> Check {
     })
 }
 
-/// Steps that are too long, though within the stable one at rest.
+/// Steps that are too long, although below the stable step at rest.
 fn refused(scene: Scene, rate: usize) -> Check {
     let case = format!("{}, central-difference, {rate} steps/s", scene.name());
     let asked = Asked::at_most(DURATION - 0.01);
@@ -291,8 +291,8 @@ fn refused(scene: Scene, rate: usize) -> Check {
     )
 }
 
-/// A method with its options, the step (ms), its error, and, if known, its Newton iterations a step by a factor, as
-/// in the prototype: with solutions by conjugate gradients, which are as near as an iteration needs, they are more.
+/// A method with its options, the step (ms), its error, and, if known, its Newton iterations per step with a factor, as
+/// in the prototype: with conjugate gradients, which solve only as accurately as an iteration needs, there are more.
 type Row = (
     Scene,
     &'static str,
@@ -413,8 +413,9 @@ const METHODS: &[Row] = &[
     ),
 ];
 
-/// Sweeps from which on a step hardly depends on their starting point. The prototype's set out from rest, and those
-/// of the library from the displacement by the velocity: with fewer its errors are no more than bounds.
+/// Number of sweeps from which on a step hardly depends on the starting point of the sweeps. The prototype's sweeps
+/// start from rest, and those of the library from the displacement by the velocity: with fewer sweeps the prototype's
+/// errors are only bounds.
 const FINISHED: u32 = 16;
 
 /// Errors of implicit and cellular methods on a scene.

@@ -1,4 +1,4 @@
-//! Stress that relaxes by a Prony series, under a strain that is given.
+//! Stress that relaxes by a Prony series, under a given strain.
 
 use std::f64::consts::TAU;
 
@@ -37,12 +37,13 @@ const TERMS: [Term; 2] = [
     },
 ];
 
-/// `E sum g tau (1 - e^-t/tau) + ..` of a strain that grows evenly, `E (1 - sum g (1 - e^-t/tau))` of a constant one.
+/// `E sum g tau (1 - e^-t/tau) + ..` for a strain that grows linearly, `E (1 - sum g (1 - e^-t/tau))` for a constant
+/// one.
 const INTEGRAL: Source = Source::ClosedForm(
     "the hereditary integral of the series; Simo and Hughes, Computational Inelasticity, section 10.3",
 );
 
-/// The stress (Pa) that strains leave, with their memories.
+/// The stress (Pa) due to strains, with history variables.
 #[derive(Default)]
 struct Material {
     strain: f64,
@@ -54,7 +55,7 @@ fn along(value: f64) -> Symmetric<f64> {
 }
 
 impl Material {
-    /// A step of `dt` (s) to another strain; of none for a jump.
+    /// A step of `dt` (s) to another strain; `dt = 0` for a jump.
     fn step(&mut self, dt: f64, strain: f64) -> f64 {
         let change = along(YOUNGS_MODULUS * (strain - self.strain));
         self.strain = strain;
@@ -82,7 +83,7 @@ fn held(steps: u32, jumps: bool) -> f64 {
     stresses.last().unwrap_or(f64::NAN)
 }
 
-/// Storage and loss modulus (Pa) of the tenth second at 2 Hz.
+/// Storage and loss modulus (Pa) in the tenth second at 2 Hz.
 fn swung(per_second: u32) -> [f64; 2] {
     let mut material = Material::default();
     let (mut storage, mut loss) = (0.0, 0.0);
@@ -219,7 +220,7 @@ fn checks() -> Vec<Check> {
     checks
 }
 
-/// A gradient of the displacement that stretches, shears and turns.
+/// A gradient of the displacement that stretches, shears and rotates.
 const STRAINED: Tensor<f64> = Tensor([[0.2, 0.3, 0.0], [0.0, -0.1, 0.0], [0.1, 0.0, 0.05]]);
 
 /// A body of a law whose stress relaxes, at rest.
@@ -303,7 +304,7 @@ fn pressure_stays(id: &'static str, element: Element) -> Result<f64, LabError> {
     Ok(apart(&stresses(&body.model, &state)?, &expected))
 }
 
-/// A second Piola-Kirchhoff stress that grows evenly.
+/// A second Piola-Kirchhoff stress that grows linearly.
 fn grown_body(element: Element, steps: u32) -> Result<f64, LabError> {
     let (body, mut state) = relaxing("stvk", element, ViscousPart::All, false)?;
     let points = &body.model.mesh().points;

@@ -64,7 +64,7 @@ const ORDERS: &[(&str, f64)] = &[
     ("rk4", 4.0),
 ];
 
-/// Method, its saturation, step (s), largest |u| (m) of the first second and half a unit of its last digit.
+/// Method, its saturation, step (s), largest |u| (m) in the first second and half a unit of its last digit.
 const FIRST_PEAKS: &[(&str, Option<f64>, f64, f64, f64)] = &[
     ("forward-euler", None, 0.001, 0.12901, 5e-6),
     ("cnn", Some(4.0), 0.001, 0.12602, 5e-6),
@@ -241,7 +241,7 @@ fn exact(t: f64) -> f64 {
     VELOCITY / omega * (-decay * t).exp() * (omega * t).sin()
 }
 
-/// Times (s) and displacements (m) after each step; the motion ends if it is beyond 1 km.
+/// Times (s) and displacements (m) after each step; the motion ends if it exceeds 1 km.
 fn motion(
     method: &str,
     saturation: Option<f64>,

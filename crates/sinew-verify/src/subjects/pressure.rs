@@ -1,4 +1,4 @@
-//! A manufactured solution: displacement without change of volume and a pressure.
+//! A manufactured solution: a volume-preserving displacement and a pressure.
 
 use std::f64::consts::PI;
 
@@ -139,7 +139,7 @@ fn pressure(place: [f64; 3]) -> f64 {
     PRESSURE * place.map(|t| (PI * t).cos()).iter().product::<f64>()
 }
 
-/// -mu div grad u + grad p, the force that keeps u and p in equilibrium where u changes no volume.
+/// -mu div grad u + grad p, the force that keeps u and p in equilibrium for a volume-preserving u.
 fn body_force(place: [f64; 3], mu: f64) -> [f64; 3] {
     let [x, y, z] = place;
     let [[a, a_1, a_2], [b, b_1, b_2], [c, _, c_2]] = place.map(hump);
@@ -190,7 +190,8 @@ fn errors(mesh: &TetMesh, kind: Kind, patch: Option<u32>) -> Result<Vec<f64>, La
     Ok(vec![norm(&difference) / norm(&exact), f64::sqrt(off / all)])
 }
 
-/// The change of volume that each tetrahedron's pressure follows from: the mean stress of a law that resists nothing else.
+/// The change of volume from which each tetrahedron's pressure follows: the mean stress of a law without other
+/// resistance.
 fn dilations(model: &Model, problem: &Problem, u: &[f64]) -> Result<Vec<f64>, LabError> {
     let (youngs_modulus, poissons_ratio) = (1.0, 0.5 - 1e-12);
     let element = problem.regions[0].element;

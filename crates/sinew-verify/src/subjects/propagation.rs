@@ -91,7 +91,7 @@ fn chebyshev(sweeps: f64) -> Options {
 }
 
 /// Runs on the paper's cube and on one of half its size, damped by 10/s. The modified leapfrog begins with three sweeps
-/// instead of two; a propagator takes two a degree and one for the residual.
+/// instead of two; a propagator takes two per degree and one for the residual.
 fn costed() -> [(&'static str, Vec<Costed>); 2] {
     let about = |error: f64| Asked::relative(error, 0.03);
     let plain = Options::new;
@@ -213,11 +213,10 @@ fn errors_and_work((scene, runs): (&'static str, Vec<Costed>)) -> Check {
     )
 }
 
-/// Tolerance, fit to the load, error and sweeps a second of the two-step propagator.
+/// Tolerance, fit to the load, error and sweeps per second of the two-step propagator.
 type TwoStep = (Option<f64>, bool, f64, f64);
 
-/// Runs on the peers' cube, of which a sweep is to cost a fifth of a product of SciPy's, whose central difference takes
-/// 1000.
+/// Runs on the peers' cube; a sweep should cost a fifth of a product of SciPy, whose central difference takes 1000.
 const TWO_STEP: &[TwoStep] = &[
     (Some(1e-3), false, 1e-3, 1666.0),
     (Some(1e-8), false, 1e-6, 5000.0),
@@ -227,8 +226,8 @@ const TWO_STEP: &[TwoStep] = &[
     (Some(2e-6), true, 4e-6, 1020.0),
 ];
 
-/// Errors of the two-step propagator, its sweeps, and, if it is fitted to the load, its error over the one that it
-/// estimates over eight periods.
+/// Errors of the two-step propagator, its sweeps, and, if it is fitted to the load, its error over the error estimated
+/// for eight periods.
 fn two_step() -> Check {
     let figures = TWO_STEP
         .iter()

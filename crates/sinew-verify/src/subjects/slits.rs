@@ -60,7 +60,7 @@ fn nodes(mesh: &TetMesh, holds: impl Fn([f64; 3]) -> bool) -> On {
     )
 }
 
-/// Cuts by a blade along y, longer than the body, that moves along x at a height (m) up to some place (m).
+/// Cuts by a blade along y, longer than the body, that moves along x at a height (m) up to a position (m).
 fn slit(cut: &mut CutModel, height: f64, end: f64) -> Result<(), LabError> {
     let blade = |x: f64| [[x, -1.0, height], [x, 1.0, height]];
     let sheet = Sheet::swept(blade(-1.0), blade(end)).ok_or_else(LabError::no_body)?;

@@ -1,4 +1,4 @@
-//! Laws that bodies and methods keep under large deformation.
+//! Laws that bodies and methods fulfil under large deformation.
 
 use sinew_core::vectors::{self, largest, noise, weighted_dot};
 use sinew_core::{
@@ -139,7 +139,7 @@ fn at(u: &[f64]) -> Trial<'_> {
     }
 }
 
-/// Energies over the first by central difference.
+/// Energies by central difference, over the first energy.
 fn energies(specimen: &Specimen, dt: f64, steps: usize) -> Result<Vec<f64>, LabError> {
     let mut integrator = sinew_integrators::build("central-difference", &Options::new())?;
     let mut state = specimen.start.clone();
@@ -155,11 +155,13 @@ fn energies(specimen: &Specimen, dt: f64, steps: usize) -> Result<Vec<f64>, LabE
 /// The smallest stable step (s) of the twisting column of 3 x 3 x 18 cells in the course of its motion.
 const STABLE: f64 = 1.206e-3;
 
-/// Changes from the first tenth of the steps to the last: of the energy that leapfrog keeps, and of that of motion and deformation.
+/// Changes from the first tenth of the steps to the last: of the energy that leapfrog conserves, and of the kinetic and
+/// elastic energy.
 ///
-/// A mode of frequency w with an amplitude of energy e has the energy `e (1 - w^2 dt^2/8)` in the mean, by velocities at the displacement's time,
-/// and `e (1 - w^2 dt^2/4)` by `v'M v/2 + (W + W+)/2 - dt^2/4 v'K v` between two displacements. What leapfrog keeps, also where modes exchange
-/// energy, is its modified energy `e (1 - w^2 dt^2/12)`: 4/3 of the first less 1/3 of the second, to fourth order.
+/// A mode of frequency w with an amplitude of energy e has the mean energy `e (1 - w^2 dt^2/8)`, with velocities at the
+/// displacement's time, and `e (1 - w^2 dt^2/4)` by `v'M v/2 + (W + W+)/2 - dt^2/4 v'K v` between two displacements.
+/// The energy that leapfrog conserves, also if modes exchange energy, is the modified energy `e (1 - w^2 dt^2/12)`: 4/3
+/// of the first less 1/3 of the second, to fourth order.
 fn energy_drift(steps: usize) -> Result<Vec<f64>, LabError> {
     const APART: usize = 10;
     let problem = tissue::standing(tissue::soft(), Element::P1);
@@ -201,7 +203,8 @@ fn energy_ripple(dt: f64) -> Result<f64, LabError> {
         .fold(0.0, |most: f64, energy| most.max((energy - 1.0).abs())))
 }
 
-/// The largest rise of the energy in a step over that at the start, or the work of the load, among several starts, kinds and steps.
+/// The largest rise of the energy in a step over that at the start, or over the work of the load, among several starts,
+/// kinds and steps.
 fn largest_rise(id: &'static str, element: Element) -> Result<f64, LabError> {
     let law = tissue::law(id, YOUNGS_MODULUS, 0.45);
     let standing = tissue::standing(law.clone(), element);

@@ -97,7 +97,7 @@ fn axial_frequency(split: Split, cells: usize, kind: Kind) -> Result<f64, LabErr
     Ok(omega / (PI / 2.0 * wave_speed() / LENGTH))
 }
 
-/// A bar of unit section as a chain of masses, fixed at both ends or at the first alone.
+/// A bar of unit section as a chain of masses, fixed at both ends or only at the first.
 fn chain(cells: usize, is_free: bool) -> Result<LinearModel, LabError> {
     let spacing = LENGTH / cells as f64;
     let spring = YOUNGS_MODULUS / spacing;
@@ -120,7 +120,7 @@ fn chain(cells: usize, is_free: bool) -> Result<LinearModel, LabError> {
     Ok(LinearModel::new(operators))
 }
 
-/// A narrow hump off the middle, continued beyond the ends by reflection: odd at a fixed end, even at a free one.
+/// A narrow hump outside the middle, continued beyond the ends by reflection: odd at a fixed end, even at a free one.
 fn hump(x: f64, is_free: bool) -> f64 {
     let there_and_back = 2.0 * LENGTH;
     let (turned, inside) = match x.rem_euclid(2.0 * there_and_back) {

@@ -19,8 +19,8 @@ fn run(only: &[&str]) -> Verification {
         .unwrap()
 }
 
-/// Subjects of which every row is computed here; the others take long without optimisation, and `cargo xtask ci`
-/// computes them.
+/// Subjects whose rows are all computed here; the others take long without optimisation, and `cargo xtask ci` computes
+/// them.
 const QUICK: [&str; 19] = [
     "uniform-strain",
     "cook",

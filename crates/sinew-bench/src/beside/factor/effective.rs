@@ -104,7 +104,7 @@ impl EffectiveMatrix {
         norm(&left) / norm(&self.force)
     }
 
-    /// Writes the lower triangle by columns and the load into a folder: little-endian arrays without heads.
+    /// Writes the lower triangle by columns and the load into a folder: little-endian arrays without headers.
     ///
     /// # Errors
     /// [`OutputError`].

@@ -1,4 +1,4 @@
-//! Laps in turn: they factorise, we factorise, they solve, we solve.
+//! Alternating laps: they factorise, we factorise, they solve, we solve.
 
 use sinew_core::LinearSystem;
 use sinew_integrators::Factor;
@@ -42,9 +42,9 @@ pub struct FactorPair {
     pub unknowns: usize,
     /// The other library, with its ordering.
     pub library: String,
-    /// CPU time of our numeric factorisation over that of theirs in the lap before, sorted.
+    /// CPU time of our numeric factorisation over that of theirs in the preceding lap, sorted.
     pub factorise: Vec<f64>,
-    /// CPU time of our solution over that of theirs in the lap before, sorted.
+    /// CPU time of our solution over that of theirs in the preceding lap, sorted.
     pub solve: Vec<f64>,
     /// `||A x - F|| / ||F||` of our solution and of theirs.
     pub residuals: [f64; 2],
@@ -54,7 +54,7 @@ pub struct FactorPair {
 #[derive(Clone, Debug, PartialEq)]
 pub struct FactorTable(pub Vec<FactorPair>);
 
-/// Factorises and solves in turn with another library, on one thread.
+/// Factorises and solves alternately with another library, on one thread.
 ///
 /// # Errors
 /// [`LabError`].

@@ -1,4 +1,4 @@
-//! Sparse Cholesky factors in turn with those of another library, on the same matrices.
+//! Sparse Cholesky factors, alternating with those of another library, on the same matrices.
 
 mod effective;
 mod laps;

@@ -1,4 +1,4 @@
-//! Errors of all runs against fine runs of ours.
+//! Errors of all runs, relative to fine runs of ours.
 
 use std::path::Path;
 
@@ -12,12 +12,13 @@ use super::results::SimulatorResults;
 use super::row::SimulatorRow;
 use super::said::{Said, SaidRun};
 
-/// Measures ours under the laws that the others have, and takes all errors against fine runs of these laws.
+/// Measures our runs with the laws of the other programs, and computes all errors relative to fine runs with these
+/// laws.
 ///
-/// `folder` is that of the cube's file, in which the others have written their displacements.
+/// `folder` contains the cube's file and the displacements that the other programs wrote.
 ///
 /// # Errors
-/// [`LabError`], also where displacements of a program are missing or are not those of the cube.
+/// [`LabError`], also if displacements of a program are missing or do not belong to the cube.
 pub fn compare(
     cube: &SharedCube,
     said: &[Said],

@@ -1,4 +1,4 @@
-//! The cube that all programs move.
+//! The cube that all programs simulate.
 
 use serde_json::json;
 use sinew_core::LinearSystem;
@@ -35,12 +35,12 @@ pub(super) struct CubeBody {
     pub(super) case: &'static str,
     pub(super) law: &'static str,
     pub(super) model: Model,
-    /// Nodes, held ones too.
+    /// Nodes, fixed ones included.
     pub(super) nodes: usize,
 }
 
 impl SharedCube {
-    /// The cube of 6000 tetrahedra, or a small one for a look at whether everything runs.
+    /// The cube of 6000 tetrahedra, or a small one to check that everything runs.
     ///
     /// # Errors
     /// [`LabError`].
@@ -93,7 +93,7 @@ impl SharedCube {
 }
 
 impl CubeBody {
-    /// Values of degrees of freedom by node, 0 where nodes are held.
+    /// Values of degrees of freedom by node, 0 at fixed nodes.
     pub(super) fn by_node(&self, values: &[f64]) -> Vec<f64> {
         let mut by_node = vec![0.0; 3 * self.nodes];
         for (node, values) in self.model.nodes().iter().zip(values.chunks(3)) {
@@ -115,13 +115,13 @@ impl CubeBody {
             .collect()
     }
 
-    /// Mass (kg) of each node, 0 where it is held.
+    /// Mass (kg) of each node, 0 if it is fixed.
     fn masses(&self) -> Vec<f64> {
         let by_node = self.by_node(self.model.operators().mass());
         by_node.chunks(3).map(|mass| mass[0]).collect()
     }
 
-    /// Forces (N) of each node, 0 where it is held.
+    /// Forces (N) of each node, 0 if it is fixed.
     fn forces(&self) -> Vec<[f64; 3]> {
         let by_node = self.by_node(&sinew_verify::bodies::loads(&self.model));
         let (forces, _) = by_node.as_chunks();

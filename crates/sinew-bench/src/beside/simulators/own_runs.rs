@@ -10,28 +10,28 @@ use crate::timed::time_run;
 
 const METHOD: &str = "central-difference";
 
-/// Share of the stable step at rest that fixed steps are: stretched tissue is faster.
+/// Fixed step over the stable step at rest: stretched tissue has a smaller stable step.
 const SHARE: f64 = 0.7;
 
-/// Share of the stable step at rest that half an automatic step is, as `dt = "auto"` chooses it.
+/// Half of an automatic step over the stable step at rest, as `dt = "auto"` chooses it.
 const SHARE_OF_AUTOMATIC: f64 = 0.9;
 
 /// Fixed steps over those of the fine run, whose error is then below a two-hundredth of theirs.
 const FINE: f64 = 16.0;
 
-/// A run and what it gave.
+/// A run and its results.
 pub(super) struct OwnRun {
     name: String,
-    /// Evaluations of the forces, one a step.
+    /// Evaluations of the forces, one per step.
     steps: usize,
-    /// Least CPU time (s).
+    /// Smallest CPU time (s).
     cpu_s: f64,
     /// Displacements (m) of all nodes at the instants.
     pub(super) motion: Vec<Vec<f64>>,
 }
 
 impl OwnRun {
-    /// The run that errors are taken against.
+    /// The run relative to which errors are computed.
     pub(super) fn fine(body: &CubeBody) -> Result<Self, LabError> {
         let dt = SHARE / FINE * stable_step(body)?;
         Self::of(body, String::new(), &Options::new(), dt, 0)
@@ -53,8 +53,8 @@ impl OwnRun {
         Ok(runs)
     }
 
-    /// A run in the longest steps of at most `dt` (s) that meet the instants, from rest in each lap; of no laps it has a
-    /// motion and no time.
+    /// A run in the longest steps of at most `dt` (s) that meet the instants, from rest in each lap; without laps it
+    /// has a motion but no time.
     fn of(
         body: &CubeBody,
         name: String,

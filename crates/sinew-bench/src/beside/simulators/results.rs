@@ -1,4 +1,4 @@
-//! All runs, with what they were made by.
+//! All runs, with the programs and versions that produced them.
 
 use serde::Serialize;
 use sinew_verify::Machine;
@@ -19,22 +19,22 @@ pub struct SimulatorResults {
     pub instants: usize,
     /// Laps of each run.
     pub laps: usize,
-    /// Versions of each program and of what it is built on.
+    /// Versions of each program and of the libraries that it uses.
     pub versions: Vec<String>,
     /// The runs.
     pub rows: Vec<SimulatorRow>,
-    /// Programs that were asked for and have no rows, with the reason.
+    /// Requested programs without rows, with the reason.
     pub missing: Vec<String>,
 }
 
 impl SimulatorResults {
-    /// Ours that another is compared with, of the same case and law.
+    /// Our run with which another one is compared, of the same case and law.
     fn own(&self, other: &SimulatorRow) -> Option<&SimulatorRow> {
         let mut rows = self.rows.iter();
         rows.find(|row| row.case == other.case && row.law == other.law && row.method == OWN)
     }
 
-    /// Errors and costs over those of ours, in a sentence for each run of another program.
+    /// Errors and costs relative to ours, one sentence for each run of another program.
     #[must_use]
     pub fn ratios(&self) -> Vec<String> {
         let others = self.rows.iter().filter(|row| !row.is_ours());

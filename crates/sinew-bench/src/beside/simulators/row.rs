@@ -5,7 +5,7 @@ use serde::Serialize;
 /// Our name in tables.
 pub(super) const PROGRAM: &str = "sinew";
 
-/// Our method that others are compared with: single precision in fixed steps.
+/// Our method with which others are compared: single precision in fixed steps.
 pub(super) const OWN: &str = "central-difference f32";
 
 /// One run: a program with its own method, law and step.
@@ -13,13 +13,13 @@ pub(super) const OWN: &str = "central-difference f32";
 pub struct SimulatorRow {
     /// The case: "pulled" or "pressed".
     pub case: String,
-    /// Id of the law, by which the fine run is made that the error is taken against.
+    /// Id of the law, also used for the fine run that defines the error.
     pub law: String,
     /// The program with its version.
     pub program: String,
     /// Its method.
     pub method: String,
-    /// Step (s), the mean one where steps follow the stiffness.
+    /// Step (s), the mean step if steps follow the stiffness.
     pub dt_s: f64,
     /// True if longer steps are unstable.
     pub is_limit: bool,

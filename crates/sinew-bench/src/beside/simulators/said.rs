@@ -10,7 +10,7 @@ use sinew_verify::LabError;
 use super::cube::{CubeBody, DURATION, INSTANTS};
 use super::row::SimulatorRow;
 
-/// A line that a script should not have printed.
+/// A line that a script should not print.
 #[derive(Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SaidError {
@@ -36,10 +36,10 @@ pub enum SaidError {
     },
 }
 
-/// All that a script said.
+/// All output of a script.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Said {
-    /// Versions of the program, and of what it is built on, by name; the program first.
+    /// Versions of the program, and of the libraries that it uses, by name; the program first.
     versions: Vec<(String, String)>,
     /// Its runs.
     pub(super) runs: Vec<SaidRun>,
@@ -71,7 +71,7 @@ impl Said {
     /// Reads what a script printed; `program` is the name of the program among the versions.
     ///
     /// # Errors
-    /// [`SaidError`] for the first line that is not as the scripts' documentation has it.
+    /// [`SaidError`] for the first line that differs from the scripts' documentation.
     pub fn read(script: &str, program: &str, text: &str) -> Result<Self, SaidError> {
         let mut versions: Option<BTreeMap<String, String>> = None;
         let mut runs = Vec::new();

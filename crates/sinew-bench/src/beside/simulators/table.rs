@@ -1,4 +1,4 @@
-//! Runs of simulators as people read them.
+//! Runs of simulators as a table for readers.
 
 use std::fmt;
 
@@ -25,7 +25,7 @@ pub(super) const MEANING: &str = "Each error is taken against a fine run of ours
      mean step. CPU is that of the steps for a simulated second, least of the laps, without building and compiling.";
 
 impl SimulatorResults {
-    /// The body and how it was measured.
+    /// The body and the method of measurement.
     pub(super) fn body(&self) -> String {
         format!(
             "Cube of 0.1 m, linear tetrahedra, 1060 kg/m3, E = 3500 Pa, nu = 0.45, undamped, bottom held, {} s from rest. \

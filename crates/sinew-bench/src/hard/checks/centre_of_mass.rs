@@ -13,8 +13,8 @@ use sinew_verify::LabError;
 /// The axis along which the body is free.
 const Z: usize = 2;
 
-/// The largest distance of the centre of mass from its place, over its largest displacement: by the
-/// method and step that come nearest.
+/// The largest distance of the centre of mass from its exact position, over its largest displacement: for the best
+/// method and step.
 pub(crate) fn check(asked: Asked, case: &Case, steps: &[f64]) -> Result<Mark, LabError> {
     let mut found = Vec::new();
     let methods = [

@@ -10,8 +10,8 @@ use crate::report::three;
 use crate::results::Mark;
 use sinew_verify::LabError;
 
-/// The largest excess of the energy over E0 and the work so far, as a share of them, among the
-/// methods that promise there is none.
+/// The largest excess of the energy over E0 and the work so far, as a share of them, among the methods that guarantee
+/// no excess.
 pub(crate) fn check(asked: Asked, case: &Case) -> Result<Mark, LabError> {
     let dt = case.simulation().dt();
     let critical = case

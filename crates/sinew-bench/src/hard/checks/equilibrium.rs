@@ -11,12 +11,11 @@ use crate::report::{short, three};
 use crate::results::Mark;
 use sinew_verify::LabError;
 
-/// Steps between two checks of the distance, and most of these.
+/// Number of steps between two checks of the distance, and largest number of such intervals.
 const ROUND: usize = 1000;
 const MOST_ROUNDS: usize = 200;
 
-/// The largest relative distance from the solution of K u = F, among several methods that are given
-/// the time they need.
+/// The largest relative distance from the solution of K u = F, among several methods, each with sufficient time.
 pub(crate) fn check(asked: Asked, case: &Case) -> Result<Mark, LabError> {
     let rest =
         equilibrium(case).ok_or_else(|| LabError::new("the reference does not come to rest"))?;

@@ -12,7 +12,7 @@ use sinew_verify::LabError;
 /// Share of the critical step.
 const SHARE: f64 = 0.95;
 
-/// The largest relative change of the half-step energy, in steps computed in "f64" or "f32".
+/// The largest relative change of the half-step energy, for steps computed in "f64" or "f32".
 pub(crate) fn check(
     asked: Asked,
     case: &Case,

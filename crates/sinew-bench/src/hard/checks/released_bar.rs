@@ -12,8 +12,8 @@ use crate::report::percent;
 use crate::results::Mark;
 use sinew_verify::LabError;
 
-/// Frequency and amplitude of the first mode as relative distances from the modal solution's: by the
-/// method nearest to both.
+/// Frequency and amplitude of the first mode as relative distances from those of the modal solution: for the method
+/// nearest to both.
 pub(crate) fn check(
     frequency: Asked,
     amplitude: Asked,

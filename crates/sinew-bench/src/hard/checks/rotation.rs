@@ -1,4 +1,4 @@
-//! Turning a scene turns its motion.
+//! Test that the rotation of a scene rotates its motion.
 
 use sinew_measure::{Case, MethodChoice};
 
@@ -10,8 +10,8 @@ use crate::report::three;
 use crate::results::Mark;
 use sinew_verify::LabError;
 
-/// The largest difference between a scene's motion, turned, and the motion of the turned scene,
-/// over the largest displacement: for quarter turns about x, y and z and several methods.
+/// The largest difference between the rotated motion of a scene and the motion of the rotated scene, over the largest
+/// displacement: for quarter turns about x, y and z and several methods.
 pub(crate) fn check(asked: Asked, case: &Case) -> Result<Mark, LabError> {
     let simulation = case.simulation();
     let (system, start) = (simulation.system(), simulation.initial_state());

@@ -7,8 +7,8 @@ use crate::hard::mark::Asked;
 use crate::report::{short, three};
 use crate::results::Mark;
 
-/// The error with a sliver over that without, by the method with the least work among those that
-/// pass, or else by the one with the least ratio.
+/// The error with a sliver over that without, for the method with the least work among those that pass, or otherwise
+/// for the one with the smallest ratio.
 pub(crate) fn check(asked: Asked, uniform: &[&Row], sliver: &[&Row]) -> Mark {
     let mut found: Vec<(&Row, f64)> = Vec::new();
     for row in sliver {

@@ -18,12 +18,12 @@ use sinew_verify::LabError;
 /// Number of millimetres and of micrometres in a metre.
 const UNITS: [f64; 2] = [1e3, 1e6];
 
-/// Most steps that are compared.
+/// Largest number of compared steps.
 const MOST_STEPS: usize = 200;
 
-/// The largest difference between the motion of a scene in metres and in other units, over the
-/// largest displacement: of every scene in these folders by its own method at its own step. A method
-/// that saturates lets rounding grow, so that its scenes are moved by the stabilised network.
+/// The largest difference between the motion of a scene in metres and in other units, over the largest displacement:
+/// for every scene in these folders with its own method and step. A method that saturates amplifies rounding errors, so
+/// that its scenes use the stabilised network.
 pub(crate) fn check(asked: Asked, folders: &[PathBuf]) -> Result<Mark, LabError> {
     let mut worst = Worst::default();
     let mut names = Vec::new();

@@ -7,8 +7,8 @@ use crate::hard::mark::Asked;
 use crate::report::percent;
 use crate::results::Mark;
 
-/// Judges the rows without solves that take at most `sweeps_a_step` sweeps a step: by the one with the
-/// least work that passes, or else by the one with the least error.
+/// Evaluates the rows without solves that take at most `sweeps_a_step` sweeps per step: the one with the least work
+/// that passes, or otherwise the one with the smallest error.
 pub(crate) fn check<'a>(
     asked: Asked,
     rows: impl IntoIterator<Item = &'a Row>,

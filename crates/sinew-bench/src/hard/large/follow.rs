@@ -1,4 +1,4 @@
-//! A run of tissue with all that a hard case judges it by.
+//! A run of tissue with all data for the verdict of a hard case.
 
 use sinew_core::vectors::{dot, weighted_dot};
 use sinew_core::{
@@ -10,7 +10,7 @@ use crate::report::milliseconds;
 use sinew_verify::LabError;
 use sinew_verify::tissue::{Specimen, relative_error};
 
-/// Sizes of the body that a displacement may have before the run counts as diverged.
+/// Displacement over the size of the body above which the run counts as diverged.
 const SIZES: f64 = 20.0;
 
 /// A method at a step (s).
@@ -55,7 +55,7 @@ pub(crate) struct Followed {
     pub(crate) tells_growth: bool,
     /// Elements that are inside out at the end.
     pub(crate) inverted: usize,
-    /// Velocities that a bound of cells cut, in all steps.
+    /// Number of velocities that a bound of cells limited, in all steps.
     pub(crate) saturated: u64,
     /// Largest excess of the energy over that at the start and the work of the loads since, over the largest that was allowed.
     pub(crate) excess: f64,
@@ -64,7 +64,7 @@ pub(crate) struct Followed {
 }
 
 impl Followed {
-    /// Warning of the run itself about its result, if there is one.
+    /// Warning of the run itself about its result, if any.
     pub(crate) fn admits(&self) -> Option<String> {
         if self.tells_growth {
             return Some("tells that its energy grew".into());
@@ -78,7 +78,7 @@ impl Followed {
     }
 }
 
-/// The energy of a run under loads, step by step, where supports do not move.
+/// The energy of a run under loads, step by step, if supports do not move.
 struct Ledger<'a> {
     system: &'a dyn System,
     before: Option<(State, f64)>,
@@ -169,7 +169,8 @@ fn elastic(system: &dyn System, u: &[f64], work: &mut [f64]) -> Option<(f64, usi
     Some((found.energy, found.inverted))
 }
 
-/// The motion by central difference in steps of `dt` (s) or a little less, so short that its error does not count, at equal instants.
+/// The motion by central difference in steps of `dt` (s) or a little less, so short that its error is negligible, at
+/// equal instants.
 ///
 /// # Errors
 /// [`LabError`] if the body refuses it.
@@ -187,7 +188,7 @@ pub(crate) fn reference(
 /// Follows a method over `duration` (s), with displacements at `instants` equal instants.
 ///
 /// # Errors
-/// [`LabError`] if there is no such method. A refusal of the body or of a state by it is no error.
+/// [`LabError`] if the method does not exist. A refusal of the body or of a state by the method is no error.
 pub(crate) fn follow(
     specimen: &Specimen,
     planned: &Planned,

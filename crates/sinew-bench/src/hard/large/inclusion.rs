@@ -28,7 +28,7 @@ const CORES: [&str; 4] = [
     "mooney-rivlin",
 ];
 
-/// Simulated time (s), instants that are compared, and the step of the reference (s).
+/// Simulated time (s), number of compared instants, and the step of the reference (s).
 const DURATION: f64 = 0.3;
 const INSTANTS: usize = 30;
 const FINE: f64 = 5e-5;
@@ -51,7 +51,8 @@ fn specimen(core: &'static str, element: Element, ramp: Ramp) -> Result<Specimen
     Specimen::new(&inclusion_cube(CELLS, CELLS / 2, EDGE)?, &problem)
 }
 
-/// So stiff a core hardly strains: whatever its law, equilibria and motions are those with a core of the tissue's own law.
+/// Such a stiff core hardly strains: for any law of the core, equilibria and motions equal those with a core of the
+/// tissue's law.
 pub(crate) fn check(asked: Asked) -> Result<Mark, LabError> {
     let mut tally = Tally::default();
     let rise = Ramp::Sin2 { rise: 0.1 };

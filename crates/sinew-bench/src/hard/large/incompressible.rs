@@ -16,7 +16,7 @@ use sinew_verify::tissue::{self, EDGES, Specimen, YOUNGS_MODULUS};
 
 const CELLS: usize = 4;
 
-/// Simulated time (s), instants that are compared, and the step of the reference (s).
+/// Simulated time (s), number of compared instants, and the step of the reference (s).
 const DURATION: f64 = 0.3;
 const INSTANTS: usize = 30;
 const FINE: f64 = 5e-5;
@@ -26,7 +26,7 @@ fn specimen(nu: f64, element: Element, ramp: Ramp) -> Result<Specimen, LabError>
     tissue::pressed(CELLS, law, element, 10.0, ramp)
 }
 
-/// A cube under 12 N is pressed as one with nu = .499, and moves as by short steps.
+/// A cube under 12 N deforms like one with nu = .499, and moves as with short steps.
 pub(crate) fn check(asked: Asked) -> Result<Mark, LabError> {
     let mut tally = Tally::default();
     let rise = Ramp::Sin2 { rise: 0.2 };

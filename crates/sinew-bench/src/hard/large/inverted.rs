@@ -13,7 +13,7 @@ use crate::results::Mark;
 use sinew_verify::LabError;
 use sinew_verify::tissue::{self, EDGE, Specimen, YOUNGS_MODULUS};
 
-/// Laws whose stress pushes elements back that are inside out.
+/// Laws whose stress restores inverted elements.
 const LAWS: [&str; 2] = ["stable-neo-hookean", "stable-neo-hookean-log"];
 
 const CELLS: usize = 6;
@@ -40,9 +40,9 @@ fn specimen(law: &'static str, start: Start) -> Result<Specimen, LabError> {
     }))
 }
 
-/// Methods of decreasing energy let it rise in no step, and others never above the initial energy. Central difference
-/// has to restore the crushed cube to a state without inverted elements; dissipative methods may settle in a fold,
-/// and do.
+/// Methods of decreasing energy never increase it in a step, and other methods never exceed the initial energy. Central
+/// difference has to restore the crushed cube to a state without inverted elements; dissipative methods may settle in a
+/// fold, and do.
 pub(crate) fn check(asked: Asked, start: Start) -> Result<Mark, LabError> {
     let mut tally = Tally::default();
     for law in LAWS {

@@ -21,7 +21,7 @@ const TIMES: f64 = 10.0;
 /// Steps of a run.
 const STEPS: f64 = 40.0;
 
-/// Explicit methods in steps that are not cut, all of which must be refused or fail visibly.
+/// Explicit methods without substeps, all of which must be refused or fail visibly.
 const EXPLICIT: [&str; 6] = [
     "forward-euler",
     "symplectic-euler",
@@ -50,7 +50,7 @@ fn specimens(law: &'static str) -> Result<[(&'static str, Specimen); 3], LabErro
     ])
 }
 
-/// No method gains energy silently: it is refused by name, reports the gain, or keeps to the energy of start and
+/// No method gains energy silently: it is refused by name, reports the gain, or stays within the energy of start and
 /// loads.
 pub(crate) fn check(asked: Asked) -> Result<Mark, LabError> {
     let mut tally = Tally::default();

@@ -1,5 +1,5 @@
-//! Hard cases of tissue under large deformation. Each run ends in a state that is checked, by a law of energy or by a reference, or in a
-//! refusal that names the fault.
+//! Hard cases of tissue under large deformation. Each run ends in a state that is checked with an energy law or a
+//! reference, or in a refusal that names the fault.
 
 mod follow;
 mod inclusion;

@@ -1,4 +1,4 @@
-//! Loads that turn round.
+//! Loads that reverse their direction.
 
 use sinew_core::Ramp;
 use sinew_fem::Element;
@@ -14,10 +14,10 @@ use sinew_verify::tissue::{self, YOUNGS_MODULUS};
 
 const CELLS: usize = 4;
 
-/// Laws that press and pull differently.
+/// Laws with different responses in compression and tension.
 const LAWS: [&str; 3] = ["neo-hookean", "stable-neo-hookean", "corotational"];
 
-/// Simulated time (s), instants that are compared, and the step of the reference (s).
+/// Simulated time (s), number of compared instants, and the step of the reference (s).
 const DURATION: f64 = 0.6;
 const INSTANTS: usize = 60;
 const FINE: f64 = 2.5e-4;

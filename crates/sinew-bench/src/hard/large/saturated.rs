@@ -1,4 +1,4 @@
-//! Networks whose cells are bound to a speed Q.
+//! Networks whose cells are limited to a speed Q.
 
 use sinew_core::Ramp;
 use sinew_fem::Element;
@@ -14,12 +14,12 @@ use sinew_verify::tissue::{self, YOUNGS_MODULUS};
 
 const CELLS: usize = 6;
 
-/// Simulated time (s), instants that are compared, and the step of the reference (s).
+/// Simulated time (s), number of compared instants, and the step of the reference (s).
 const DURATION: f64 = 0.3;
 const INSTANTS: usize = 30;
 const FINE: f64 = 1.25e-4;
 
-/// Bounds (m/s): one that the motion stays below, one that it does not.
+/// Bounds (m/s): one above the speeds of the motion, one below.
 const WIDE: f64 = 4.0;
 const NARROW: f64 = 0.05;
 
@@ -29,8 +29,9 @@ fn bound(id: &str, limit: f64) -> MethodChoice {
     method
 }
 
-/// Below their stable steps networks with a wide bound follow a press; where the bound cuts speeds, it says so. Beyond, elements turn inside
-/// out, which a law refuses or the count of cut speeds shows. Bounds by energy follow from matrices and are refused.
+/// Below their stable steps networks with a wide bound follow a press; if the bound limits speeds, the network reports
+/// it. Beyond, elements invert, which a law refuses or the count of limited speeds shows. Bounds by energy need
+/// matrices and are refused.
 pub(crate) fn check(asked: Asked) -> Result<Mark, LabError> {
     let mut tally = Tally::default();
     for law in ["neo-hookean", "stable-neo-hookean"] {

@@ -21,12 +21,12 @@ const CELLS: usize = 4;
 /// Thickness of the others over that of the thin element.
 const THINNESS: f64 = 100.0;
 
-/// Simulated time (s), instants that are compared, and the step of the reference (s).
+/// Simulated time (s), number of compared instants, and the step of the reference (s).
 const DURATION: f64 = 0.3;
 const INSTANTS: usize = 30;
 const FINE: f64 = 5e-4;
 
-/// The error that is allowed, a fraction: the reference is the motion of a mesh with one node and three elements less.
+/// The allowed error (fraction): the reference is the motion of a mesh with one node and three elements less.
 const LARGEST: f64 = 0.05;
 
 fn specimen(mesh: &TetMesh, law: &'static str) -> Result<Specimen, LabError> {
@@ -41,7 +41,7 @@ fn specimen(mesh: &TetMesh, law: &'static str) -> Result<Specimen, LabError> {
     Specimen::new(mesh, &problem)
 }
 
-/// The motion of a pressed cube with a thin element is that of the cube without, at the nodes that both have.
+/// The motion of a pressed cube with a thin element is that of the cube without, at their common nodes.
 pub(crate) fn check(asked: Asked) -> Result<Mark, LabError> {
     let mut tally = Tally::default();
     let plain = cube(CELLS, EDGE, Split::Kuhn)?;

@@ -1,4 +1,4 @@
-//! A mark over several runs, each of which ends in a state that is checked or in a refusal that names the fault.
+//! A mark for several runs, each of which ends in a checked state or in a refusal that names the fault.
 
 use super::follow::{Followed, Planned};
 use crate::hard::mark::{Asked, Worst};
@@ -8,8 +8,8 @@ use crate::results::Mark;
 /// Rounding of energies, over the largest of them.
 pub(super) const ROUNDING: f64 = 1e-12;
 
-/// Energy above that of start and loads that methods without a promise need not report, over the largest allowed: the
-/// threshold from which implicit methods report it.
+/// Energy above that of start and loads, over the largest allowed, that methods without a guarantee need not report:
+/// the threshold above which implicit methods report it.
 pub(super) const LITTLE: f64 = 0.05;
 
 /// Requirement for a run that reaches its end.
@@ -18,12 +18,12 @@ pub(crate) struct Demand {
     /// Description of the figure.
     pub(crate) what: &'static str,
     pub(crate) figure: f64,
-    /// The largest figure that is right.
+    /// The largest figure that passes.
     pub(crate) limit: f64,
 }
 
 impl Demand {
-    /// A figure, and the largest that is right.
+    /// A figure, and the largest one that passes.
     pub(crate) fn new(what: &'static str, figure: f64, limit: f64) -> Self {
         Self {
             what,
@@ -33,21 +33,21 @@ impl Demand {
     }
 }
 
-/// Runs and their ends.
+/// Runs and their outcomes.
 #[derive(Default)]
 pub(crate) struct Tally {
     /// Figures over their limits.
     worst: Worst,
     right: usize,
-    /// Descriptions of ends that are reported.
+    /// Descriptions of reported outcomes.
     told: Vec<String>,
     /// Descriptions of errors that must not occur.
     faults: Vec<String>,
 }
 
 impl Tally {
-    /// Judges a run: it meets a demand, or reports itself that it does not. One that has to come to its end and is
-    /// refused is a fault, and so is a refusal without a name.
+    /// Evaluates a run: it meets a demand, or reports that it does not. A refusal of a run that has to reach its end is
+    /// a fault, and so is a refusal without a name.
     pub(crate) fn judge(&mut self, about: &str, planned: &Planned, run: &Followed, demand: Demand) {
         let label = format!("{about}: {}", planned.label());
         match &run.refusal {
@@ -64,7 +64,7 @@ impl Tally {
         }
     }
 
-    /// Puts a figure that belongs to no run to a demand.
+    /// Compares a figure that belongs to no run with a demand.
     pub(crate) fn demand(&mut self, label: String, demand: Demand) {
         let what = format!("{label}: {} {}", demand.what, three(demand.figure));
         // False for what is not a number.
@@ -77,7 +77,7 @@ impl Tally {
         self.faults.push(what);
     }
 
-    /// The mark, by the figure that is nearest to its limit or farthest beyond.
+    /// The mark, from the figure that is nearest to its limit or farthest beyond.
     pub(crate) fn mark(self, asked: Asked) -> Mark {
         let shown = |share: f64| format!("{} of what is allowed", three(share));
         let faults = self.faults.iter().map(|fault| format!("FAULT {fault}"));

@@ -1,4 +1,4 @@
-//! A column that is twisted beyond a turn.
+//! A column that is twisted by more than one turn.
 
 use sinew_fem::Element;
 use sinew_measure::MethodChoice;
@@ -22,12 +22,12 @@ const LAWS: [&str; 4] = [
     "mooney-rivlin",
 ];
 
-/// Simulated time (s), instants that are compared, and the step of the reference (s).
+/// Simulated time (s), number of compared instants, and the step of the reference (s).
 const DURATION: f64 = 0.25;
 const INSTANTS: usize = 50;
 const FINE: f64 = 1.25e-4;
 
-/// The farthest that the top turns (rad).
+/// The largest rotation of the top (rad).
 fn farthest(specimen: &Specimen, track: &[Vec<f64>]) -> f64 {
     let mut angle = 0.0_f64;
     let mut farthest = 0.0_f64;
@@ -38,7 +38,7 @@ fn farthest(specimen: &Specimen, track: &[Vec<f64>]) -> f64 {
     farthest
 }
 
-/// The column turns beyond 360 degrees and back; methods follow it, or keep its energy.
+/// The column rotates by more than 360 degrees and back; methods follow it, or keep its energy.
 pub(crate) fn check(asked: Asked) -> Result<Mark, LabError> {
     let mut tally = Tally::default();
     for law in LAWS {

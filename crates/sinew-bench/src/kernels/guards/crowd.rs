@@ -1,4 +1,4 @@
-//! Threads on processors that others use as well.
+//! Threads on processors that other programs also use.
 
 use sinew_verify::LabError;
 use std::process::{Child, Command, Stdio};
@@ -13,13 +13,13 @@ use crate::kernels::bodies::cube_body;
 use crate::kernels::laps::central_difference;
 use crate::median::median;
 
-/// Wall time of several threads over that of one, at most.
+/// Largest wall time of several threads over that of one.
 const MOST: f64 = 1.1;
 
-/// Wall time of a lap (s), about: many slices of a scheduler.
+/// Approximate wall time of a lap (s): many slices of a scheduler.
 const LAP: f64 = 0.15;
 
-/// Programs that do nothing but run, ended when dropped.
+/// Programs that only use CPU time, ended when dropped.
 struct Crowd(Vec<Child>);
 
 impl Crowd {

@@ -1,4 +1,4 @@
-//! A motion that dies away, through the numbers that processors compute with slowly.
+//! A motion that decays through the range of denormal numbers, with which processors compute slowly.
 
 use sinew_cnn::{Machine, ReferenceMachine};
 use sinew_core::{LinearSystem, State, System};
@@ -12,10 +12,10 @@ use crate::kernels::bodies::damped_cube;
 use crate::kernels::laps::central_difference;
 use crate::median::median;
 
-/// Slowest stretch over the beginning, at most.
+/// Largest time of the slowest stretch over that of the beginning.
 const MOST: f64 = 1.1;
 
-/// Size of displacements (m) that is beyond every denormal number in the products of a step.
+/// Size of displacements (m) that is below every denormal number in the products of a step.
 const GONE: f64 = 1e-320;
 
 /// Batches of a stretch.
@@ -42,8 +42,7 @@ pub(super) fn guards(quick: bool) -> Result<Vec<Guard>, LabError> {
     Ok(guards)
 }
 
-/// The time of a step in the slowest stretch of a decay, over that of its beginning, which is taken again and
-/// again in turn.
+/// The time of a step in the slowest stretch of a decay, over that of its beginning, which is repeated alternately.
 fn slowest(
     name: &str,
     [early, late]: [Box<dyn Machine>; 2],

@@ -11,7 +11,7 @@ use crate::report::three;
 pub struct Guard {
     /// Name of the comparison.
     pub name: String,
-    /// The ratio, a median of laps in turn.
+    /// The ratio, a median of alternating laps.
     pub ratio: f64,
     /// Its limit; `None` if it is shown for comparison.
     pub limit: Option<Limit>,

@@ -8,7 +8,7 @@ use sinew_fem::Model;
 
 use crate::timed::{Spent, TimedRunError, time_batch};
 
-/// A machine on a model, with a motion of its own.
+/// A machine on a model, with its own motion.
 pub(super) struct Runner<'a> {
     machine: Box<dyn Machine>,
     model: &'a Model,
@@ -31,7 +31,7 @@ impl<'a> Runner<'a> {
         }
     }
 
-    /// Takes steps; their time.
+    /// Takes steps and returns their time.
     pub(super) fn take(&mut self, steps: usize) -> Result<Spent, TimedRunError> {
         let mut batch = Batch::new(self.model, Inputs::none(), self.dt, steps);
         time_batch(&mut *self.machine, &mut batch, steps, &mut self.state)

@@ -1,4 +1,4 @@
-//! The legend beneath the panels.
+//! The legend below the panels.
 
 use sinew_draw::colour_map::viridis;
 use sinew_draw::svg::{Anchor, Frame, Paint, Stroke, Svg, Text, text_width};
@@ -8,7 +8,7 @@ use sinew_measure::RowVerdict;
 use super::look::{RANGE, SMALL, TEXT};
 use crate::report::verdict;
 
-/// Colours, signs and the line, in one row beneath the panels.
+/// Colours, signs and the line, in one row below the panels.
 pub(super) fn draw_legend(svg: &mut Svg, left: f64, top: f64) {
     let bar = Frame {
         left: left + 24.0,

@@ -6,7 +6,7 @@ pub(super) const SMALL: f64 = 11.0;
 /// Errors (fraction) at the ends of the colours.
 pub(super) const RANGE: (f64, f64) = (1e-4, 1.0);
 
-/// Place of an error among the colours.
+/// Position of an error on the colour scale.
 pub(super) fn share(error: f64) -> f64 {
     let (low, high) = (RANGE.0.log10(), RANGE.1.log10());
     ((error.log10() - low) / (high - low)).clamp(0.0, 1.0)

@@ -8,7 +8,7 @@ use crate::results::StabilityMap;
 /// Width (px) of a factor of two between steps.
 const OCTAVE: f64 = 42.0;
 
-/// The steps of a map as columns on a logarithmic axis: each reaches half way to its neighbours.
+/// The steps of a map as columns on a logarithmic axis: each extends half way to its neighbours.
 pub(super) struct Steps {
     /// Left and right side of each column (px from the left side of the panel).
     pub(super) columns: Vec<(f64, f64)>,
@@ -50,7 +50,7 @@ impl Steps {
         }
     }
 
-    /// The place of a step (s), in pixels from the left side of the panel; at the side if it lies outside.
+    /// The place of a step (s), in pixels from the left side of the panel; at the side if it is outside.
     pub(super) fn place(&self, dt: f64) -> f64 {
         let share = self.axis.share(1e3 * dt);
         // No step at all lies left of all.

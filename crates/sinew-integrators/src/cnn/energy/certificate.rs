@@ -9,7 +9,8 @@ pub(super) struct Certificate {
     backtracks: u64,
     limiter_hits: u64,
     fallbacks: u64,
-    /// The largest rise of the energy in a step beyond the work of loads and tools (J), from the energies themselves.
+    /// The largest rise of the energy in a step beyond the work of loads and tools (J), computed from the energies
+    /// themselves.
     largest_rise: f64,
     /// The largest sum of kinetic and stored energy (J).
     largest_energy: f64,

@@ -8,27 +8,28 @@ use super::quadratic::Quadratic;
 use super::rigid::Rigid;
 use crate::cell_factors::CellFactors;
 
-/// Share of the first slope by which a sweep lowers the potential at least (Armijo, Pacific J. Math. 16, 1966).
+/// Minimum decrease of the potential in a sweep, as a share of the first slope (Armijo, Pacific J. Math. 16, 1966).
 const ARMIJO: f64 = 1e-4;
 
 /// Largest step along a direction, in multiples of the preconditioned gradient.
 const LONGEST: f64 = 10.0;
 
-/// Halvings after which a direction is given up.
+/// Number of halvings after which a direction is given up.
 pub(super) const MOST_HALVINGS: u32 = 60;
 
 /// Multiples of the rounding of forces within which a slope is meaningless.
 pub(super) const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
-/// A displacement over a step that is improved by nonlinear conjugate gradients with the cells' own blocks for a preconditioner.
+/// A displacement over a step that is improved by nonlinear conjugate gradients with the cells' diagonal blocks as
+/// preconditioner.
 ///
 /// Directions are those of Polak and Ribiere, never negative (Gilbert and Nocedal, SIAM J. Optim. 2, 1992). They
 /// restart with every step, so that no history is stored.
 ///
-/// They start from the displacement by the velocity at the start of the step, if the potential is not higher there than
-/// at the start: steady motion is found at once, and no stiffness of a block brakes it. Parts that may move
-/// as rigid bodies are moved to the minimum of the potential over such motions, which the elastic energy does not feel,
-/// and the blocks are then those of a [`Deflation`](sinew_cnn::Deflation): sweeps find the rest.
+/// The sweeps start from the displacement by the velocity at the start of the step, if the potential is not higher
+/// there than at the start: steady motion is found at once, and no stiffness of a block slows it down. Parts that may
+/// move as rigid bodies are moved to the minimum of the potential over such motions, which do not change the elastic
+/// energy. The blocks are then those of a [`Deflation`](sinew_cnn::Deflation), and sweeps find the rest.
 pub(super) struct Descent {
     /// The displacement over the step (m).
     pub(super) moved: Vec<f64>,
@@ -36,10 +37,10 @@ pub(super) struct Descent {
     pub(super) reached: Point,
     trial: Point,
     layers: usize,
-    /// The cells' own blocks (N/m) of the potential's second derivative without inertia, row by row.
+    /// The cells' diagonal blocks (N/m) of the potential's second derivative without inertia, row by row.
     pub(super) own: Vec<f64>,
     pub(super) blocks: CellFactors,
-    /// Own blocks of stiffness damping in the step (N s/m); empty without such damping.
+    /// Diagonal blocks of stiffness damping in the step (N s/m); empty without such damping.
     viscous_blocks: Vec<f64>,
     gradient: Vec<f64>,
     gradient_before: Vec<f64>,
@@ -48,7 +49,7 @@ pub(super) struct Descent {
     /// d2W/du2 times the direction.
     curved: Vec<f64>,
     /// The root of the sum of squares of the energies (J) at the start of the step of springs as stiff as each cell's
-    /// own block.
+    /// diagonal block.
     pub(super) stiff: f64,
     /// D times `moved`, and times the direction, without alpha M.
     damped: Vec<f64>,
@@ -60,9 +61,9 @@ pub(super) struct Descent {
 /// End of the sweeps of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Found {
-    /// Some sweep lowered the potential, or nothing was left to lower.
+    /// Some sweep lowered the potential, or the potential was at its minimum.
     Lower,
-    /// No sweep could lower it, though it has a slope.
+    /// No sweep could lower the potential, although it has a slope.
     Nothing,
     /// The slope is not finite.
     NotFinite,
@@ -70,10 +71,10 @@ pub(super) enum Found {
 
 /// The next direction.
 enum Turn {
-    /// The potential is level to rounding.
+    /// The slope of the potential is zero to rounding.
     Level,
     NotFinite,
-    /// Down.
+    /// A direction of descent.
     Down {
         /// Slope of the potential along the direction (J).
         slope: f64,
@@ -108,7 +109,7 @@ impl Descent {
         }
     }
 
-    /// Goes back to the start of the step.
+    /// Returns to the start of the step.
     pub(super) fn restart(&mut self, start: &Point) {
         self.moved.fill(0.0);
         self.damped.fill(0.0);
@@ -153,7 +154,7 @@ impl Descent {
         Ok(found)
     }
 
-    /// Takes the own blocks of stiffness damping at its constant point of the step.
+    /// Takes the diagonal blocks of stiffness damping at its constant point of the step.
     ///
     /// # Errors
     /// [`EvaluationError`] when the law is outside its domain there.
@@ -163,9 +164,9 @@ impl Descent {
             .add_viscous_blocks(&law.damped(), 1.0, &mut self.viscous_blocks)
     }
 
-    /// Moves by the velocity at the start of the step, and parts that may move as rigid bodies to the minimum of the
-    /// potential over such motions, if it is lower there; or only the latter. Then removes rigid motions from the
-    /// blocks. Returns true if anything moved.
+    /// Moves by the velocity at the start of the step, and moves parts that may move as rigid bodies to the minimum of
+    /// the potential over such motions, if the potential is lower there; or does only the latter. Then removes rigid
+    /// motions from the blocks. Returns true if anything moved.
     fn lead(
         &mut self,
         law: &Law<'_>,
@@ -290,7 +291,7 @@ impl Descent {
         cells.map(of_cell).sum()
     }
 
-    /// Finds the next direction; `before` is the steepness of the last.
+    /// Finds the next direction; `before` is the steepness of the last direction.
     fn turn(&mut self, law: &Law<'_>, quadratic: &Quadratic<'_>, before: Option<f64>) -> Turn {
         std::mem::swap(&mut self.gradient, &mut self.gradient_before);
         let damped = law.is_damped().then_some(&*self.damped);

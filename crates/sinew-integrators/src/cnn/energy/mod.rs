@@ -29,40 +29,41 @@ pub use self::kind::Kind;
 ///   171, 1999; for tissue Kane et al., Int. J. Numer. Meth. Eng. 49, 2000), or
 /// * [`Kind::Trapezoidal`], with `m = 4/dt^2`, `d = 2/dt` and `b = M (4 v/dt + a) + D v + F`: Newmark's method with beta = 1/4 and gamma = 1/2.
 ///
-/// From y = 0 on it is lowered by a given number of sweeps of nonlinear conjugate gradients; each solves with every
-/// cell's own block of the potential's second derivative, as a network does, and is halved until the law takes the
-/// point and the potential has fallen. The step's length along a direction takes one tangent product.
+/// From y = 0 on a given number of sweeps of nonlinear conjugate gradients lowers the potential. Each sweep solves with
+/// every cell's diagonal block of the potential's second derivative, as a network does, and its step is halved until
+/// the law accepts the point and the potential has decreased. The step's length along a direction takes one tangent
+/// product.
 ///
 /// # Why the energy does not rise
 ///
 /// Let `E = v'M v/2 + W(u)` before the step and P be the mean load over it. A displacement y may be taken if
-/// `W(u + y) - P'y <= E`; then the velocity is reduced, if necessary, until `E+ <= E + P'y`. Implicit Euler's
-/// potential under the load P is E at y = 0, up to the constant `v'M v/2`, and never less than `W(u + y) - P'y`, as M
-/// and D have no negative eigenvalues; the sweeps only lower it. So its y may be taken after any number of sweeps. If
-/// the trapezoidal rule's y may not, the step is taken again by implicit Euler. If rounding spoils even that, or no
+/// `W(u + y) - P'y <= E`; then the velocity is reduced, if necessary, until `E+ <= E + P'y`. Implicit Euler's potential
+/// under the load P is E at y = 0, up to the constant `v'M v/2`, and never less than `W(u + y) - P'y`, as M and D have
+/// no negative eigenvalues; the sweeps only lower it. So its y may be taken after any number of sweeps. If the y of the
+/// trapezoidal rule may not be taken, the step is taken again by implicit Euler. If rounding prevents even that, or no
 /// sweep finds a lower point, the body keeps its displacement and gets zero velocity. Energies are compared by their
-/// difference along the step, so that rounding of a large constant energy spoils nothing. Both include supports at
-/// their places at the end of the step: the work of moving ones is counted separately.
+/// difference along the step, so that the rounding of a large constant energy has no effect. Both energies include
+/// supports at their positions at the end of the step: the work of moving supports is counted separately.
 ///
 /// # Contact
 ///
-/// With tools and [`Kind::ImplicitEuler`] each sweep finds the minimum of a bound of the potential by the cells' own
-/// blocks, in which contact is exact cell by cell, friction included, and `E+ <= E + P'y + W` holds with the work W of
-/// the tools (the proof is with the sweeps, `touched.rs`). The trapezoidal rule would let nodes bounce off a tool that
-/// they follow, and is refused.
+/// With tools and [`Kind::ImplicitEuler`] each sweep finds the minimum of a bound of the potential by the cells'
+/// diagonal blocks, in which contact is exact cell by cell, friction included, and `E+ <= E + P'y + W` holds with the
+/// work W of the tools (the proof is with the sweeps, `touched.rs`). The trapezoidal rule would let nodes bounce off a
+/// tool that they follow, and is refused.
 ///
-/// All damping enters the potential: the mass-proportional part, dashpots, and stiffness damping at the point half
-/// way through the step by the velocity at its start, in the place of a function of the displacement. It has no
-/// negative eigenvalues. Its force by supports in motion is a load, with its work part of P.
+/// All damping enters the potential: the mass-proportional part, dashpots, and stiffness damping at the point half way
+/// through the step by the velocity at its start, instead of as a function of the displacement. It has no negative
+/// eigenvalues. Its force due to moving supports is a load, whose work is part of P.
 ///
 /// # Order
 ///
-/// Parts that may move as rigid bodies are moved to the minimum of the potential over such motions first, by finite
+/// Parts that may move as rigid bodies are moved to the minimum of the potential over such motions first, with finite
 /// rotations, so that rigid motion needs no sweeps ([`sinew_cnn::RigidMotions`]).
 ///
-/// Sweeps begin with no other displacement, an error of `dt v`, and each leaves a share of it that falls as `dt^2`,
-/// or as `dt` with stiffness damping or dashpots, which weigh `dt` times more. So the order is that of the formula
-/// from two sweeps on (from one for implicit Euler), with such damping from three (two).
+/// Apart from that, sweeps begin at zero displacement, an error of `dt v`. Each sweep leaves a share of this error that
+/// falls as `dt^2`, or as `dt` with stiffness damping or dashpots, whose weight is `dt` times larger. So the order is
+/// that of the formula from two sweeps on (from one for implicit Euler), with such damping from three (two).
 #[derive(Clone, Copy, Debug)]
 pub struct CnnEnergy {
     kind: Kind,
@@ -86,7 +87,7 @@ impl Default for CnnEnergy {
     }
 }
 
-/// Most sweeps: far more than any can use.
+/// Largest number of sweeps: far more than any run can use.
 const MOST_SWEEPS: u32 = 10_000;
 
 const KIND: OptionHelp = OptionHelp {

@@ -1,4 +1,4 @@
-//! Points that an elastic law has been evaluated at.
+//! Points at which an elastic law has been evaluated.
 
 use sinew_core::vectors::{dot, dot_of_difference};
 use sinew_core::{ElasticLaw, EvaluationError, LoadTime, Trial, Velocities};
@@ -40,8 +40,8 @@ impl Point {
     /// `W(other) - W(self) - (dW/du)' step` (J), the step to `other` being `length` times `direction`.
     ///
     /// If W is quadratic, or if rounding of the energies exceeds their difference, half the change of the force along
-    /// the step: then its error is of third order in the step only, less than that rounding. `stiff` (J) is the
-    /// energy of springs as stiff as each cell's own block with all others at rest: the energy is a sum of elements'
+    /// the step: then its error is of third order in the step, less than that rounding. `stiff` (J) is the energy of
+    /// springs as stiff as each cell's diagonal block with all other cells at rest: the energy is a sum of elements'
     /// forces times displacements, and rounded as these are.
     pub(super) fn energy_beyond_slope(
         &self,

@@ -1,4 +1,4 @@
-//! The quadratic terms of a step's potential, which every law has.
+//! The quadratic terms of a step's potential, which are the same for all laws.
 
 use sinew_core::vectors::add_scaled;
 
@@ -15,7 +15,7 @@ pub(super) struct Quadratic<'a> {
 }
 
 impl Quadratic<'_> {
-    /// The gradient (N) of the potential at a displacement y (m), from D y (N) if anything damps, and the law's force
+    /// The gradient (N) of the potential at a displacement y (m), from D y (N) if there is damping, and the law's force
     /// (N) there.
     pub(super) fn write_slope(
         &self,

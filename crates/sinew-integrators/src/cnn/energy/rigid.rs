@@ -5,8 +5,8 @@ use sinew_core::FreePart;
 
 use super::quadratic::Quadratic;
 
-/// The parts that may move as rigid bodies. The potential of a rigid motion is that of its inertia alone, and so its
-/// least is known; sweeps then continue by blocks that rigid motions do not feel.
+/// The parts that may move as rigid bodies. The potential of a rigid motion is that of its inertia alone, so that its
+/// minimum is known; sweeps then continue with blocks on which rigid motions have no effect.
 pub(super) struct Rigid {
     parts: Vec<RigidMotions>,
     pub(super) deflation: Deflation,
@@ -35,7 +35,7 @@ impl Rigid {
     }
 
     /// Writes the rigid displacements (m) from `u` (m) on that minimise the potential without elastic energy; other
-    /// cells are unchanged. For a quadratic law they are small ones about rest.
+    /// cells are unchanged. For a quadratic law they are small displacements about rest.
     pub(super) fn lead(
         &mut self,
         u: &[f64],
@@ -60,7 +60,7 @@ impl Rigid {
         }
     }
 
-    /// Replaces the rigid part of `way` (m), the displacement in a step from `u` (m) on by a velocity, by finite
+    /// Replaces the rigid part of `way` (m), the displacement in a step from `u` (m) on by a velocity, with finite
     /// rotations.
     pub(super) fn turn(&mut self, u: &[f64], masses: &[f64], way: &mut [f64]) {
         for ((pull, mass), way) in self.pull.iter_mut().zip(masses).zip(&*way) {

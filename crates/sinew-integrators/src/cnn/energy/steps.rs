@@ -14,7 +14,7 @@ use super::quadratic::Quadratic;
 use super::touched::{SetOut, Taken, Touched};
 use crate::StepByHand;
 
-/// Relative excess of the kinetic energy that counts as rounding where the limiter takes it.
+/// Relative excess of the kinetic energy that counts as rounding when the limiter removes it.
 const ROUNDING: f64 = 1e-12;
 
 /// The steps of [`super::CnnEnergy`].
@@ -26,7 +26,7 @@ pub struct EnergySteps {
     /// Present if the body has contact.
     touched: Option<Touched>,
     start: Point,
-    /// Loads at the start and the end of the step, and their mean, by which work is counted (N).
+    /// Loads at the start and the end of the step, and their mean, for the work (N).
     load_before: Vec<f64>,
     load: Vec<f64>,
     mean_load: Vec<f64>,
@@ -35,12 +35,13 @@ pub struct EnergySteps {
     damped: Vec<f64>,
     /// Buffer for the displacement (m) at which stiffness damping is evaluated throughout a step.
     middle: Vec<f64>,
-    /// The force (N) of that damping by the motion of supports.
+    /// The force (N) of that damping due to the motion of supports.
     drag: Vec<f64>,
     /// Velocity at the end of the step (m/s), and acceleration at its start (m/s^2).
     v: Vec<f64>,
     a: Vec<f64>,
-    /// The time at which that acceleration has the motion of supports in its stiffness damping: of one that the state kept, that of the end of the last step.
+    /// The time whose motion of supports that acceleration has in its stiffness damping: for an acceleration kept in
+    /// the state, the time at the end of the last step.
     damped_at: LoadTime<'static>,
     certificate: Certificate,
 }
@@ -60,7 +61,7 @@ impl Attempt {
 }
 
 impl EnergySteps {
-    /// Steps of a system, whose certificate continues the counts of those `before`, as at a cut.
+    /// Steps of a system, whose certificate continues the counts of `before`, as after a cut.
     pub(super) fn new(
         id: &'static str,
         system: &dyn System,
@@ -92,8 +93,8 @@ impl EnergySteps {
         }
     }
 
-    /// The loads of a step that the formula takes at both ends, and the mean of both. Loads that follow the surface are taken
-    /// on that at the beginning: they are constant in the step, as its promise needs.
+    /// Returns the loads that the formula takes at both ends of a step, and the mean of both. Loads that follow the
+    /// surface are taken on the surface at the beginning: they are constant in the step, as the guarantee requires.
     fn take_loads(&mut self, step: &Step<'_>, state: &State) -> LoadTime<'static> {
         let t = state.t();
         let under = |when: LoadTime<'_>, out: &mut [f64]| {
@@ -162,9 +163,9 @@ impl EnergySteps {
         Ok(work)
     }
 
-    /// Finds the point at which stiffness damping is evaluated in the step: half way, by the velocity at its start,
-    /// so that a body that turns is not damped and the order is kept; or the start of the step, if the law is
-    /// undefined half way. Its force by the motion of supports is a load of the step.
+    /// Finds the point at which stiffness damping is evaluated in the step: half way, by the velocity at its start, so
+    /// that a rotating body is not damped and the order is kept; or the start of the step, if the law is undefined half
+    /// way. The damping force due to the motion of supports is a load of the step.
     fn hold_viscosity<'a>(
         &mut self,
         law: Law<'a>,

@@ -9,44 +9,46 @@ use super::point::{Law, Point};
 use super::quadratic::Quadratic;
 use crate::cnn::coupled_contact::{Coupled, CoupledContact};
 
-/// Times each cell's own block, without inertia, by which the potential is bounded at first.
+/// Multiple of each cell's diagonal block, without inertia, with which the potential is bounded at first.
 const FIRST_BOUND: f64 = 2.0;
 
-/// The highest bound that leaves rigid motions their inertia: if the potential rises along such a motion, as that of
-/// a large turn may, no higher one helps.
+/// The highest bound that leaves rigid motions their inertia: if the potential rises along such a motion, as it may for
+/// a large rotation, no higher bound helps.
 const MOST_DEFLATED: f64 = 64.0;
 
-/// Displacement over a step from which sweeps set out.
+/// Displacement over a step at which sweeps start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum SetOut {
     /// Displacement by the velocity at the beginning of the step, or zero if the law refuses it.
     Carried,
-    /// None.
+    /// Zero displacement.
     Still,
 }
 
 /// A displacement over a step, improved by sweeps: each minimises a bound of the potential, exactly and with contact.
 ///
 /// The bound about a displacement z is `Phi(z) + g'(y - z) + (y - z)'(m M + beta B)(y - z)/2`, with the exact inertia
-/// and the cells' own blocks B of the rest, with beta large enough for a bound. Its minimum is the result of contact,
-/// in the metric `dt^2 (m M + beta B)`, for cells with the contact-free displacement `z - (m M + beta B)^-1 g`. So
-/// each sweep ends with forces of contact that fit its displacement, friction included. It is a proximal gradient
-/// method with a momentum that restarts if it leads uphill (Beck and Teboulle, SIAM J. Imaging Sci. 2, 2009;
-/// O'Donoghue and Candes, Found. Comput. Math. 15, 2015).
+/// and the cells' diagonal blocks B of the rest, with beta large enough for a bound. Its minimum is the result of
+/// contact, in the metric `dt^2 (m M + beta B)`, for cells with the contact-free displacement
+/// `z - (m M + beta B)^-1 g`. So each sweep ends with forces of contact that fit its displacement, friction included.
+/// It is a proximal gradient method with a momentum that restarts if it leads uphill (Beck and Teboulle, SIAM J.
+/// Imaging Sci. 2, 2009; O'Donoghue and Candes, Found. Comput. Math. 15, 2015).
 ///
 /// Sweeps start at `z = dt v`, where `y - z` is of the order of `dt^2`: the first one continues free motion.
 /// A bound of the inertia, such as twice the inertia, would keep only a share of the velocity in each step.
 ///
-/// B has no effect on parts that may move as rigid bodies ([`Deflation`]), which turn by z as far as they turn in dt.
-/// With one block for each cell they would be braked by the stiffness that couples a cell to its neighbours.
+/// B has no effect on rigid motions of parts that may move as rigid bodies ([`Deflation`]): such a part turns by z as
+/// far as it turns in dt. With one block for each cell the stiffness that couples a cell to its neighbours would slow
+/// such motions down.
 ///
-/// One sweep from z = 0 by whole blocks ends where `Phi(y) <= Phi(0) + lambda'y - y'(m M + beta B)y/2` with the forces lambda, for every law: the potential rises by the
-/// work of contact at most. If other sweeps do not keep to that, this one is taken. Coupled contacts are found by an
-/// iteration, whose residual may be more than that: then the body keeps its displacement, unless something pushes it.
+/// One sweep from z = 0 with whole blocks ends where `Phi(y) <= Phi(0) + lambda'y - y'(m M + beta B)y/2` with the
+/// forces lambda, for every law: the potential rises at most by the work of contact. If other sweeps violate this, this
+/// sweep is taken. Coupled contacts are found by an iteration, whose residual may be larger than that: then the body
+/// keeps its displacement, unless contact pushes it.
 pub(super) struct Touched {
     /// The state that contact receives: that at the start of the step, with other u, v and contact variables.
     shown: State,
-    /// The displacement z (m) from which a sweep sets out, and the law there.
+    /// The displacement z (m) from which a sweep starts, and the law there.
     origin: Vec<f64>,
     base: Point,
     trial: Point,
@@ -105,10 +107,10 @@ impl Touched {
         }
     }
 
-    /// Runs `sweeps` sweeps that lower the potential; their end is left in `descent`.
+    /// Runs `sweeps` sweeps that lower the potential; `descent` receives the result.
     ///
     /// # Errors
-    /// [`EvaluationError`] when the law has a force but no own blocks or no damping, or is undefined for the
+    /// [`EvaluationError`] when the law has a force but no diagonal blocks or no damping, or is undefined for the
     /// displacements that tools cause.
     pub(super) fn lower(
         &mut self,
@@ -191,7 +193,8 @@ impl Touched {
         Ok(Found::Lower)
     }
 
-    /// Stays where the step began, with the forces of the step before, if nothing pushes a cell away from there.
+    /// Keeps the displacement of the beginning of the step, with the contact forces of the step before, if contact
+    /// pushes no cell away from there.
     pub(super) fn stay(
         &mut self,
         (contact, step, state): (&dyn Contact, &Step<'_>, &State),
@@ -248,7 +251,8 @@ impl Touched {
         &self.shown
     }
 
-    /// Sets out by a share of the last displacement beyond where the last sweep ended, and finds the slope there.
+    /// Moves the starting point of a sweep beyond the end of the last sweep by a share of the last displacement, and
+    /// finds the slope there.
     fn set_out(
         &mut self,
         taken: Taken<'_>,
@@ -290,7 +294,8 @@ impl Touched {
         Ok(())
     }
 
-    /// Finds the minimum of a bound, which is raised until it is one; returns false if that does not end.
+    /// Finds the minimum of a trial bound, which is raised until it is above the potential; returns false if no such
+    /// bound is found.
     fn sweep(
         &mut self,
         taken: Taken<'_>,
@@ -311,7 +316,7 @@ impl Touched {
         Ok(false)
     }
 
-    /// Makes the metric of a bound.
+    /// Computes the metric of a bound.
     fn weigh(&mut self, taken: Taken<'_>, descent: &mut Descent, bound: f64) {
         let dt = taken.step.dt;
         descent.factorise(taken.quadratic, bound);

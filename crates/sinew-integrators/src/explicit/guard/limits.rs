@@ -12,7 +12,7 @@ use super::bound::Bound;
 pub(super) struct Limits {
     /// Q of each cell (m/s).
     of_cells: Arc<[f64]>,
-    /// Bound that they are computed from, and its system; `None` where they are the user's.
+    /// Bound from which they are computed, and its system; `None` if the user gave the limits.
     bound: Option<((Revision, Option<Revision>), Bound)>,
     start: Option<Start>,
     /// The step (s), and the factor by which velocities computed at it may exceed the bound of exact motion.
@@ -54,7 +54,7 @@ impl Limits {
         Ok(())
     }
 
-    /// Sets the start of the motion; returns whether it changed the limits.
+    /// Sets the start of the motion; returns true if the limits changed.
     pub(super) fn set_start(&mut self, start: Option<Start>) -> bool {
         if self.start == start {
             return false;
@@ -92,8 +92,7 @@ impl Limits {
         self.of_cells.iter().copied().fold(0.0, f64::max)
     }
 
-    /// The largest share of its size that a cell may pass in a second (1/s); 0 where the system has
-    /// no sizes.
+    /// The largest share of its size that a cell may pass in a second (1/s); 0 if the system has no sizes.
     pub(super) fn largest_rate(&self) -> f64 {
         self.largest_rate
     }

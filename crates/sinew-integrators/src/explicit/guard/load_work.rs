@@ -3,17 +3,17 @@
 use sinew_core::LinearOperators;
 use sinew_core::vectors::dot;
 
-/// Iterations after which a body counts as not held.
+/// Iterations after which a body counts as unsupported.
 const MOST_ITERATIONS: usize = 2000;
 
 /// Residual of a solution, relative to the load; the error of the energy is its square.
 const RESIDUAL: f64 = 1e-5;
 
-/// Stiffness of a motion that counts as zero, relative to the stiffness against moving each single cell.
+/// Stiffness of a motion that counts as zero, relative to the stiffness against a motion of each single cell.
 const UNRESISTED: f64 = 1e-12;
 
-/// Bounds of `e = sqrt(v'Mv + w'Kw)` that a load can bring about at any time after a start at rest, w being the
-/// displacement from the equilibrium of the moment or, for the second, from the equilibrium without loads.
+/// Bounds of `e = sqrt(v'Mv + w'Kw)` that a load can cause at any time after a start at rest, w being the displacement
+/// from the current equilibrium or, for the second, from the equilibrium without loads.
 #[derive(Debug)]
 pub(super) struct LoadStrength {
     /// Bound by the load's changes (J^1/2); infinite if the body is unsupported against it.
@@ -27,20 +27,20 @@ pub(super) struct LoadStrength {
 }
 
 impl LoadStrength {
-    /// The bound (J^1/2) for motion computed in steps of `dt` (s); infinite where the load can move the body for ever.
+    /// The bound (J^1/2) for motion computed in steps of `dt` (s); infinite if the load can move the body without end.
     ///
-    /// With the equilibrium u_s under the load of the moment, `r(t) F`, and `e^2 = v'Mv + (u - u_s)'K(u - u_s)`,
-    /// `de/dt <= |dr/dt| sqrt(F'K^-1 F)`, since damping takes energy away: e is at most the ramp's variation
-    /// times `sqrt(F'K^-1 F)`. The power of the load gives another bound, `d sqrt(v'Mv + u'Ku)/dt <= |r|
-    /// sqrt(F'M^-1 F)`, which holds for floating bodies too. Steps take a smooth load at their instants: a
-    /// sum of values times dt exceeds the integral by at most dt times the variation.
+    /// With the equilibrium u_s under the current load, `r(t) F`, and `e^2 = v'Mv + (u - u_s)'K(u - u_s)`,
+    /// `de/dt <= |dr/dt| sqrt(F'K^-1 F)`, since damping removes energy: e is at most the ramp's variation times
+    /// `sqrt(F'K^-1 F)`. The power of the load gives another bound, `d sqrt(v'Mv + u'Ku)/dt <= |r| sqrt(F'M^-1 F)`,
+    /// which holds for floating bodies too. Steps take a smooth load at their instants: a sum of values times dt
+    /// exceeds the integral by at most dt times the variation.
     pub(super) fn at(&self, dt: f64) -> f64 {
         let by_impulse = (self.impulse + dt * self.variation) * self.rate;
         self.by_changes.min(by_impulse)
     }
 }
 
-/// The strengths of all loads that push anything; those of loads that act together add up.
+/// The strengths of all loads that are not zero; those of loads that act together are added.
 pub(super) fn load_strengths(operators: &LinearOperators) -> Vec<LoadStrength> {
     let mut force = vec![0.0; operators.dofs()];
     let strengths = operators.loads().iter().filter_map(|load| {
@@ -61,8 +61,8 @@ pub(super) fn load_strengths(operators: &LinearOperators) -> Vec<LoadStrength> {
     strengths.collect()
 }
 
-/// `F'K^-1 F` (J) by conjugate gradients, preconditioned by one number for each cell, which does not depend
-/// on the axes' directions; infinite where K does not resist F, or hardly.
+/// `F'K^-1 F` (J) by conjugate gradients, preconditioned by one number for each cell, which does not depend on the
+/// axes' directions; infinite if K resists F not at all, or hardly.
 fn compliance(operators: &LinearOperators, force: &[f64]) -> f64 {
     let stiffness = operators.stiffness();
     let layers = stiffness.layers().count();

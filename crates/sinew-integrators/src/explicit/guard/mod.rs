@@ -18,24 +18,24 @@ pub use crate::guard_option::{Guard, GuardOption};
 use bound::{LEAST_ROOM, room};
 use limits::Limits;
 
-/// Most substeps of a step if none is stable: a light cell's limit would ask for millions.
+/// Largest number of substeps of a step if none is stable: the limit of a light cell would need millions.
 const MOST_PARTS_BY_SIZE: u32 = 1000;
 
-/// An integrator whose velocities and displacements are clamped after each step: `|v_i| <= Q_i`
-/// and `|u_i(t + dt) - u_i(t)| <= Q_i dt` for the vectors of each cell i, so that the result does not
-/// depend on the axes' directions. Not a bit changes while nothing saturates.
+/// An integrator whose velocities and displacements are clamped after each step: `|v_i| <= Q_i` and
+/// `|u_i(t + dt) - u_i(t)| <= Q_i dt` for the vectors of each cell i, so that the result does not depend on the axes'
+/// directions. While nothing saturates, the result is identical to the last bit.
 ///
-/// With [`Guard::Auto`] a step longer than the method's stable one is cut into the fewest equal parts that are at most
-/// nine tenths of it. The limits Q_i follow from the energy that the loads and the start of the motion bring, with a
-/// factor for the larger velocities of a stable method, so that a stable step, or substep, is never clamped. Where a
-/// method knows no stable step, as forward Euler without damping, parts are so short that no cell passes a fifth of its
-/// size in one, or a thousandth of the step, and the limits are what bounds the motion.
+/// With [`Guard::Auto`] a step longer than the method's stable one is divided into the fewest equal substeps of at most
+/// nine tenths of the stable step. The limits Q_i follow from the energy of the loads and of the start of the motion,
+/// with a factor for the larger velocities of a stable method, so that a stable step or substep is never clamped. If a
+/// method has no stable step, as forward Euler without damping, substeps are so short that no cell moves by more than a
+/// fifth of its size in one, but not shorter than a thousandth of the step, and the limits bound the motion.
 ///
 /// [`Guard::At`] clamps and does nothing else.
 ///
-/// Where a method moves displacements with its new velocity, both clamps are the same; where it
-/// uses the old one, that velocity was clamped a step before. Staggered velocities stay staggered,
-/// and an acceleration that a method keeps is that of the clamped motion.
+/// If a method moves displacements with its new velocity, both clamps are the same; if it uses the old velocity, that
+/// velocity was clamped a step before. Staggered velocities stay staggered, and an acceleration that a method keeps is
+/// that of the clamped motion.
 pub struct Guarded {
     inner: Box<dyn Stepper>,
     guard: Guard,
@@ -45,15 +45,15 @@ pub struct Guarded {
     /// The method's stable step on the current system.
     stable: Option<(Revision, StableStep)>,
     parts: u32,
-    /// Parts into which each of them is cut once more.
+    /// Number of equal substeps into which each of them is divided further.
     finer: u32,
 }
 
 impl Guarded {
     /// Name of the fact for the number of substeps of a step.
     pub const SUBSTEPS: &'static str = "guard_substeps";
-    /// Name of the fact for the largest of all limits (m/s), which rises without end where a step nears the
-    /// method's stable one.
+    /// Name of the fact for the largest of all limits (m/s), which tends to infinity as a step approaches the method's
+    /// stable step.
     pub const LARGEST_LIMIT: &'static str = "guard_q_max";
 
     /// Guards `inner`.
@@ -184,7 +184,7 @@ impl Integrator for Guarded {
         Ok(work)
     }
 
-    /// The method's stable step: the guard bounds the motion beyond it without making it right.
+    /// The method's stable step: the guard bounds the motion beyond it without making it accurate.
     fn stable_step_about(
         &self,
         system: &dyn System,

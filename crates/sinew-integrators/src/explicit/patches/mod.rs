@@ -1,10 +1,10 @@
 //! `patches`: the few stiffest elements solved as small blocks inside an otherwise explicit step.
 //!
 //! In `P (v+ - v-) = dt (F - K u - D v-)` any symmetric `P > dt/2 D + dt^2/4 K` is stable (see
-//! [`crate::cnn::CnnStabilised`]). With `P = M + dt/2 alpha M + (dt/2 beta + dt^2/4) K_patch`, K_patch the
-//! sum over some elements, that holds as soon as the step is stable for the elements left. A sum
-//! over whole elements knows no rigid motion, so that a patch moves with its surroundings as freely
-//! as before, which blocks cut out of K would not.
+//! [`crate::cnn::CnnStabilised`]). With `P = M + dt/2 alpha M + (dt/2 beta + dt^2/4) K_patch`, K_patch the sum over
+//! some elements, that holds as soon as the step is stable for the remaining elements. A sum over whole elements gives
+//! no force for a rigid motion, so that a patch moves with its surroundings as freely as before; blocks cut out of K
+//! would not allow this.
 
 mod stiff_elements;
 
@@ -45,8 +45,8 @@ const PATCHES: OptionHelp = OptionHelp {
 /// Elements named in a remark.
 const NAMED: usize = 5;
 
-/// [`CentralDifference`] in which the few elements that forbid the step are solved as small blocks:
-/// stable up to the limit of all others, order 2, the elements named in a remark.
+/// [`CentralDifference`] in which the few elements that are unstable at this step are solved as small blocks: stable up
+/// to the limit of all others, order 2, the elements named in a remark.
 ///
 /// Without `patches = "auto"` it is central difference.
 #[derive(Debug, Default)]
@@ -246,7 +246,7 @@ impl StepByHand for PatchedSteps {
     }
 }
 
-/// Reasons for which patches cannot be made.
+/// Reasons for which patches cannot be built.
 #[derive(Debug, thiserror::Error)]
 enum PatchError {
     #[error(transparent)]
@@ -262,7 +262,7 @@ enum PatchError {
 struct Patches {
     /// Cells of the system, increasing.
     cells: Vec<u32>,
-    /// Patches that share no cell.
+    /// Number of patches without common cells.
     blocks: usize,
     layers: usize,
     operators: LinearOperators,
@@ -327,8 +327,8 @@ impl Patches {
     }
 
     /// [`Patches::accelerate`] for the start from `v` (m/s), which holds at the displacement's time:
-    /// `(M + c K_patch)(a' + alpha v) = M (a + alpha v) - dt/2 K_patch v`, so that a stiff patch
-    /// does not set out with a velocity it could not keep.
+    /// `(M + c K_patch)(a' + alpha v) = M (a + alpha v) - dt/2 K_patch v`, so that a stiff patch does not start with a
+    /// velocity that it could not keep.
     fn accelerate_start(&mut self, a: &mut [f64], v: &[f64], alpha: f64, dt: f64) {
         for (own, dof) in self
             .velocity

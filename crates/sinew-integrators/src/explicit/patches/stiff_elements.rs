@@ -8,15 +8,15 @@ use sinew_core::{
 
 use crate::limits;
 
-/// Largest share of all elements that patches may hold: beyond it a step is no longer explicit
-/// with exceptions, and a factor of the whole matrix is the better choice.
+/// Largest share of all elements that patches may contain: beyond it a step is no longer an explicit step with
+/// exceptions, and a factor of the whole matrix is the better choice.
 const LARGEST_SHARE: f64 = 0.05;
-/// Number of elements that patches may always hold.
+/// Number of elements that patches may always contain.
 const ALWAYS_ALLOWED: usize = 16;
 /// Share of the stable step that a step with patches must stay below.
 const MARGIN: f64 = 0.99;
-/// Share of the longest possible step up to which elements go into patches: beyond it, the rest
-/// would lengthen the step by less.
+/// Share of the longest possible step up to which elements are added to patches: beyond it, the rest would lengthen the
+/// step by less.
 const WORTH: f64 = 0.9;
 
 /// The stiffest elements of a system, in order, the stiffest first.
@@ -142,7 +142,7 @@ impl<'a> StiffElements<'a> {
         Ok(self.fewest(|limit| dt <= MARGIN * limit))
     }
 
-    /// The longest step for which patches pay.
+    /// The longest step for which patches are worth their cost.
     pub(super) fn stable_step(&self) -> StableStep {
         let longest = self.limit(self.order.len());
         let enough = |limit: f64| limit >= WORTH * longest;
@@ -152,9 +152,9 @@ impl<'a> StiffElements<'a> {
         StableStep::UpTo(MARGIN * self.limit(self.fewest(enough)))
     }
 
-    /// The fewest elements whose absence makes the limit long enough; taking out all is known to
-    /// suffice, taking out none not to. Taking an element out of K never shortens the limit, so
-    /// bisection finds the number.
+    /// The smallest number of elements whose removal makes the limit long enough; the removal of all is known to
+    /// suffice, and the removal of none not to. The removal of an element from K never shortens the limit, so bisection
+    /// finds the number.
     fn fewest(&self, enough: impl Fn(f64) -> bool) -> usize {
         let (mut too_few, mut count) = (0, self.order.len());
         while count - too_few > 1 {

@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 
 use sinew_core::Pattern;
 
-/// Numbers groups of connected cells, of about `size` each: the group of each cell, and the number of groups.
+/// Numbers groups of connected cells, of about `size` each; returns the group of each cell, and the number of groups.
 pub(super) fn aggregates(pattern: &Pattern, size: usize) -> (Vec<u32>, usize) {
     const NONE: u32 = u32::MAX;
     let cells = pattern.cells();

@@ -9,10 +9,11 @@ use sinew_sparse::ordering::{Elimination, nested_dissection};
 use super::structure::{buffer, lower_triangle, of_faer};
 use crate::implicit::factor_error::FactorError;
 
-/// Cells below which nested dissection takes longer than it saves.
+/// Number of cells below which nested dissection takes longer than it saves.
 const FEW: usize = 500;
 
-/// The cells by nested dissection or by approximate minimum degree, whichever takes fewer operations to factorise.
+/// Orders the cells by nested dissection or by approximate minimum degree, whichever takes fewer operations to
+/// factorise.
 ///
 /// Both work on the graph of cells, which has a third of the vertices of that of degrees of freedom.
 pub(super) fn cell_order(pattern: &Pattern) -> Result<Elimination, FactorError> {

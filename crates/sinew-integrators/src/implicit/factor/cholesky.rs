@@ -31,7 +31,7 @@ pub(super) struct Cholesky {
     values: Vec<f64>,
     /// Work space of the numeric factorisation.
     scratch: MemBuffer,
-    /// The right-hand side in the order of elimination, and as many numbers for products.
+    /// The right-hand side in the order of elimination, and space of the same length for products.
     sorted: Vec<f64>,
     products: Vec<f64>,
 }
@@ -180,7 +180,7 @@ pub fn symmetric_eigen(matrix: &[f64], n: usize) -> Result<(Vec<f64>, Vec<f64>),
     Ok((values, vectors.map(|(i, j)| eigen.U()[(i, j)]).collect()))
 }
 
-/// The degrees of freedom of cells in an order of elimination, and the place of each in it.
+/// The degrees of freedom of cells in an order of elimination, and the position of each in it.
 fn dof_order(cells: &[u32], layers: Layers) -> (Vec<usize>, Vec<usize>) {
     let layers = layers.count();
     let dofs = cells.iter().map(|cell| *cell as usize * layers);

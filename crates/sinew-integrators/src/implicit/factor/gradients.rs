@@ -9,7 +9,7 @@ use super::matrices::{Combination, Matrices};
 use super::two_grid::TwoGrid;
 use crate::implicit::factor_error::FactorError;
 
-/// Most iterations of a solution.
+/// Largest number of iterations of a solution.
 const MOST_ITERATIONS: u32 = 5000;
 
 /// Preconditioned conjugate gradients (Saad, Iterative Methods for Sparse Linear Systems, algorithm 9.1) with a combination of matrices.

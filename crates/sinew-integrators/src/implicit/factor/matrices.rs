@@ -1,4 +1,4 @@
-//! The matrices that a factor is made of.
+//! The matrices from which a factor is built.
 
 use std::sync::Arc;
 

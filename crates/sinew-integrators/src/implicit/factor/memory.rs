@@ -36,14 +36,15 @@ impl Memory {
         Self((set != NOT_SET).then_some(set))
     }
 
-    /// Sets the value of [`Memory::left`] in this process from now on; `None` ends that. For programs that know the
-    /// memory that is available.
+    /// Sets the value of [`Memory::left`] in this process from now on; `None` removes the limit. For programs that know
+    /// the memory that is available.
     pub fn set_left(memory: Option<Self>) {
         let bytes = memory.and_then(|memory| memory.0);
         SET.store(bytes.unwrap_or(NOT_SET), Ordering::Relaxed);
     }
 
-    /// Runs `act` under a limit for factors made on this thread meanwhile: for programs that run several scenes.
+    /// Runs `act` under a limit for factors that this thread makes in the meantime: for programs that run several
+    /// scenes.
     pub fn within<T>(self, act: impl FnOnce() -> T) -> T {
         /// Restores the previous limit, even after a panic.
         struct Back(Option<Memory>);

@@ -5,7 +5,7 @@ use faer::sparse::linalg::cholesky::{SymbolicCholesky, SymbolicCholeskyRaw};
 /// Layout of the columns of a factor L: adjacent columns with the same rows below them form a panel, a dense matrix,
 /// column by column.
 ///
-/// A solution reads each number of the factor twice and does two operations with it, so that memory bandwidth limits
+/// A solution reads each number of the factor twice and does two operations per number, so that memory bandwidth limits
 /// its speed: four columns are read in one pass over the right-hand side.
 #[derive(Debug)]
 pub(super) struct Panels {
@@ -115,7 +115,7 @@ impl Panels {
 }
 
 impl Panel {
-    /// A run of columns, the last one repeated if there are fewer.
+    /// Consecutive columns, the last one repeated if there are fewer.
     #[inline(always)]
     fn columns<'a>(&self, values: &'a [f64], first: usize) -> [&'a [f64]; COLUMNS] {
         let height = self.width + self.below;

@@ -7,8 +7,8 @@ use super::memory::Memory;
 use super::{Factor, bytes};
 use crate::implicit::factor_error::FactorError;
 
-/// A solver of equations with a [`Combination`] that is symmetric and positive definite: by its factor, or by
-/// conjugate gradients if a factor takes more memory than there is.
+/// A solver of equations with a [`Combination`] that is symmetric and positive definite: by its factor, or by conjugate
+/// gradients if a factor takes more memory than is available.
 #[derive(Debug)]
 pub struct Solver(Kind);
 
@@ -40,7 +40,7 @@ impl Solver {
     /// [`Solver::analyse`] for a factor within this memory limit.
     ///
     /// # Errors
-    /// As [`Solver::analyse`].
+    /// Same as [`Solver::analyse`].
     pub(crate) fn analyse_within<'m>(
         matrices: impl Into<Matrices<'m>>,
         memory: Memory,
@@ -60,7 +60,7 @@ impl Solver {
         }
     }
 
-    /// Conjugate gradients, without an analysis, up to a residual of this share of the right-hand side.
+    /// Conjugate gradients, without an analysis, for a residual of this share of the right-hand side.
     ///
     /// # Errors
     /// [`FactorError`] when there is no memory for them.
@@ -120,7 +120,7 @@ impl Solver {
     /// gradients. Allocates nothing.
     ///
     /// # Errors
-    /// As [`Solver::solve`].
+    /// Same as [`Solver::solve`].
     ///
     /// # Panics
     /// If it is shorter than the matrix.
@@ -134,7 +134,7 @@ impl Solver {
         }
     }
 
-    /// A sentence about the solution of equations, if that is not by a factor.
+    /// A sentence on how equations are solved, if not with a factor.
     #[must_use]
     pub fn remark(&self) -> Option<String> {
         let Kind::Gradients {

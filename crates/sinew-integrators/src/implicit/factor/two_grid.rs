@@ -14,19 +14,19 @@ use crate::implicit::factor_error::FactorError;
 /// Cells in a group.
 const GROUP: usize = 60;
 
-/// Most groups: their factor stays small.
+/// Largest number of groups: this keeps their factor small.
 const MOST_GROUPS: usize = 8000;
 
-/// Two grids, in a symmetric cycle: a sweep forwards, the coarse problem, a sweep backwards (Trottenberg, Oosterlee and Schueller, Multigrid, section 2.2; groups
-/// that move as one: appendix A).
+/// Two grids, in a symmetric cycle: a sweep forwards, the coarse problem, a sweep backwards (Trottenberg, Oosterlee and
+/// Schueller, Multigrid, section 2.2; groups that move as one: appendix A).
 #[derive(Debug)]
 pub(super) struct TwoGrid {
     group_of: Vec<u32>,
     coarse: BlockMatrix,
-    /// Masses of the coarse problem, which has none of its own.
+    /// Masses of the coarse problem, which has no mass.
     no_mass: Vec<f64>,
     factor: Cholesky,
-    /// Inverses of the blocks on the diagonal.
+    /// Inverses of the diagonal blocks.
     inverses: Vec<f64>,
     residual: Vec<f64>,
     coarse_vector: Vec<f64>,

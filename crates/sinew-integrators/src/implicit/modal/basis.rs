@@ -19,24 +19,24 @@ pub(super) enum Choice {
     Tolerance(f64),
 }
 
-/// Vectors that represent the motion.
+/// Kinds of vectors that represent the motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Vectors {
-    /// Modes, the most excited of a Lanczos basis.
+    /// Modes, the most excited ones of a Lanczos basis.
     #[default]
     Eigen,
-    /// Ritz vectors of the loads: the most excited of such a basis, and the rest of the static responses.
+    /// Ritz vectors of the loads: the most excited ones of such a basis, and the rest of the static responses.
     Ritz,
 }
 
-/// The modes taken, with unit modal masses.
+/// The chosen modes, with unit modal masses.
 #[derive(Debug, Default)]
 pub(super) struct Basis {
     /// Angular frequencies (rad/s), in increasing order.
     pub(super) frequencies: Vec<f64>,
     /// Shapes (kg^-1/2), each of the system's length, one after the other.
     pub(super) shapes: Vec<f64>,
-    /// For each load case, its force on each mode.
+    /// Force on each mode, for each load case.
     pub(super) forces: Vec<Vec<f64>>,
     /// True if these are all modes of the system.
     pub(super) complete: bool,
@@ -108,7 +108,7 @@ impl Basis {
         self.inverse = Some(inverse);
     }
 
-    /// Makes shapes from their parts along `columns`.
+    /// Computes shapes from their components along `columns`.
     fn of(mut modes: Vec<CandidateMode>, columns: &[f64], root: &[f64], cases: usize) -> Self {
         modes.sort_by(|a, b| a.squared.total_cmp(&b.squared));
         let n = root.len();

@@ -7,7 +7,7 @@ use crate::load_case::LoadCase;
 pub(super) struct CandidateMode {
     /// omega^2 (1/s^2); 0 exactly for a rigid motion.
     pub(super) squared: f64,
-    /// Its parts along the columns of [`CandidateModes::columns`].
+    /// Its components along the columns of [`CandidateModes::columns`].
     pub(super) vector: Vec<f64>,
     /// Each load case's force on it, its mass being 1.
     pub(super) forces: Vec<f64>,

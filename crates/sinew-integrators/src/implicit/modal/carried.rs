@@ -10,14 +10,15 @@ use crate::load_case::LoadCase;
 /// Relative residual of forces at which a displacement counts as found.
 const FOUND: f64 = 1e-12;
 
-/// Share of a displacement, squared and by mass, that counts as none.
+/// Share of a displacement, squared and weighted by mass, that counts as zero.
 const NONE: f64 = 1e-20;
 
-/// The response of a body to supports in slow motion, without its part in the modes: `u = g d - h (d'' + alpha d')`
-/// with d the factor of the motion, `K g = -K_p`, by which supports carry the body without inertia, and `K h = M g`,
-/// by which inertia bends it meanwhile. Modes alone end in a jump at the supports, so that strains in no picture give
-/// their forces. It is static correction (Dickens,
-/// Nakagawa and Wittbrodt, Computers & Structures 62, 1997) in two terms of the series by derivatives of loads (Camarda, Haftka and Riley, Computers & Structures 26, 1987).
+/// The response of a body to slowly moving supports, without its part in the modes: `u = g d - h (d'' + alpha d')`, d
+/// being the factor of the motion. `K g = -K_p` is the displacement by the supports without inertia, and `K h = M g`
+/// that by the inertia of this motion. The shapes of modes alone end in a jump at the supports, so that no strain field
+/// of them gives the supports' forces. This is static correction (Dickens, Nakagawa and Wittbrodt, Computers &
+/// Structures 62, 1997) with two terms of the series by derivatives of loads (Camarda, Haftka and Riley, Computers &
+/// Structures 26, 1987).
 #[derive(Debug, Default)]
 pub(super) struct Carried {
     courses: Vec<Course>,
@@ -81,8 +82,8 @@ impl Carried {
         }
     }
 
-    /// Adds `times` times this part at the time `t` (s), after what happens then, to displacements (m) and velocities
-    /// (m/s).
+    /// Adds `times` times this part at the time `t` (s), after the events at that time, to displacements (m) and
+    /// velocities (m/s).
     pub(super) fn add(&self, times: f64, t: f64, u: &mut [f64], v: &mut [f64]) {
         let after = t + Clock::ROUNDING * t.abs();
         for course in &self.courses {
@@ -96,20 +97,20 @@ impl Carried {
         }
     }
 
-    /// Takes all that lies along these displacements out of x.
+    /// Removes from x all components along these displacements.
     pub(super) fn remove(&self, mass: &[f64], x: &mut [f64]) {
         remove(mass, &self.directions, x);
     }
 }
 
-/// The part of a displacement outside the modes; the forces of modes give the part inside.
+/// The part of a displacement outside the modes; the part inside follows from the forces on the modes.
 fn outside(basis: &Basis, mass: &[f64], mut displacement: Vec<f64>) -> Vec<f64> {
     remove(mass, &basis.shapes, &mut displacement);
     remove(mass, &basis.shapes, &mut displacement);
     displacement
 }
 
-/// Takes the parts along columns that are orthonormal by mass out of x.
+/// Removes from x the components along mass-orthonormal columns.
 fn remove(mass: &[f64], columns: &[f64], x: &mut [f64]) {
     for column in columns.chunks_exact(x.len().max(1)) {
         let parts = x.iter().zip(mass).zip(column);

@@ -59,8 +59,8 @@ pub(super) fn lift_two(
     }
 }
 
-/// Takes the parts along orthonormal columns out of `x`, twice if the first pass left rounding
-/// (Daniel, Gragg, Kaufman and Stewart, Math. Comp. 30, 1976), and adds them to `parts`.
+/// Removes from `x` the components along orthonormal columns, twice if the first pass left rounding errors (Daniel,
+/// Gragg, Kaufman and Stewart, Math. Comp. 30, 1976), and adds them to `parts`.
 pub(super) fn orthogonalise(columns: &[f64], x: &mut [f64], parts: &mut [f64], work: &mut [f64]) {
     let work = &mut work[..parts.len()];
     let mut before = norm(x);

@@ -12,7 +12,7 @@ pub(super) enum Failure {
     TooFew {
         needed: usize,
     },
-    /// The tolerance needs more modes than may be taken.
+    /// The tolerance needs more modes than allowed.
     TooMany {
         basis: usize,
         dofs: usize,

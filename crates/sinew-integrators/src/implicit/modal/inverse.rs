@@ -20,8 +20,8 @@ pub(super) struct Inverse {
     pub(super) factorizations: u64,
 }
 
-/// Largest `||K x - b|| / ||b||` at which a factor is accepted: rounding can let the
-/// factorisation of a singular matrix pass.
+/// Largest `||K x - b|| / ||b||` at which a factor is accepted: due to rounding, the factorisation of a singular matrix
+/// can succeed.
 const SOLVED: f64 = 1e-6;
 
 /// The shift of a floating body over the largest k_ii/m_i: far below the slowest vibration,
@@ -32,7 +32,7 @@ const SHIFT: f64 = 1e-7;
 const RIGID: f64 = 1e-4;
 
 impl Inverse {
-    /// Factorises K, or K + s^2 M where K has no inverse.
+    /// Factorises K, or K + s^2 M if K has no inverse.
     pub(super) fn new(operators: &LinearOperators) -> Result<Self, FactorError> {
         let held = held(operators);
         let masses = operators.mass().iter().zip(&held);
@@ -174,8 +174,8 @@ impl Inverse {
     }
 }
 
-/// Marks fixed components of cells whose other components move: their rows of K are zero.
-/// A cell without any stiffness floats.
+/// Marks fixed components of cells with other free components: their rows of K are zero. A cell without any stiffness
+/// is free.
 pub(super) fn held(operators: &LinearOperators) -> Vec<bool> {
     let stiffness = operators.stiffness();
     let layers = stiffness.layers().count();

@@ -7,13 +7,12 @@ use super::inverse::Inverse;
 use crate::implicit::factor::symmetric_eigen;
 use crate::implicit::factor_error::FactorError;
 
-/// Length of a new vector, relative to its length before it was made orthogonal, below which it is
-/// rounding.
+/// Length of a new vector, relative to its length before orthogonalisation, below which it is rounding.
 const DEPENDENT: f64 = 1e-12;
 
-/// An orthonormal basis of the span of the starts, A times them, A^2 times them and so on, made by
-/// the Lanczos method with full reorthogonalisation (Golub and Van Loan, Matrix Computations,
-/// section 10.3; several starts as in Ruhe, Math. Comp. 33, 1979).
+/// An orthonormal basis of the span of the starts, A times them, A^2 times them and so on, computed by the Lanczos
+/// method with full reorthogonalisation (Golub and Van Loan, Matrix Computations, section 10.3; several starts as in
+/// Ruhe, Math. Comp. 33, 1979).
 #[derive(Debug)]
 pub(super) struct LanczosBasis {
     n: usize,
@@ -22,9 +21,9 @@ pub(super) struct LanczosBasis {
     rigid: usize,
     /// Number of starts that were independent.
     width: usize,
-    /// Column j: the parts of A times vector j along the vectors known at that time.
+    /// Column j: the components of A times vector j along the vectors known at that time.
     image: Vec<Vec<f64>>,
-    /// The starts' parts along the first vectors.
+    /// The starts' components along the first vectors.
     starts: Vec<Vec<f64>>,
     work: Vec<f64>,
 }
@@ -34,11 +33,11 @@ pub(super) struct LanczosBasis {
 pub(super) struct Ritz {
     /// Eigenvalue.
     pub(super) theta: f64,
-    /// Parts along the basis.
+    /// Components along the basis.
     pub(super) vector: Vec<f64>,
     /// `||A x - theta x||`.
     pub(super) residual: f64,
-    /// The starts' parts along it.
+    /// Components of the starts along it.
     pub(super) excitation: Vec<f64>,
 }
 
@@ -73,7 +72,7 @@ impl LanczosBasis {
         self.image.len()
     }
 
-    /// True if the basis spans all that the start vectors can reach.
+    /// True if the basis spans the whole space that the start vectors can reach.
     pub(super) fn exhausted(&self) -> bool {
         self.size() == self.len()
     }
@@ -92,7 +91,7 @@ impl LanczosBasis {
         &self.vectors[first..first + self.size() * self.n]
     }
 
-    /// Makes `x` orthogonal to all vectors and appends what remains of it. Returns its parts.
+    /// Makes `x` orthogonal to all vectors and appends what remains of it. Returns its components.
     fn append(&mut self, mut x: Vec<f64>, size: f64) -> Vec<f64> {
         let known = self.rigid + self.len();
         let mut parts = vec![0.0; known];
@@ -113,7 +112,7 @@ impl LanczosBasis {
         parts
     }
 
-    /// Grows until the projected problem has `size` unknowns or nothing is left to find.
+    /// Grows until the projected problem has `size` unknowns or the basis is complete.
     pub(super) fn grow(&mut self, size: usize, inverse: &mut Inverse) {
         while self.size() < size && !self.exhausted() {
             let mut image = vec![0.0; self.n];

@@ -1,4 +1,4 @@
-//! `modal`: superposition of the modes that matter.
+//! `modal`: superposition of the most important modes.
 
 mod basis;
 mod candidate;
@@ -30,50 +30,49 @@ use crate::load_case::LoadCase;
 use crate::scheme::linear;
 use crate::{Frame, Method, OptionDefault, OptionHelp, OptionKind, Scheme, SetUp, StepByHand};
 
-/// Modal superposition (Clough and Penzien, Dynamics of Structures, chapter 12): with the modes phi
-/// of `K phi = omega^2 M phi`, `phi' M phi = 1`, each `q = phi' M u` is an oscillator of its own,
-/// `q'' + (alpha + beta omega^2) q' + omega^2 q = phi' F(t)`, whose motion under the ramps of the
-/// loads is taken exactly at any step; steps are cut at the ramps' breakpoints.
+/// Modal superposition (Clough and Penzien, Dynamics of Structures, chapter 12): with the modes phi of
+/// `K phi = omega^2 M phi`, `phi' M phi = 1`, each `q = phi' M u` is a separate oscillator,
+/// `q'' + (alpha + beta omega^2) q' + omega^2 q = phi' F(t)`, whose motion under the ramps of the loads is computed
+/// exactly at any step; steps are divided at the ramps' breakpoints.
 ///
 /// # Modes
-/// They come from the Lanczos method on `K^-1 M`, or on `(K + s^2 M)^-1 M` if the body floats, in a basis that
-/// starts from the static response to the loads, so that modes that no load excites never enter. Modes at the fast end
-/// of the basis have not converged; each represents a bundle of modes, which represents the loads better than any one
-/// of them. Systems of up to 256 degrees of freedom have all their modes taken.
+/// The modes come from the Lanczos method on `K^-1 M`, or on `(K + s^2 M)^-1 M` if the body floats, in a basis that
+/// starts from the static response to the loads, so that modes that no load excites are never included. Modes at the
+/// fast end of the basis have not converged; each stands for a group of modes and represents the loads better than any
+/// single mode. For systems of up to 256 degrees of freedom all modes are taken.
 ///
-/// * `tolerance = x`: the basis grows until the response to suddenly applied loads, in the norm of
-///   the masses and over eight periods of the slowest mode, changes by less than the tolerance from
-///   one basis to the next larger by a third. Then the modes of the smallest static response
-///   |phi' F|/omega^2 are left out as far as the tolerance allows. Both shares together are
-///   [`Frame::estimated_error`], which is kept below four fifths of the tolerance. If that takes a
-///   basis of more than half of the degrees of freedom, set-up fails. Damping is left out of the estimate. It holds for loads that are applied
-///   suddenly and stay: pulses shorter than the slowest periods and loads that switch excite fast
-///   modes more, and may lose several times the share.
+/// * `tolerance = x`: the basis grows until the response to suddenly applied loads, in the norm of the masses and over
+///   eight periods of the slowest mode, changes by less than the tolerance from one basis to the next, which is larger
+///   by a third. Then the modes of the smallest static response |phi' F|/omega^2 are left out as far as the tolerance
+///   allows. Both shares together are [`Frame::estimated_error`], which is kept below four fifths of the tolerance. If
+///   that needs a basis of more than half of the degrees of freedom, set-up fails. The estimate does not include
+///   damping. It holds for loads that are applied suddenly and stay: pulses shorter than the slowest periods and loads
+///   that are switched excite fast modes more, and the lost share may be several times larger.
 /// * `modes = N`: rigid motions and the most excited modes of a basis of 2 N, or of `basis = P`.
 ///   Without loads, the slowest modes, all converged.
 ///
 /// # Ritz vectors
-/// With `vectors = "ritz"`, load-dependent Ritz vectors (Wilson, Yuan and Dickens, Earthquake Eng. Struct. Dyn. 10,
-/// 1982) take the place of modes: the most excited vectors of a basis of twice as many, which takes a factor and a
-/// solution for each, and one vector for the rest of the static response to each ramp's loads, prescribed
-/// motions included. So the static part of a response is exact with any number of vectors: static correction by
-/// augmentation (Dickens, Nakagawa and Wittbrodt, Computers & Structures 62, 1997). There are at least as many
-/// vectors as different ramps. With `tolerance` they are the fewest that the tolerance allows.
+/// With `vectors = "ritz"`, load-dependent Ritz vectors (Wilson, Yuan and Dickens, Earthquake Eng. Struct. Dyn.
+/// 10, 1982) replace modes: the most excited vectors of a basis of twice as many, which takes a factor and one solution
+/// for each vector, and one vector for the rest of the static response to each ramp's loads, prescribed motions
+/// included. So the static part of a response is exact with any number of vectors: static correction by augmentation
+/// (Dickens, Nakagawa and Wittbrodt, Computers & Structures 62, 1997). There are at least as many vectors as different
+/// ramps. With `tolerance` the method takes the fewest vectors that the tolerance allows.
 ///
-/// [`Frame::estimated_error`], which a plan says before the run, is that of the response to suddenly applied loads,
-/// with damping: the error of the vectors against their basis, and the change by the last quarter of the basis.
+/// [`Frame::estimated_error`], which a plan reports before the run, is the error of the response to suddenly applied
+/// loads, with damping: the error of the vectors relative to their basis, and the change due to the last quarter of the
+/// basis.
 ///
 /// # States
-/// Modes are a property of the system alone, so that a run can be continued from any of its states.
-/// A state that lies outside them is refused, because loads and states excite different modes. The
-/// measure is the displacement outside the modes together with the displacement to which the velocity
-/// outside them would lead, against the whole; the allowed share is the tolerance, or a tenth for
-/// `modes = N`. A part within that share is dropped.
+/// Modes are a property of the system alone, so that a run can be continued from any of its states. A state that lies
+/// outside them is refused, because loads and states excite different modes. The measure is the displacement outside
+/// the modes together with the displacement that the velocity outside them would cause, relative to the whole; the
+/// allowed share is the tolerance, or a tenth for `modes = N`. A part within that share is dropped.
 ///
 /// # Supports in motion
-/// The body's response to slow motion of supports is complete: the part missing in the modes is added. So there is no
-/// force on a support from a body that moves with it at constant velocity, and that of the whole body's inertia if it
-/// is shaken slowly, with any number of modes.
+/// The body's response to slow motion of supports is complete: the part missing in the modes is added. So, with any
+/// number of modes, a body that moves with its support at constant velocity exerts no force on it, and a slowly shaken
+/// body the force of its whole inertia.
 ///
 /// # Work
 /// A step projects displacement and velocity to the modes and lifts them back: `sweeps` counts
@@ -99,7 +98,7 @@ pub struct ModalSteps {
     breakpoints: Vec<f64>,
     modes: Vec<Mode>,
     linear: Vec<Response>,
-    /// For each load case, empty if its ramp is never sinusoidal.
+    /// Responses for each load case, empty if its ramp is never sinusoidal.
     harmonic: Vec<Vec<Response>>,
     pieces: Vec<Piece>,
     exponential: Exponential,
@@ -145,8 +144,7 @@ impl Modal {
 }
 
 impl Frame<Modal> {
-    /// Angular frequencies (rad/s) of the modes taken, in increasing order, 0 for rigid motions;
-    /// empty before set-up.
+    /// Angular frequencies (rad/s) of the chosen modes, in increasing order, 0 for rigid motions; empty before set-up.
     #[must_use]
     pub fn frequencies(&self) -> &[f64] {
         self.by_hand().map_or(&[], |steps| &steps.basis.frequencies)
@@ -160,8 +158,8 @@ impl Frame<Modal> {
         steps.basis.shapes.get(mode * n..(mode + 1) * n)
     }
 
-    /// The share of the response to the loads that is estimated to be lost, if a tolerance was
-    /// asked for and there are loads to estimate it from.
+    /// The estimated share of the response to the loads that is lost, if the user gave a tolerance and there are loads
+    /// for the estimate.
     #[must_use]
     pub fn estimated_error(&self) -> Option<f64> {
         self.by_hand()?.basis.estimate
@@ -304,8 +302,8 @@ impl ModalSteps {
         })
     }
 
-    /// The share of the motion that lies outside the modes: with x and y the displacement and
-    /// velocity outside, `x' M x + y' M K^-1 M y` over the same of the whole state, under a root.
+    /// The share of the motion that lies outside the modes: with x and y the displacement and velocity outside,
+    /// `x' M x + y' M K^-1 M y` over the same of the whole state, as a square root.
     fn lost(&mut self, system: &dyn System, state: &State, whole_u: f64) -> f64 {
         let Some(inverse) = &mut self.basis.inverse else {
             return 0.0;
@@ -334,7 +332,7 @@ impl ModalSteps {
         ((outside_u + outside_v) / (whole_u + inside_v + outside_v)).sqrt()
     }
 
-    /// Moves q and p by `h` (s) from time `start` (s), no breakpoint lying between.
+    /// Moves q and p by `h` (s) from time `start` (s), with no breakpoint in between.
     fn move_modes(&mut self, start: f64, h: f64, whole_step: bool) {
         for (piece, case) in self.pieces.iter_mut().zip(&self.cases) {
             *piece = Piece::of(&case.ramp, start, h);
@@ -387,7 +385,7 @@ const TOLERANCE: OptionHelp = OptionHelp {
     shown_default: None,
 };
 
-/// More modes than any body has use for.
+/// More modes than any body needs.
 const MOST_MODES: u32 = 1_000_000_000;
 
 const MODES: OptionHelp = OptionHelp {

@@ -9,7 +9,7 @@ use super::lanczos_basis::Ritz;
 use super::search::{Found, MARGIN, Search, relative_change, sample_times};
 use crate::implicit::factor::symmetric_eigen;
 
-/// Vectors of the basis for each vector that is taken from it.
+/// Vectors of the basis for each vector chosen from it.
 const BASIS: usize = 2;
 
 /// Length of the part of a static response orthogonal to the others, relative to its own, below which it is rounding.
@@ -73,8 +73,8 @@ impl Search<'_> {
         Ok(self.take(taken, count, Some(estimate)))
     }
 
-    /// `count` vectors of the span of these: the most excited, and one for the part of each static response that
-    /// lies outside them.
+    /// `count` vectors in the span of these: the most excited, and one for the part of each static response that is
+    /// outside them.
     fn augmented(&self, pairs: &[Ritz], count: usize) -> Result<Vec<Ritz>, Failure> {
         if count >= pairs.len() {
             return Ok(pairs.to_vec());

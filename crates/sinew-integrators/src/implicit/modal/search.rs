@@ -14,8 +14,8 @@ use crate::load_case::LoadCase;
 /// Share of the degrees of freedom that a Lanczos basis may take up in the search for a tolerance.
 const SHARE: f64 = 0.5;
 
-/// Share of the tolerance that bounds the estimate: it is a mean over all phases of the modes,
-/// and a run sees some of them.
+/// Share of the tolerance that bounds the estimate: it is a mean over all phases of the modes, and a run contains only
+/// some of them.
 pub(super) const MARGIN: f64 = 0.8;
 
 /// Number of lowest modes that are taken if only the first state excites any.
@@ -30,19 +30,18 @@ const CONVERGED: f64 = 1e-8;
 /// Columns, modes and the estimated error.
 pub(super) type Found = (Vec<f64>, Vec<CandidateMode>, Option<f64>);
 
-/// The search for modes in Lanczos bases that start from the static response to each load case
-/// (Wilson, Yuan and Dickens, Earthquake Eng. Struct. Dyn. 10, 1982): modes that no load excites
-/// never enter. In the basis Q the equation of motion, multiplied by A, is
-/// `T q'' + (alpha T + beta) q' + q = Q' A f` with `T = Q' A Q` (Nour-Omid and Clough, same journal
-/// 12, 1984), whose eigenvectors are the modes as far as they have converged and bundles of fast
-/// modes beyond; the static response is exact in any of these bases.
+/// The search for modes in Lanczos bases that start from the static response to each load case (Wilson, Yuan and
+/// Dickens, Earthquake Eng. Struct. Dyn. 10, 1982): modes that no load excites are never included. In the basis Q the
+/// equation of motion, multiplied by A, is `T q'' + (alpha T + beta) q' + q = Q' A f` with `T = Q' A Q` (Nour-Omid and
+/// Clough, same journal 12, 1984), whose eigenvectors are the converged modes and, beyond them, groups of fast modes;
+/// the static response is exact in each of these bases.
 pub(super) struct Search<'a> {
     pub(super) lanczos: LanczosBasis,
     pub(super) cases: &'a [LoadCase],
     pub(super) rigid_forces: Vec<Vec<f64>>,
     shift: f64,
     pub(super) free: usize,
-    /// alpha (1/s) and beta (s) of the responses by which errors are estimated.
+    /// alpha (1/s) and beta (s) of the responses for the error estimate.
     pub(super) damping: [f64; 2],
 }
 
@@ -133,8 +132,8 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Grows the basis until the response to suddenly applied loads changes by less than the
-    /// error aimed at, then leaves out the least excited modes.
+    /// Grows the basis until the response to suddenly applied loads changes by less than the target error, then leaves
+    /// out the least excited modes.
     pub(super) fn within(
         mut self,
         tolerance: f64,
@@ -150,8 +149,8 @@ impl<'a> Search<'a> {
         Ok(self.thin_out(pairs, aim, change))
     }
 
-    /// The pairs of the first basis of which the response changes by so little from the last one that half of the
-    /// squared error aimed at is left, with that change.
+    /// The pairs of the first basis whose response changes so little from the last one that half of the squared target
+    /// error is left, and that change.
     pub(super) fn converged(
         &mut self,
         aim: f64,
@@ -208,7 +207,7 @@ impl<'a> Search<'a> {
         1.0 - (s_rate + mode.damping * s)
     }
 
-    /// Parts along the basis of the responses to each load case, suddenly applied.
+    /// Components along the basis of the responses to each load case, suddenly applied.
     pub(super) fn responses(&self, pairs: &[Ritz], instants: &[f64]) -> Vec<Vec<f64>> {
         let mut responses = Vec::new();
         for (case, load) in self.cases.iter().enumerate() {
@@ -231,7 +230,7 @@ impl<'a> Search<'a> {
         parts.map(|(part, case)| (case.peak() * part).powi(2)).sum()
     }
 
-    /// Leaves out the least excited modes as far as the error aimed at allows.
+    /// Leaves out the least excited modes as far as the target error allows.
     fn thin_out(self, pairs: Vec<Ritz>, aim: f64, change: f64) -> Found {
         let mut sizes: Vec<f64> = pairs.iter().map(|pair| self.excitation(pair)).collect();
         sizes.sort_by(f64::total_cmp);
@@ -299,7 +298,7 @@ pub(super) fn sample_times(slowest: f64) -> Vec<f64> {
         .collect()
 }
 
-/// `||now - before|| / ||now||`; the parts known before come first.
+/// `||now - before|| / ||now||`; the components known before come first.
 pub(super) fn relative_change(before: &[Vec<f64>], now: &[Vec<f64>]) -> f64 {
     let (mut difference, mut size) = (0.0, 0.0);
     for (before, now) in before.iter().zip(now) {

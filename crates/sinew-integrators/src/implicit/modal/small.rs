@@ -7,8 +7,7 @@ use crate::implicit::factor::symmetric_eigen;
 use crate::implicit::factor_error::FactorError;
 use crate::load_case::LoadCase;
 
-/// Degrees of freedom up to which all modes are computed together: choosing would cost more than it
-/// saves.
+/// Degrees of freedom up to which all modes are computed together: a selection would cost more than it saves.
 pub(super) const SMALL: usize = 256;
 
 /// Ratio of omega^2 to the largest omega^2 that counts as zero.

@@ -6,10 +6,10 @@ use sinew_core::{Pattern, StepReport, TangentKind};
 use super::by_products::{Gradients, Products, Solved};
 use super::choice::{Bound, Choice};
 
-/// Share of a residual that a step leaves, about.
+/// Approximate share of a residual that a step leaves.
 const SHARE: f64 = 1e-6;
 
-/// True if conjugate gradients at rest are less work than a factor, by a solution for an acceleration without any pattern.
+/// True if conjugate gradients at rest are less work than a factor, tested by the solution for a random acceleration.
 pub(super) fn are_less_work(
     gradients: &mut Gradients,
     products: &mut dyn Products,

@@ -1,4 +1,4 @@
-//! Directions of Newton's method by a factor.
+//! Directions of Newton's method computed with a factor.
 
 use std::sync::Arc;
 
@@ -10,7 +10,7 @@ use super::unsymmetric::Unsymmetric;
 use crate::implicit::factor::{Factor, Matrices};
 use crate::implicit::factor_error::FactorError;
 
-/// Inputs of a factorisation that is made once it is needed.
+/// Inputs of a factorisation that is made when it is needed.
 #[derive(Debug)]
 pub(super) struct Plan {
     pattern: Arc<Pattern>,
@@ -18,7 +18,7 @@ pub(super) struct Plan {
     /// Damping that is proportional to neither masses nor tangent.
     extra: Option<Arc<BlockMatrix>>,
     dofs: usize,
-    /// True if a part of the derivative has no symmetry.
+    /// True if a part of the derivative is not symmetric.
     is_unsymmetric: bool,
     /// A factor made earlier, whose analysis may be reused.
     known: Option<Factor>,
@@ -45,7 +45,7 @@ impl Plan {
         &self.pattern
     }
 
-    /// True if the derivative has no part without symmetry.
+    /// True if the derivative is symmetric.
     pub(super) fn is_symmetric(&self) -> bool {
         !self.is_unsymmetric
     }
@@ -66,7 +66,7 @@ pub(super) struct ByFactor {
 }
 
 impl ByFactor {
-    /// Analyses the pattern, or takes the analysis of a factor that fits; allocates all that iterations need.
+    /// Analyses the pattern, or reuses the analysis of a suitable factor; allocates all that iterations need.
     pub(super) fn new(plan: &mut Plan) -> Result<Self, FactorError> {
         let zeros = || BlockMatrix::zeros(Arc::clone(&plan.pattern), plan.layers);
         let tangent = zeros();
@@ -100,7 +100,7 @@ impl ByFactor {
         self.factor
     }
 
-    /// Sets the direction at `x` by a kind of tangent.
+    /// Computes the direction at `x` with a kind of tangent.
     pub(super) fn direct(
         &mut self,
         equations: &mut impl Equations,

@@ -7,17 +7,17 @@ use super::by_products::{Gradients, Products, Solved};
 use super::choice::{Bound, Choice};
 use super::equations::Point;
 
-/// Iterations in a step by the blocks at rest, from which on those at the state are worth the sweeps that they take.
+/// Iterations in a step with the blocks at rest from which on the blocks at the current state are worth their sweeps.
 const BY_BLOCKS_AT_REST: u64 = 30;
 
-/// Conjugate gradients by the blocks at rest, and in steps with many iterations by those at the state. Blocks of an earlier step are never used: the bits of a
-/// step are a function of the state.
+/// Conjugate gradients with the blocks at rest, and in steps with many iterations with those at the current state.
+/// Blocks of an earlier step are never used: the bits of a step are a function of the state.
 pub(super) struct ByGradients {
     gradients: Gradients,
     choice: Choice,
     /// Inverse blocks at rest, if known.
     at_rest: Option<Vec<f64>>,
-    /// True while the preconditioner is made of them.
+    /// True while the preconditioner consists of them.
     has_rest: bool,
     in_step: u64,
 }
@@ -33,14 +33,14 @@ impl ByGradients {
         }
     }
 
-    /// Keeps the blocks at rest, if they are to be had.
+    /// Computes and stores the blocks at rest, if possible.
     pub(super) fn take_rest(&mut self, at_rest: &mut dyn Products, work: &mut StepReport) {
         work.sweeps += 1;
         self.has_rest = self.gradients.prepare(at_rest).is_ok();
         self.at_rest = self.has_rest.then(|| self.gradients.inverse().to_vec());
     }
 
-    /// True if a factor on this pattern is more work, estimated for the body at rest.
+    /// True if a factor on this pattern is more work than conjugate gradients, estimated for the body at rest.
     pub(super) fn are_less_work(
         &mut self,
         at_rest: &mut dyn Products,
@@ -75,7 +75,7 @@ impl ByGradients {
     /// Begins a solution at a point.
     ///
     /// # Errors
-    /// As [`Products::blocks`].
+    /// Same as [`Products::blocks`].
     pub(super) fn begin_solution(
         &mut self,
         products: &mut dyn Products,
@@ -99,7 +99,7 @@ impl ByGradients {
     /// Continues until a share of the residual is left, or until the step has taken `most` iterations.
     ///
     /// # Errors
-    /// As [`Products::product`].
+    /// Same as [`Products::product`].
     pub(super) fn go_on(
         &mut self,
         products: (&mut dyn Products, TangentKind),

@@ -7,7 +7,7 @@ use crate::cell_factors::CellFactors;
 
 /// The derivative of equations at a point, by its products.
 pub(super) trait Products {
-    /// `out`: the derivative, of a kind, but for the part without symmetry, times a change of the unknown.
+    /// `out`: the derivative of a kind, without its unsymmetric part, times a change of the unknown.
     ///
     /// # Errors
     /// [`EvaluationError`] when the law is outside its domain at the point.
@@ -21,10 +21,10 @@ pub(super) trait Products {
     /// Sweeps that a product takes.
     fn sweeps(&self) -> u64;
 
-    /// `out`: own blocks of cells of the derivative without inertia, or more.
+    /// `out`: diagonal blocks of the cells of the derivative without inertia, or larger blocks.
     ///
     /// # Errors
-    /// As [`Products::product`].
+    /// Same as [`Products::product`].
     fn blocks(&mut self, out: &mut [f64]) -> Result<(), EvaluationError>;
 
     /// Contribution of inertia to the diagonal of the blocks.
@@ -34,7 +34,7 @@ pub(super) trait Products {
 /// End of conjugate gradients, with the share of the right-hand side that the solution leaves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Solved {
-    /// Converged to the share asked for.
+    /// Converged to the requested share.
     Near(f64),
     /// Stopped at the maximum number of iterations.
     Unfinished(f64),
@@ -42,7 +42,8 @@ pub(super) enum Solved {
     NotDefinite(Option<f64>),
 }
 
-/// Conjugate gradients (Saad, Iterative Methods for Sparse Linear Systems, algorithm 9.1), preconditioned by each cell's own block.
+/// Conjugate gradients (Saad, Iterative Methods for Sparse Linear Systems, algorithm 9.1), preconditioned by each
+/// cell's diagonal block.
 #[derive(Debug)]
 pub(super) struct Gradients {
     layers: usize,
@@ -82,10 +83,10 @@ impl Gradients {
         }
     }
 
-    /// Inverts own blocks for the preconditioner.
+    /// Inverts diagonal blocks for the preconditioner.
     ///
     /// # Errors
-    /// As [`Products::blocks`].
+    /// Same as [`Products::blocks`].
     pub(super) fn prepare(&mut self, products: &mut dyn Products) -> Result<(), EvaluationError> {
         products.blocks(self.blocks.entries_mut())?;
         self.blocks.factorise(|dof| products.inertia(dof));
@@ -103,7 +104,7 @@ impl Gradients {
         self.inverse.copy_from_slice(inverse);
     }
 
-    /// Begins at x = 0 with `A x = -right`; sizes of right-hand sides are in the norm by these weights.
+    /// Begins at x = 0 with `A x = -right`; the size of right-hand sides is the norm with these weights.
     pub(super) fn begin(&mut self, right: &[f64], weights: &[f64], x: &mut [f64]) {
         x.fill(0.0);
         for (residual, right) in self.residual.iter_mut().zip(right) {
@@ -120,7 +121,7 @@ impl Gradients {
     /// `iterations`.
     ///
     /// # Errors
-    /// As [`Products::product`].
+    /// Same as [`Products::product`].
     pub(super) fn go_on(
         &mut self,
         (products, kind): (&mut dyn Products, TangentKind),

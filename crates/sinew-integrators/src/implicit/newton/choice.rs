@@ -4,31 +4,33 @@ use sinew_core::Pattern;
 
 use crate::implicit::factor::products_of_factor;
 
-/// Work of an iteration with a factor, in products of the tangent without a matrix: to assemble and to solve, whatever the mesh, ...
+/// Work of an iteration with a factor, in products of the tangent without a matrix: assembly and solution, for any
+/// mesh, ...
 const ASSEMBLY: f64 = 45.0;
 
-/// ... and to factorise, for each product of blocks over each block of the tangent.
+/// ... and factorisation, for each product of blocks over each block of the tangent.
 const OF_BLOCKS: f64 = 0.06;
 
-/// Typical Newton iterations of a step with a factor, hard enough that both ways are considered, projected tangents
-/// and searches included.
+/// Typical Newton iterations of a step with a factor, for a step so difficult that both methods are considered, with
+/// projected tangents and searches.
 const ITERATIONS: f64 = 6.0;
 
-/// Number of cells below which a step takes a factor, without a count.
+/// Number of cells below which a step takes a factor, without an estimate.
 const FEW: usize = 8;
 
 /// Number of iterations of conjugate gradients that take as long as a step with a factor, and the two bounds derived
 /// from it.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Choice {
-    /// Once counted.
+    /// The number, once it is computed.
     even: Option<u64>,
 }
 
 /// Use of the number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Bound {
-    /// Iterations at rest beyond which steps take a factor from their beginning: a step takes a third more to twice as many, in several solutions.
+    /// Iterations at rest beyond which steps take a factor from the beginning: a step takes between a third more and
+    /// twice as many iterations, in several solutions.
     AtRest,
     /// Iterations in a step beyond which it continues with a factor: some steps take more than others.
     InStep,
@@ -42,19 +44,19 @@ impl Bound {
         }
     }
 
-    /// The least value for any mesh.
+    /// The smallest value for any mesh.
     pub(super) fn least(self) -> u64 {
         self.of((ITERATIONS * ASSEMBLY) as u64)
     }
 }
 
 impl Choice {
-    /// True if a factor is taken without a count.
+    /// True if a factor is taken without an estimate.
     pub(super) fn is_clear(pattern: &Pattern) -> bool {
         pattern.cells() < FEW
     }
 
-    /// The bound, for a factor on this pattern; counts how it fills in.
+    /// The bound, for a factor on this pattern; counts the fill-in.
     pub(super) fn bound(&mut self, bound: Bound, pattern: &Pattern) -> u64 {
         let even = *self.even.get_or_insert_with(|| {
             // A factor that cannot even be ordered is none to wait for.

@@ -7,7 +7,7 @@ pub(super) enum Reason {
     Work,
     /// The tangent is not positive definite.
     Indefinite,
-    /// The directions were useless.
+    /// The directions gave no progress.
     Stuck,
 }
 
@@ -24,7 +24,7 @@ impl Reason {
     }
 }
 
-/// Solutions and steps so far.
+/// Counts of solutions and steps so far.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Counts {
     /// Solutions by conjugate gradients, and iterations that these took.

@@ -18,7 +18,8 @@ pub(super) struct Derivative<'s> {
 }
 
 impl Derivative<'_> {
-    /// `out`: its product, of a kind, but for the part without symmetry, by scratch space as long.
+    /// `out`: product of the derivative of a kind, without its unsymmetric part; needs scratch space of the same
+    /// length.
     pub(super) fn product(
         &self,
         kind: TangentKind,
@@ -47,7 +48,7 @@ impl Derivative<'_> {
         Ok(())
     }
 
-    /// `out`: own blocks of cells without inertia, or more.
+    /// `out`: diagonal blocks of the cells without inertia, or larger blocks.
     pub(super) fn blocks(&self, out: &mut [f64]) -> Result<(), EvaluationError> {
         let [d, k] = self.coefficients;
         self.law.node_blocks(&self.at, out)?;

@@ -3,12 +3,12 @@
 use sinew_core::vectors::{dot, weighted_dot};
 use sinew_core::{ElasticLaw, LoadTime, State, Step, StepReport, Trial};
 
-/// Growth over all the energy that start, loads and supports moved, from which on it is reported.
+/// Growth over the whole energy that the start, loads and supports transferred, above which it is reported.
 const TOLD: f64 = 0.05;
 
 /// Sums up the energy that a motion may have: its initial energy, and the work of loads and supports. Damping, which
-/// takes energy away, is left out, so that growth is found late with much damping. It restarts with each
-/// motion: results depend on it by a remark only.
+/// removes energy, is left out, so that growth is found late with much damping. The sum restarts with each motion: the
+/// only effect on results is a remark.
 pub(super) struct EnergyWatch {
     integrator: &'static str,
     /// Displacement (m) at the beginning of the last step, and the mean load (N) over that step with that displacement.
@@ -111,13 +111,13 @@ impl EnergyWatch {
         Some(deformed.energy)
     }
 
-    /// Takes up the work of supports that move in the step: the elastic energy (J) of the displacement before it with
-    /// the supports after it.
+    /// Adds the work of supports that move in the step, from the elastic energy (J) of the displacement before the step
+    /// with the supports after it.
     pub(super) fn supports(&mut self, elastic: f64) {
         self.take_up(elastic - self.elastic);
     }
 
-    /// Begins anew with the next step, for one in which the work of supports is not known.
+    /// Restarts with the next step, after one in which the work of supports is not known.
     pub(super) fn restart(&mut self) {
         self.expected = None;
     }

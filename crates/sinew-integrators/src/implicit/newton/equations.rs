@@ -1,4 +1,4 @@
-//! The equations that Newton's method solves, and points of theirs.
+//! The equations that Newton's method solves, and points at which they are evaluated.
 
 use sinew_core::vectors::dot;
 use sinew_core::{BlockMatrix, EvaluationError, StepReport, TangentKind};
@@ -18,7 +18,7 @@ pub(super) trait Equations {
     /// `out`: the part of dg/dx at `x` that is combined with masses and other damping, of a kind.
     ///
     /// # Errors
-    /// As [`Equations::evaluate`].
+    /// Same as [`Equations::evaluate`].
     fn tangent(
         &mut self,
         x: &[f64],
@@ -35,7 +35,7 @@ pub(super) trait Equations {
         false
     }
 
-    /// Sweeps that a tangent and a product of the part without symmetry take for stiffness damping.
+    /// Sweeps for stiffness damping that a tangent takes, and a product of the unsymmetric part.
     fn viscous_sweeps(&self) -> u64 {
         0
     }
@@ -45,7 +45,7 @@ pub(super) trait Equations {
         None
     }
 
-    /// Size of the forces that balance each other at a point, in the norm by these weights.
+    /// Size of the forces that balance each other at a point, in the norm with these weights.
     fn forces(&self, point: &Point, weights: &[f64]) -> f64;
 
     /// True if a change of x at a point is lost in the rounding of positions.
@@ -80,7 +80,7 @@ impl Point {
         self.energy.is_finite() && dot(&self.residual, &self.residual).is_finite()
     }
 
-    /// The rate at which all forces but the elastic ones take up work along a direction.
+    /// The power of all forces except the elastic ones along a direction.
     pub(super) fn other_slope(&self, along: &[f64]) -> f64 {
         dot(&self.residual, along) - dot(&self.elastic, along)
     }

@@ -7,7 +7,8 @@ use crate::{OptionDefault, OptionHelp, OptionKind};
 /// Solver of the linear equations of Newton's method.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum FactorUse {
-    /// Conjugate gradients, and a factor in steps in which that is less work by a count, or in which they come to no solution.
+    /// Conjugate gradients, and a factor in steps in which it is less work by an estimate, or in which conjugate
+    /// gradients do not converge.
     #[default]
     Auto,
     /// A factor for each iteration.
@@ -20,7 +21,7 @@ const AUTO: &str = "auto";
 const ALWAYS: &str = "always";
 const NEVER: &str = "never";
 
-/// Help of the use of a factor.
+/// Help text of the option for a factor.
 pub(in crate::implicit) const FACTOR: OptionHelp = OptionHelp {
     key: "factor",
     help: "for nonlinear laws: whether an iteration factorises the tangent, or solves by conjugate gradients, which take far less time in short steps and \

@@ -1,4 +1,4 @@
-//! A solution followed from one that is known, by parts of what changes the equations.
+//! A solution reached from a known one by gradual change of the equations.
 
 use sinew_core::StepReport;
 use sinew_core::vectors::add_scaled;
@@ -7,22 +7,23 @@ use super::equations::Equations;
 use super::newton_error::NewtonError;
 use super::solver::Newton;
 
-/// The first part, as a share of the whole change.
+/// The first increment, as a share of the whole change.
 const FIRST: f64 = 0.25;
 
-/// The smallest part, as a share of the whole change.
+/// The smallest increment, as a share of the whole change.
 const SMALLEST: f64 = 1.0 / 4096.0;
 
-/// Iterations up to which the next part is four times as long; it is twice as long after more.
+/// Largest number of iterations after which the next increment is four times as long; after more iterations it is twice
+/// as long.
 const EASY: u64 = 3;
 
-/// Equations that change with a share, from 0 to 1, of a load or of the way of supports.
+/// Equations that change with a share, from 0 to 1, of a load or of the path of supports.
 pub(super) trait ByShare: Equations {
-    /// Takes the equations of a share.
+    /// Sets the equations of a share.
     fn take_share(&mut self, share: f64);
 }
 
-/// The change could be followed to a share only.
+/// Error of a change that could be followed to a share only.
 pub(in crate::implicit) struct Unreached {
     /// The share that is reached.
     pub(in crate::implicit) share: f64,
@@ -30,8 +31,9 @@ pub(in crate::implicit) struct Unreached {
     pub(in crate::implicit) error: NewtonError,
 }
 
-/// Moves the point from a solution without the change, or a start near it, to the solution with all of it: the change
-/// grows by parts that are halved if Newton's method fails and lengthened if it succeeds. Allocates two vectors.
+/// Moves the point from a solution without the change, or a start near it, to the solution with the whole change. The
+/// change grows by increments that are halved if Newton's method fails and lengthened if it succeeds. Allocates two
+/// vectors.
 pub(super) fn follow(
     newton: &mut Newton,
     equations: &mut impl ByShare,

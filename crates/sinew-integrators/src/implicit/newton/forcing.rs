@@ -1,12 +1,12 @@
-//! Nearness to which equations are solved in an iteration.
+//! Accuracy of the linear solution in an iteration.
 
 /// The share of the residual that the first solution may leave.
 const FIRST: f64 = 0.01;
 
-/// The most that a solution may leave.
+/// The largest share that a solution may leave.
 const MOST: f64 = 0.3;
 
-/// Share of the tolerance to which the presumably last solution is computed.
+/// Share of the tolerance to which the solution that is presumably the last is computed.
 const LAST: f64 = 0.5;
 
 /// Relative residuals that linear solutions may leave: about those that the nonlinearity leaves (Eisenstat and
@@ -14,11 +14,11 @@ const LAST: f64 = 0.5;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Forcing {
     tolerance: f64,
-    /// True if the residual of linear solutions falls with the square of Newton's residual.
+    /// True if the residual of linear solutions decreases as the square of Newton's residual.
     is_quadratic: bool,
     /// Residual over the size of the forces.
     residual: f64,
-    /// The share of it that linear equations would have left.
+    /// The share of it that the linear equations would have left.
     expected: Option<f64>,
     next: f64,
 }
@@ -34,7 +34,7 @@ impl Forcing {
         }
     }
 
-    /// Takes the residual, over the size of the forces, at which an iteration begins.
+    /// Sets the residual, over the size of the forces, at the beginning of an iteration.
     pub(super) fn at(&mut self, residual: f64) {
         let before = std::mem::replace(&mut self.residual, residual);
         if let Some(left) = self.expected.take() {
@@ -54,12 +54,12 @@ impl Forcing {
         self.next.min(MOST).max(last)
     }
 
-    /// Takes the share that a solution left.
+    /// Sets the share that a solution left.
     pub(super) fn left(&mut self, share: f64) {
         self.expected = Some(share);
     }
 
-    /// Takes the share of the direction that was gone.
+    /// Sets the share of the direction that was taken.
     pub(super) fn gone(&mut self, share: f64) {
         self.expected = self.expected.map(|left| 1.0 - share * (1.0 - left));
     }

@@ -15,13 +15,13 @@ use super::settings::NewtonSettings;
 use crate::implicit::factor::Factor;
 use crate::implicit::factor_error::FactorError;
 
-/// Most iterations of conjugate gradients in a step if no factor is available instead.
+/// Largest number of iterations of conjugate gradients in a step if no factor is available instead.
 const MOST: u64 = 20_000;
 
-/// Newton iterations by products after which a factor is tried.
+/// Newton iterations with products after which a factor is tried.
 const MOST_BY_PRODUCTS: u64 = 30;
 
-/// Method for a direction.
+/// Method to compute a direction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Way {
     Products,
@@ -33,12 +33,11 @@ enum Way {
 pub(super) enum Direction {
     /// A solution.
     Solution,
-    /// A descent direction found before one along which the tangent is not positive; it has no natural length.
+    /// A descent direction found before a direction along which the tangent is not positive; it has no natural length.
     Beginning,
 }
 
-/// Conjugate gradients, or a factor made in each iteration: in both ways a solution is a function of its starting
-/// point.
+/// Conjugate gradients, or a factor made in each iteration: with both, a solution is a function of its starting point.
 pub(super) struct Linear {
     factor_use: FactorUse,
     tolerance: f64,
@@ -48,7 +47,7 @@ pub(super) struct Linear {
     way: Way,
     /// True if the next step begins with a factor.
     insists: bool,
-    /// True once there was no memory for a factor.
+    /// True after memory for a factor was insufficient.
     lacks_memory: bool,
     forcing: Forcing,
     counts: Counts,
@@ -135,7 +134,8 @@ impl Linear {
         }
     }
 
-    /// Continues this step with a factor, if there is a choice and memory for one; returns true if it did not before.
+    /// Continues this step with a factor, if there is a choice and memory for one; returns true if it did not use one
+    /// before.
     pub(super) fn take_factor(&mut self, reason: Reason) -> bool {
         if self.way == Way::Factor || self.factor_use == FactorUse::Never || self.lacks_memory {
             return false;
@@ -164,7 +164,7 @@ impl Linear {
         self.insists
     }
 
-    /// Sets the direction at a point by a kind of tangent.
+    /// Computes the direction at a point with a kind of tangent.
     pub(super) fn direct(
         &mut self,
         equations: &mut impl Equations,
@@ -200,7 +200,7 @@ impl Linear {
         Ok(Direction::Solution)
     }
 
-    /// Solves by products; `None` if it turned to a factor instead.
+    /// Solves with products; `None` if it changed to a factor instead.
     fn by_products(
         &mut self,
         equations: &mut impl Equations,
@@ -250,7 +250,7 @@ impl Linear {
         }
     }
 
-    /// Takes the share of the direction that was gone.
+    /// Sets the share of the direction that was taken.
     pub(super) fn gone(&mut self, share: f64) {
         self.forcing.gone(share);
     }
@@ -260,7 +260,7 @@ impl Linear {
         self.counts.iterations_a_solution()
     }
 
-    /// A sentence about the solution of equations, if there was a choice.
+    /// A sentence on how equations are solved, if there was a choice.
     pub(super) fn remark(&self) -> Option<String> {
         let is_choice = self.factor_use != FactorUse::Always;
         let is_choice = is_choice && !Choice::is_clear(self.plan.pattern());

@@ -1,4 +1,4 @@
-//! Static equilibrium of a nonlinear law, followed in parts of the load.
+//! Static equilibrium of a nonlinear law, followed in increments of the load.
 
 use sinew_core::vectors::{add_scaled, dot, largest, weighted_dot};
 use sinew_core::{
@@ -14,14 +14,14 @@ use super::settings::NewtonSettings;
 use super::solver::Newton;
 use crate::implicit::factor::Combination;
 
-/// Newton's method in a step of the load.
+/// Newton's method in a load increment.
 const SETTINGS: NewtonSettings = NewtonSettings {
     tolerance: 1e-8,
     most_iterations: 25,
     factor: FactorUse::Always,
 };
 
-/// Change of positions, as a share of body and displacement, that makes no difference.
+/// Change of positions, as a share of body and displacement, that has no effect.
 const ROUNDING: f64 = 1e-12;
 
 /// `dW/du = share F(u)`.
@@ -103,7 +103,7 @@ impl ByShare for StaticEquations<'_> {
     }
 }
 
-/// The displacement in equilibrium with a load, followed from the undeformed body on.
+/// The displacement in equilibrium with a load, followed from the undeformed body.
 pub(in crate::implicit) fn follow_load(
     system: &dyn System,
     law: &dyn ElasticLaw,

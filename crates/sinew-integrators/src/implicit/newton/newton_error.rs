@@ -23,15 +23,15 @@ pub enum NewtonError {
         /// Reason.
         reason: String,
     },
-    /// Not even the projected tangent has an inverse.
+    /// Even the projected tangent has no inverse.
     #[error("the projected tangent could not be factorised: {0}")]
     Singular(#[source] FactorError),
 }
 
 /// Reasons for which a tangent gives no direction.
 pub(super) enum NoDirection {
-    /// The law has none at the point.
+    /// The law has no tangent at the point.
     Refused(EvaluationError),
-    /// It has no inverse, or none that can be had.
+    /// The tangent has no inverse, or none that can be computed.
     Singular(FactorError),
 }

@@ -5,14 +5,14 @@ use sinew_core::{OptionError, OptionValue, Options};
 use super::factor_use::FactorUse;
 use crate::{OptionDefault, OptionHelp, OptionKind};
 
-/// Most iterations that can be asked for.
+/// Largest iteration limit that can be requested.
 const MOST: u32 = 1000;
 
 /// Tolerance, iteration limit and solver of Newton's method on nonlinear systems; linear ones take one solution with a factor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NewtonSettings {
     /// The acceleration of the residual force, over the largest of the accelerations that balance each other: elastic
-    /// forces over masses, or inertia. Root mean squares, weighted by mass.
+    /// forces over masses, or inertia. All are root mean squares weighted by mass.
     pub tolerance: f64,
     /// Iterations of a step after which it counts as not converged.
     pub most_iterations: u32,
@@ -41,7 +41,7 @@ pub(in crate::implicit) const TOLERANCE: OptionHelp = OptionHelp {
     shown_default: None,
 };
 
-/// Help of the most iterations.
+/// Help of the iteration limit.
 pub(in crate::implicit) const ITERATIONS: OptionHelp = OptionHelp {
     key: "newton_iterations",
     help: "for nonlinear laws: iterations after which a step counts as not converged",

@@ -15,7 +15,8 @@ use crate::implicit::factor_error::FactorError;
 /// Halvings of a step along the exact tangent's direction before the projected one is tried.
 const HALVINGS_OF_EXACT: u32 = 4;
 
-/// Halvings of a step along the beginning of a direction, which a tangent that is hardly positive makes long, before the same.
+/// Halvings of a step along a [`Direction::Beginning`], which a nearly indefinite tangent makes long, before the
+/// projected tangent is tried.
 const HALVINGS_OF_BEGINNING: u32 = 12;
 
 /// Halvings of a step along the projected tangent's direction before the search is given up.
@@ -27,16 +28,17 @@ const MOST_DOUBLINGS: u32 = 30;
 /// The share of the descent predicted by the slope that a step must achieve (Armijo).
 const ARMIJO: f64 = 1e-4;
 
-/// Share of the energies below which their change is not trusted, and slopes decide (Hager and Zhang, SIAM J. Optim. 16,
-/// 2005): in a body strained by 1e-6 the rounding of positions spoils ten digits of the energy, and four of the forces.
+/// Share of the energies below which their change is not trusted, and slopes decide (Hager and Zhang, SIAM J. Optim.
+/// 16, 2005): in a body strained by 1e-6 the rounding of positions removes ten digits of the energy, and four of the
+/// forces.
 const DOUBTFUL: f64 = 1e-6;
 
-/// The share of a slope that may be left, upwards, if slopes decide.
+/// The share of a slope that may be left, with the opposite sign, if slopes decide.
 const OVERSHOT: f64 = 0.5;
 
-/// Change of the potential from one point to another, a share of `along` apart, and the size of its parts. The forces that have
-/// no energy count with the mean of both ends, which is exact if they are linear, as inertia, loads and viscous
-/// damping are.
+/// Change of the potential from one point to another at a distance of a share of `along`, and the size of its terms.
+/// Forces without an energy count with the mean of both ends, which is exact if they are linear, as inertia, loads and
+/// viscous damping are.
 fn change(from: &Point, to: &Point, along: &[f64], share: f64) -> (f64, f64) {
     let [before, after] = [from, to].map(|point| share * point.other_slope(along));
     let others = 0.5 * (before + after);
@@ -57,7 +59,7 @@ enum Iterated {
 pub(super) struct Newton {
     settings: NewtonSettings,
     pub(super) linear: Linear,
-    /// Weights of squares in the norm of forces.
+    /// Weights of the squares in the norm of forces.
     weights: Vec<f64>,
     direction: Vec<f64>,
     /// The best point so far, at which the iteration begins.
@@ -72,7 +74,8 @@ pub(super) struct Newton {
 }
 
 impl Newton {
-    /// Allocates all that iterations need, but for a factor that may not be needed; `at_rest` is the derivative at rest, for conjugate gradients.
+    /// Allocates all that iterations need, except a factor that may not be needed; `at_rest` is the derivative at rest,
+    /// for conjugate gradients.
     pub(super) fn set_up(
         (law, layers): (&dyn ElasticLaw, Layers),
         weights: Vec<f64>,
@@ -96,7 +99,7 @@ impl Newton {
         })
     }
 
-    /// Replaces the point by the trial if only the trial is defined, or if it has the lower potential.
+    /// Replaces the point by the trial if only the trial is defined, or if the trial has the lower potential.
     ///
     /// # Errors
     /// The refusal of the point if neither is defined.
@@ -114,7 +117,7 @@ impl Newton {
         Ok(())
     }
 
-    /// Takes the trial for the point if its potential is the lower one.
+    /// Replaces the point by the trial if the trial has the lower potential.
     pub(super) fn take_lower(&mut self) {
         self.direction.copy_from_slice(&self.trial.x);
         add_scaled(-1.0, &self.point.x, &mut self.direction);
@@ -124,7 +127,7 @@ impl Newton {
         }
     }
 
-    /// Takes the trial for the point.
+    /// Replaces the point by the trial.
     pub(super) fn take_trial(&mut self) {
         std::mem::swap(&mut self.point, &mut self.trial);
     }
@@ -228,7 +231,7 @@ impl Newton {
         Iterated::Stuck
     }
 
-    /// Sets the direction by a kind of tangent, if that has one.
+    /// Computes the direction with a kind of tangent, if this tangent gives one.
     fn direct(
         &mut self,
         equations: &mut impl Equations,

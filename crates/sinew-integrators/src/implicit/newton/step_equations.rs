@@ -12,7 +12,7 @@ use super::equations::{Equations, Point};
 use super::follow::ByShare;
 use crate::implicit::factor::Combination;
 
-/// Distance over which the change of stiffness damping is measured, as a share of the smallest cell.
+/// Distance of the difference for the change of stiffness damping, as a share of the smallest cell.
 const PROBE: f64 = 1e-6;
 
 /// The acceleration x that a step seeks: `M x + m M a = c net(u* + c_u x, v* + c_v x) + c_old net(u, v)`, with the state's
@@ -35,14 +35,14 @@ pub(in crate::implicit) struct Unknown<'e> {
     pub(in crate::implicit) viscosity: ViscousPlace<'e>,
 }
 
-/// The displacement at which stiffness damping acts on the velocity of a step's end.
+/// The displacement at which stiffness damping acts on the velocity at a step's end.
 #[derive(Clone, Copy)]
 pub(in crate::implicit) struct ViscousPlace<'e> {
     /// Position and velocity of supports.
     pub(in crate::implicit) load: LoadTime<'e>,
-    /// The time (s) by which the displacement lies before the end, at that velocity. A velocity that is a step's
-    /// displacement over its time belongs to the middle: there `sym(F'dF)` is the change of Green's strain, for any
-    /// rotation in a step.
+    /// The time (s) by which the displacement is before the end, at that velocity. A velocity that is a step's
+    /// displacement over its length belongs to the middle of the step: there `sym(F'dF)` is the change of Green's
+    /// strain, for any rotation in a step.
     pub(in crate::implicit) before: f64,
 }
 
@@ -65,9 +65,9 @@ pub(super) struct StepEquations<'s> {
     pub(super) law: &'s dyn ElasticLaw,
     pub(super) state: &'s State,
     pub(super) unknown: Unknown<'s>,
-    /// Times of the loads, and of those that stiffness damping takes, at the step's end.
+    /// Times of the loads, and of the supports for stiffness damping, at the step's end.
     pub(super) end: [LoadTime<'s>; 2],
-    /// `c_old net(u, v)` (N), where `c_old` is not 0.
+    /// `c_old net(u, v)` (N), if `c_old` is not 0.
     pub(super) old_forces: &'s [f64],
     /// Displacement and velocity of the point evaluated.
     pub(super) u: &'s mut [f64],
@@ -129,7 +129,7 @@ impl StepEquations<'_> {
         }
     }
 
-    /// The derivative at the point that was placed last, by its products.
+    /// The derivative at the point that was set last, by its products.
     fn derivative_there(&self) -> Derivative<'_> {
         Derivative {
             law: self.law,
@@ -144,7 +144,7 @@ impl StepEquations<'_> {
         self.law.damping().stiffness != 0.0
     }
 
-    /// Completes a point that was placed last, from its elastic energy (J) and forces (N).
+    /// Completes the point that was set last, from its elastic energy (J) and forces (N).
     pub(super) fn complete(
         &mut self,
         energy: f64,
@@ -174,7 +174,8 @@ impl StepEquations<'_> {
         Ok(())
     }
 
-    /// Writes the net force (N) into the residual, from the elastic one, which is known; only stiffness damping takes another sweep.
+    /// Writes the net force (N) into the residual, from the known elastic force; only stiffness damping takes another
+    /// sweep.
     fn net_force(
         &mut self,
         point: &mut Point,
@@ -205,7 +206,8 @@ impl StepEquations<'_> {
         found
     }
 
-    /// `out += dV/du(change) v` (N), c and k included: the part of the derivative of stiffness damping that its matrix lacks, by a difference.
+    /// `out += dV/du(change) v` (N), c and k included: the part of the derivative of stiffness damping that is not in
+    /// its matrix, by a difference.
     fn add_change_of_viscosity(&mut self, change: &[f64], out: &mut [f64]) {
         let size = largest(change);
         if !(size > 0.0 && size.is_finite()) {
@@ -240,7 +242,7 @@ impl StepEquations<'_> {
     }
 
     /// Sets x so that the displacement is the state's plus its velocity times `after` (s), in the components that x
-    /// moves.
+    /// changes.
     pub(super) fn begin_at(&self, after: f64, x: &mut [f64]) {
         let reach = self.unknown.reach();
         let [predicted, _] = self.unknown.predicted;
@@ -337,7 +339,7 @@ impl Equations for StepEquations<'_> {
     }
 }
 
-/// At the point that was placed last.
+/// Products at the point that was set last.
 impl Products for StepEquations<'_> {
     fn product(
         &mut self,
@@ -366,7 +368,7 @@ impl Products for StepEquations<'_> {
     }
 }
 
-/// The way of the supports, and the loads with it, to their end.
+/// The path of the supports, and the loads with it, to their end.
 impl ByShare for StepEquations<'_> {
     fn take_share(&mut self, share: f64) {
         let start = self.state.t();

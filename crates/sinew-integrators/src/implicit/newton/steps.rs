@@ -35,7 +35,8 @@ pub(in crate::implicit) struct NewtonSteps {
 }
 
 impl NewtonSteps {
-    /// For a system's elastic law in steps of `dt` (s) with these d and k; the analysis of a factor that fits is used again. Also the work that this takes.
+    /// Sets up for a system's elastic law in steps of `dt` (s) with these d and k; the analysis of a suitable factor is
+    /// reused. Also returns the work of this.
     pub(in crate::implicit) fn set_up(
         integrator: &'static str,
         system: &dyn System,
@@ -216,12 +217,12 @@ impl NewtonSteps {
         }
     }
 
-    /// Iterations of a step, in the mean.
+    /// Mean number of iterations of a step.
     fn mean(&self) -> f64 {
         self.work.newton_iterations as f64 / self.steps as f64
     }
 
-    /// Iterations a step, once a step was taken.
+    /// Iterations per step, once a step was taken.
     pub(in crate::implicit) fn facts(&self) -> Vec<Fact> {
         if self.steps == 0 {
             return Vec::new();
@@ -247,7 +248,7 @@ impl NewtonSteps {
         of_newton.into_iter().chain(gradients).collect()
     }
 
-    /// Iterations a step, and growth of the energy.
+    /// Iterations per step, and growth of the energy.
     pub(in crate::implicit) fn remarks(&self) -> Vec<String> {
         if self.steps == 0 {
             return Vec::new();

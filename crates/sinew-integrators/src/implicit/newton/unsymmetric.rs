@@ -1,13 +1,14 @@
-//! Equations whose matrix is symmetric but for a part that is known by its products.
+//! Equations whose matrix is symmetric except for a part that is known by its products.
 
 use sinew_core::vectors::{add_scaled, dot, norm, scale};
 
 use crate::implicit::factor::Factor;
 
-/// Most vectors of the basis.
+/// Largest number of vectors of the basis.
 const MOST: usize = 30;
 
-/// Residual, as a share of that of the symmetric solution, at which the solution is near enough for an iteration of Newton's method.
+/// Residual, as a share of that of the symmetric solution, at which the solution is accurate enough for an iteration of
+/// Newton's method.
 const NEAR: f64 = 1e-3;
 
 /// Scratch space for solutions.
@@ -27,9 +28,9 @@ impl Unsymmetric {
         self.basis.resize_with(USUAL, || vec![0.0; entries]);
     }
 
-    /// Turns the solution `x` of `K x = b` into that of `(K + S) x = b`, by the generalised minimal residual method with the factor of K as
-    /// the preconditioner (Saad and Schultz, SIAM J. Sci. Stat. Comput. 7, 1986); the number of solutions with the factor. `skew` writes
-    /// S times a vector; returns false if there is no S.
+    /// Replaces the solution `x` of `K x = b` by that of `(K + S) x = b`, by the generalised minimal residual method
+    /// with the factor of K as the preconditioner (Saad and Schultz, SIAM J. Sci. Stat. Comput. 7, 1986); returns the
+    /// number of solutions with the factor. `skew` writes S times a vector; returns false if there is no S.
     pub(super) fn solve(
         &mut self,
         factor: &mut Factor,
@@ -99,7 +100,7 @@ impl Unsymmetric {
         solves
     }
 
-    /// Keeps a vector over its size as number `place` of the basis.
+    /// Stores a vector, divided by its size, as number `place` of the basis.
     fn keep(&mut self, place: usize, vector: &[f64], size: f64) {
         if self.basis.len() == place {
             self.basis.push(vec![0.0; vector.len()]);

@@ -13,7 +13,7 @@ pub(super) struct ModeRecurrence {
 }
 
 impl ModeRecurrence {
-    /// The largest |u_n| from n = 1 on, or a little more: that of a smooth curve through all of them.
+    /// The largest |u_n| from n = 1 on, or a little more: the maximum of a smooth curve through all of them.
     pub(super) fn largest(self, u_0: f64, u_1: f64) -> f64 {
         // With both signs turned in every other step the mean of the roots is positive.
         let (mean, u_1) = match self.mean < 0.0 {
@@ -99,7 +99,8 @@ mod tests {
     use super::*;
 
     proptest! {
-        /// Never less than the amplitude of the recurrence in a thousand steps; hardly more for small steps.
+        /// The result is never less than the amplitude of the recurrence in a thousand steps, and hardly more for small
+        /// steps.
         #[test]
         fn the_largest_is_what_is_reached(
             (u_0, u_1) in (-1.0..1.0_f64, -1.0..1.0_f64),
@@ -122,7 +123,7 @@ mod tests {
             }
         }
 
-        /// The closed form of the motion passes by its largest value at no instant.
+        /// The motion exceeds the closed form of its largest value at no instant.
         #[test]
         fn the_exact_motion_reaches_its_largest_value(lambda in 1e-4..4.0, alpha in 0.0..4.0) {
             let largest = exact_from_velocity(lambda, alpha);

@@ -114,7 +114,7 @@ impl Barrier<'_> {
         sum
     }
 
-    /// A Newton step that stays within the bounds. Whether it lowered the objective.
+    /// A Newton step that stays within the bounds; returns true if it lowered the objective.
     pub(super) fn newton_step(&self, deviations: &Deviations, weight: f64, g: &mut [f64]) -> bool {
         let mut normal = Normal::zeros(g.len());
         for (row, target, weight) in &deviations.rows {

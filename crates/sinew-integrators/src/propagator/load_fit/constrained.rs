@@ -10,30 +10,30 @@ use crate::propagator::series::evaluate;
 /// Points per coefficient at which the fit is kept within its bounds.
 const GUARDS_PER_TERM: usize = 8;
 
-/// Squared weight of the whole spectrum relative to that of the loads: it determines the polynomial where loads
-/// excite nothing.
+/// Squared weight of the whole spectrum relative to that of the loads: it determines the polynomial at eigenvalues that
+/// loads do not excite.
 const BACKGROUND: f64 = 1e-8;
 
 /// Factor between the barriers of two stages.
 const NARROWER: f64 = 0.2;
 
-/// Duality gap over the squared error at which the fit is done.
+/// Duality gap over the squared error at which the fit ends.
 const GAP: f64 = 1e-3;
 
-/// Stages after which it is done in any case.
+/// Number of stages after which the fit ends in any case.
 const MOST_STAGES: usize = 45;
 
 /// Newton steps in a stage.
 const NEWTON_STEPS: usize = 3;
 
-/// Deviation for which weights are made at first, and its growth by stages.
+/// Deviation for which the weights of the first stage are computed, and its growth from stage to stage.
 const FIRST_DEVIATION: f64 = 1e-3;
 const DEVIATION_GROWTH: f64 = 1.6;
 
-/// Least deviation for which weights are made.
+/// Smallest deviation for which weights are computed.
 const LEAST_DEVIATION: f64 = 1e-9;
 
-/// Fits after which bounds are met by mixing.
+/// Number of fits after which mixing enforces the bounds.
 const EXCHANGES: usize = 3;
 
 /// Points per coefficient at which turning points are sought.
@@ -72,7 +72,7 @@ impl Fit<'_> {
             .estimate(|lambda| self.value(g, lambda), off)
     }
 
-    /// The polynomial of the least estimated error with `room lambda/Lambda <= lambda G <= top - room` for all of the
+    /// The polynomial of the smallest estimated error with `room lambda/Lambda <= lambda G <= top - room` for the whole
     /// spectrum, `room` being a margin.
     pub(super) fn best(&self, degree: usize, room: f64) -> Vec<f64> {
         let asked = Bounds {
@@ -95,7 +95,7 @@ impl Fit<'_> {
         self.drawn_in(g, asked)
     }
 
-    /// The least value of `G/dt^2` and the largest of `lambda G` on the interval.
+    /// The smallest value of `G/dt^2` and the largest of `lambda G` on the interval.
     pub(super) fn bounds(&self, g: &[f64]) -> Bounds {
         let points = LOOKS_PER_TERM * g.len();
         let value = |angle: f64| self.value(g, self.interval * x_of(angle));
@@ -109,7 +109,7 @@ impl Fit<'_> {
         evaluate(g, self.interval * x_of(angle), self.interval)
     }
 
-    /// The points x at which lambda G is largest and G least among their neighbours.
+    /// The points x at which lambda G has local maxima and G local minima.
     fn turning_points(&self, g: &[f64]) -> Vec<f64> {
         let points = LOOKS_PER_TERM * g.len();
         let above = |angle: f64| self.value(g, self.interval * x_of(angle));
@@ -119,7 +119,7 @@ impl Fit<'_> {
         angles.into_iter().map(x_of).collect()
     }
 
-    /// Mixes in as much of a constant G, which is in the middle, as bounds require.
+    /// Mixes in as much of a constant G in the middle of the bounds as the bounds require.
     fn drawn_in(&self, mut g: Vec<f64>, asked: Bounds) -> Vec<f64> {
         let found = self.bounds(&g);
         let middle = self.middle();
@@ -131,14 +131,14 @@ impl Fit<'_> {
         g
     }
 
-    /// A constant `G/dt^2` with which lambda G ends at half of its largest value.
+    /// A constant `G/dt^2` for which the final value of lambda G is half of its largest allowed value.
     fn middle(&self) -> f64 {
         self.top / (2.0 * self.reach())
     }
 
     /// The best polynomial that is within bounds at the guards, by a barrier method (Nocedal and Wright, Numerical
-    /// Optimization, section 19.6). The error's weights are recomputed in each stage: a mode whose phase is lost counts
-    /// no more the farther off it is.
+    /// Optimization, section 19.6). The error's weights are recomputed in each stage: once the phase of a mode is lost,
+    /// a larger deviation of it does not count more.
     fn within_guards(&self, degree: usize, guards: &[f64], bounds: Bounds) -> Vec<f64> {
         let count = degree + 1;
         let guards: Vec<Row> = guards.iter().map(|x| Row::at(*x, count)).collect();
@@ -175,7 +175,7 @@ impl Fit<'_> {
         best.1
     }
 
-    /// The deviations of modes, of a body that drifts and of the whole spectrum, not weighted yet.
+    /// The deviations of modes, of a body that drifts and of the whole spectrum, without weights.
     fn deviations(&self, count: usize, guards: &[Row]) -> Deviations {
         let (excitation, reach) = (self.excitation, self.reach());
         let of = |x: f64| excitation.exact(x * self.interval) / (reach * x);

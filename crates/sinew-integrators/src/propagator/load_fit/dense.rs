@@ -1,7 +1,7 @@
 //! Small dense systems.
 
-/// Solves `A x = b` over b for a symmetric positive definite A, given by rows and overwritten, by Cholesky's
-/// factorisation (Golub and Van Loan, Matrix Computations, section 4.2). Whether A was positive definite.
+/// Solves `A x = b` for a symmetric positive definite A, given by rows and overwritten, by Cholesky's factorisation
+/// (Golub and Van Loan, Matrix Computations, section 4.2); x overwrites b. Returns true if A was positive definite.
 pub(super) fn solve(matrix: &mut [f64], b: &mut [f64]) -> bool {
     let n = b.len();
     for i in 0..n {

@@ -22,16 +22,17 @@ const TIME_CONSTANTS: f64 = 4.0;
 /// Panels of the quadrature over the horizon.
 const PANELS: usize = 8;
 
-/// Phase (rad) beyond which a wrong frequency is as wrong as any.
+/// Phase (rad) beyond which a larger phase error makes no difference.
 const LOST_PHASE: f64 = 60.0;
 
-/// Modes that loads excite, suddenly applied and kept, with the share that each has in the squared response.
+/// Modes that loads excite when they are suddenly applied and kept, with the share of each mode in the squared
+/// response.
 #[derive(Clone, Debug)]
 pub(super) struct Excitation {
     pub(super) modes: Vec<ExcitedMode>,
     /// True if loads excite a rigid motion, so that the body drifts away.
     pub(super) drifts: bool,
-    /// Products with K that it took to find them.
+    /// Number of products with K that were needed to find them.
     pub(super) products: usize,
     alpha: f64,
     dt: f64,
@@ -39,7 +40,7 @@ pub(super) struct Excitation {
     instants: Vec<(f64, f64)>,
 }
 
-/// A mode, or a Gauss point that represents some of them.
+/// A mode, or a Gauss point that represents several modes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct ExcitedMode {
     /// lambda (1/s^2).
@@ -135,7 +136,7 @@ impl Excitation {
         }
     }
 
-    /// The motion of a mode with this value of `lambda G`, which turns it by theta in a step:
+    /// The motion of a mode with this value of `lambda G`, whose phase changes by theta in a step:
     /// `lambda G = 1 + e^(-2 eta) - 2 e^-eta cos theta`.
     fn motion(&self, value: f64) -> Motion {
         let decay = self.decay();

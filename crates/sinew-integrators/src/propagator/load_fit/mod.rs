@@ -18,24 +18,24 @@ use super::chebyshev::LARGEST_EIGENVALUE_MARGIN;
 use super::recurrence::{KickRegisters, Recurrence, mass_damping, net_force};
 use super::resolution::{ID, Resolution};
 
-/// Highest degree of G; a fit of a higher one takes long, and shorter steps cost no more sweeps.
+/// Highest degree of G; a fit of a higher one takes long, and shorter steps need no more sweeps.
 const HIGHEST_DEGREE: usize = 64;
 
-/// Least turn (rad) of the fastest mode in a step that the interval is made for.
+/// Smallest phase change (rad) of the fastest mode in a step for which the interval is chosen.
 const LEAST_TURN: f64 = 1e-3;
 
-/// Distances kept from the double roots of the recurrence, the first that keeps amplitudes being taken.
+/// Distances from the double roots of the recurrence; the first that limits amplitudes is taken.
 const ROOMS: [f64; 3] = [1e-9, 1e-3, 0.1];
 
-/// Largest amplitude of a mode that is taken, over that of the exact motion.
+/// Largest accepted amplitude of a mode, over that of the exact motion.
 const WIDEST: f64 = 2.0;
 
-/// The two-step form with a polynomial G of its own, `v+ = e^(-2 eta) v- + G(M^-1 K) M^-1 (F - K u)/dt`, of the least
+/// The two-step form with its own polynomial G, `v+ = e^(-2 eta) v- + G(M^-1 K) M^-1 (F - K u)/dt`, of the smallest
 /// error of a run under these loads.
 ///
-/// The form is stable where `0 <= lambda G <= (1 + e^-eta)^2`, which is kept, with some margin, for all lambda from 0
-/// to the largest; within these bounds G is fitted to `lambda G = 1 + e^(-2 eta) - 2 e^-eta cos(w dt)` in weighted
-/// least squares. The weights are those of the loads' measure over the spectrum.
+/// The form is stable if `0 <= lambda G <= (1 + e^-eta)^2`, which holds, with some margin, for all lambda from 0 to the
+/// largest; within these bounds G is fitted to `lambda G = 1 + e^(-2 eta) - 2 e^-eta cos(w dt)` by weighted least
+/// squares. The weights are those of the loads' measure over the spectrum.
 #[derive(Clone, Debug)]
 pub(super) struct LoadFit {
     /// Series of G (s^2).
@@ -140,7 +140,7 @@ impl LoadFit {
 /// A fit with its estimated error.
 type Found = (f64, Vec<f64>, Start);
 
-/// The fit of the given degree, or of the smallest, that meets the tolerance and keeps amplitudes.
+/// The fit of the given degree, or of the smallest, that meets the tolerance and limits amplitudes.
 fn choose(
     resolution: Resolution,
     dt: f64,

@@ -14,7 +14,7 @@ use crate::propagator::series::evaluate;
 /// Points per coefficient at which s is fitted.
 const POINTS_PER_TERM: usize = 8;
 
-/// |cos theta| of a turning point from which on theta counts as passing 0 or pi there.
+/// |cos theta| of a turning point from which on theta counts as passing through 0 or pi there.
 const TURNS: f64 = 0.8;
 
 /// Weight of the error under loads relative to that of amplitudes.
@@ -42,7 +42,7 @@ pub(super) struct Fitted<'a> {
     pub(super) modes: &'a [ExcitedMode],
 }
 
-/// The first step, and all that follows from its s.
+/// The first step, and all quantities that follow from its s.
 pub(super) struct Start {
     pub(super) first_step: FirstStep,
     /// Series of `2 g - G`, the effect of a jump for half the jump; empty without damping.
@@ -63,13 +63,13 @@ impl Fitted<'_> {
         self.interval * self.dt * self.dt * x * self.shape(x)
     }
 
-    /// cos theta, by which the recurrence turns a mode in a step.
+    /// cos theta; theta is the phase change of a mode in a step of the recurrence.
     fn cosine(&self, x: f64) -> f64 {
         let decay = self.decay();
         (1.0 + decay * decay - self.value(x)) / (2.0 * decay)
     }
 
-    /// sin theta, 0 where theta is not real.
+    /// sin theta, 0 if theta is not real.
     fn sine(&self, x: f64) -> f64 {
         let (decay, value) = (self.decay(), self.value(x));
         let below = (value - (1.0 - decay).powi(2)).max(0.0);
@@ -93,8 +93,8 @@ impl Fitted<'_> {
         self.sine(x).hypot(self.alpha * self.dt / 2.0)
     }
 
-    /// The first step `u+ = u + s v + g r` that fits the recurrence: s is near `e^-eta sin theta/w`, so that no mode
-    /// swings wider than that, where the recurrence hardly turns it least of all, and
+    /// The first step `u+ = u + s v + g r` that fits the recurrence: s is near `e^-eta sin theta/w`, so that the
+    /// amplitude of no mode is larger than that, also if the recurrence hardly changes its phase, and
     /// `lambda g = 1 - e^-eta cos theta - alpha s/2` follows from it. With `s = s_0 + lambda s_1`,
     /// `alpha s_0 = 1 - e^(-2 eta)` that is `g = G/2 - alpha s_1/2`.
     pub(super) fn start(&self) -> Start {
@@ -224,8 +224,8 @@ impl Fitted<'_> {
         slope
     }
 
-    /// Points x at which s is fitted, in increasing order, with the value of s/dt: `e^-eta sin theta/(w dt)`, of
-    /// which the sign changes where theta turns round close to 0 or pi, as if it passed it; there it is 0.
+    /// Points x at which s is fitted, in increasing order, with the value of s/dt: `e^-eta sin theta/(w dt)`, whose
+    /// sign changes where theta turns around close to 0 or pi, as if theta passed through it; there the value is 0.
     fn targets(&self, points: usize) -> Vec<(f64, f64)> {
         let width = PI / points as f64;
         let cosine = |point: usize| self.cosine(x_of(point as f64 * width));

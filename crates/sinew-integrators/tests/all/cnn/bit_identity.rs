@@ -1,4 +1,4 @@
-//! A network in which nothing saturates is the plain method, to the last bit.
+//! Tests that a network without saturation equals the plain method, to the last bit.
 
 use crate::common::{build, plain, saturation};
 use proptest::prelude::*;
@@ -6,7 +6,7 @@ use sinew_core::{LinearModel, LinearOperators, OptionValue, Options, State, Syst
 use sinew_fem::{Law, SpringRule};
 use sinew_testkit::body::{Body, bodies_up_to, fastest_time};
 
-/// The network and the method it is.
+/// The network and the method that it equals.
 const PAIRS: [(&str, &str); 2] = [
     ("cnn", "forward-euler"),
     ("cnn-symplectic", "symplectic-euler"),
@@ -51,7 +51,7 @@ fn assert_body_is_method(body: &Body, share: f64) {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
-    /// Within the stable step and far beyond it.
+    /// Steps within the stable step and far beyond it.
     #[test]
     fn of_any_body(body in bodies_up_to(3), share in 0.01..4.0) {
         assert_body_is_method(&body, share);
@@ -82,7 +82,7 @@ proptest! {
     }
 }
 
-/// The comparison sees a clamp: with one that is reached, network and method part.
+/// The comparison detects a clamp: if one is reached, network and method differ.
 #[test]
 fn a_clamp_that_is_reached_is_seen() {
     let model = LinearModel::new(LinearOperators::oscillator(0.1, 100.0, 1.0).unwrap());

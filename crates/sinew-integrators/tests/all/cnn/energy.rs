@@ -1,4 +1,4 @@
-//! `cnn-energy`: its energy never rises, and its steps are those of implicit methods where sweeps converge.
+//! `cnn-energy`: its energy never rises, and its steps are those of implicit methods if sweeps converge.
 
 use crate::common::dense_methods::{Dense, STEPS};
 use crate::common::energy_method::{energy_method, never_rises};
@@ -9,7 +9,7 @@ use proptest::prelude::*;
 use sinew_core::{Equations, ForceModel, Layers, Revision, State, StepError, StepReport, System};
 use sinew_testkit::body::{bodies_up_to, fastest_time};
 
-/// The promise in a property.
+/// Turns the result of the energy check into that of a property test.
 fn promise(kept: Result<(), String>) -> Result<(), TestCaseError> {
     kept.map_err(TestCaseError::fail)
 }
@@ -22,7 +22,7 @@ fn kinds() -> impl Strategy<Value = &'static str> {
     prop_oneof![Just("ie"), Just("trap")]
 }
 
-/// Springs of one kind or of several, of the stiffness k and lengths near a meter.
+/// Springs of one kind or of several, of the stiffness k and lengths near one metre.
 fn springs(k: f64) -> impl Strategy<Value = Vec<Spring>> {
     let length = 0.1..2.0;
     let one = (0.1..10.0, length, 0..4).prop_map(move |(share, l, kind): (f64, f64, i32)| {
@@ -74,7 +74,7 @@ fn chains() -> impl Strategy<Value = Drawn> {
 }
 
 impl Drawn {
-    /// The same chain with this mass (kg) and stiffness (N/m), where all values were drawn as shares.
+    /// The same chain with this mass (kg) and stiffness (N/m), if all values were drawn as shares.
     fn scaled(mut self, mass: f64, k: f64) -> Self {
         let rate = (k / mass).sqrt();
         self.masses.iter_mut().for_each(|share| *share *= mass);
@@ -159,7 +159,7 @@ proptest! {
     }
 }
 
-/// Two masses on hardening springs, and a start at which the cubic part rules.
+/// Two masses on hardening springs, and a start at which the cubic part dominates.
 fn hardening() -> (ForceModel<Chain>, State) {
     let spring = Spring::Hardening { k: 200.0, c: 2e5 };
     let chain = Chain::model(vec![spring; 2], &[0.5; 2], [0.0; 3], 0.0, |_| 0.0);
@@ -174,8 +174,8 @@ fn energy_does_not_creep_up_in_a_long_run() {
     }
 }
 
-/// Far beyond what the trapezoidal rule bears on a nonlinear law, the limiter works, and a restart by a fresh integrator goes on
-/// with the same bits.
+/// The limiter acts in steps far beyond those for which the trapezoidal rule is stable on a nonlinear law, and a
+/// restart by a fresh integrator continues with the same bits.
 #[test]
 fn what_the_limiter_took_is_counted_and_restarts_go_on_with_the_same_bits() {
     let (chain, start) = hardening();
@@ -210,7 +210,8 @@ fn what_the_limiter_took_is_counted_and_restarts_go_on_with_the_same_bits() {
     assert!((0.0..=1e-15).contains(&rise), "{rise:e}");
 }
 
-/// A step takes a force at its start, one where its velocity leads, the cells' blocks, and a tangent product and a force a sweep; the first one, from rest, finds its acceleration.
+/// A step takes a force at its start, one at the displacement by its velocity, the cells' blocks, and for each sweep a
+/// tangent product and a force. The first step, from rest, computes its acceleration.
 #[test]
 fn work_is_as_declared() {
     let model = crate::common::cube::cube(3);
@@ -250,7 +251,7 @@ fn a_barrier_is_never_passed_and_a_start_beyond_it_is_refused() {
     }
 }
 
-/// A body at rest in its equilibrium under a load stays there to rounding, and one beside it comes to rest there.
+/// A body at rest in its equilibrium under a load stays there to rounding, and one near it comes to rest there.
 #[test]
 fn damped_motion_ends_in_the_equilibrium_of_a_nonlinear_law() {
     let spring = Spring::Hardening { k: 100.0, c: 1e4 };
@@ -265,7 +266,7 @@ fn damped_motion_ends_in_the_equilibrium_of_a_nonlinear_law() {
     }
 }
 
-/// A chain that has internal variables.
+/// A chain with internal variables.
 struct Remembering(ForceModel<Chain>);
 
 impl System for Remembering {

@@ -1,4 +1,5 @@
-//! Newton's laws of bodies as wholes, beyond the stable step: cellular networks fall, fly and turn as rigid bodies do.
+//! Newton's laws for whole bodies beyond the stable step: with cellular networks bodies fall, fly and turn as rigid
+//! bodies do.
 
 use crate::common::energy_method::energy_method;
 use crate::common::tissue::{body, held, linear};
@@ -51,7 +52,7 @@ fn assert_near(found: &[f64], expected: &[f64], tolerance: f64, of: &str) {
     assert!(off <= tolerance * size, "{of}: {off:e} of {size:e}");
 }
 
-/// The velocity of every cell of a body that turns about a point and moves with it.
+/// The velocity of every cell of a body that rotates about a moving point.
 fn rigid(model: &Model, velocity: [f64; 3], [a, b, c]: [f64; 3], about: [f64; 3]) -> Vec<f64> {
     let places = model.cell_positions().unwrap();
     let of = |place: [f64; 3]| {
@@ -104,7 +105,7 @@ fn a_body_without_forces_moves_and_turns_on_at_any_step() {
     }
 }
 
-/// A held block and, beside it, one that nothing holds.
+/// A supported block and, beside it, a loose one.
 #[test]
 fn a_part_that_a_cut_left_loose_falls_as_a_point() {
     let mut mesh = brick();
@@ -157,7 +158,7 @@ fn with_nodes(mut mesh: TetMesh, name: &str, is_in: impl Fn([f64; 3]) -> bool) -
     mesh
 }
 
-/// On a hinge, and on a table that holds heights alone.
+/// A body on a hinge, and one on a table that fixes heights only.
 #[test]
 fn supports_leave_a_body_its_free_motions() {
     let mesh = brick();
@@ -218,7 +219,7 @@ const INNERS: [Inner; 5] = [
     Inner::GaussSeidel { sweeps: 2 },
 ];
 
-/// The proof of stability, and Newton's first law: P is above what it must exceed, and M' on rigid motions.
+/// The proof of stability, and Newton's first law: P is larger than its bound, and equals M' on rigid motions.
 #[test]
 fn the_stabilising_matrix_bounds_what_it_must_and_is_the_mass_on_rigid_motions() {
     let mut damped = problem(Vec::new());

@@ -1,4 +1,4 @@
-//! `cnn-stabilised`: what it conserves, where it comes to rest and which methods it becomes.
+//! `cnn-stabilised`: its conserved energy, its rest state and the methods that it equals in special cases.
 
 use std::sync::Arc;
 
@@ -141,8 +141,8 @@ impl Form {
     }
 }
 
-/// Follows so many steps and shows the displacement before each, the velocity before it (none
-/// for the first) and the state after it.
+/// Follows `steps` steps and shows the displacement before each, the velocity before it (none for the first) and the
+/// state after it.
 fn follow(
     system: &dyn System,
     integrator: &mut dyn Integrator,
@@ -244,7 +244,7 @@ fn damping_takes_from_the_energy_form_what_it_should() {
     }
 }
 
-/// Whatever P is.
+/// The rest state does not depend on P.
 #[cfg(feature = "implicit")]
 #[test]
 fn every_inner_iteration_comes_to_rest_where_stiffness_carries_the_load() {
@@ -281,7 +281,7 @@ fn below_the_critical_step_it_is_central_difference_to_the_last_bit() {
     }
 }
 
-/// Damping of any kind lowers the limit of both; more sweeps than one centre it in time.
+/// Damping of any kind lowers the limit of both; with more than one sweep it is centred in time.
 #[test]
 fn below_the_limit_under_any_damping_one_sweep_is_central_difference_to_the_last_bit() {
     for system in [
@@ -321,7 +321,7 @@ fn assert_same_as_central_difference(system: &LinearModel, inner: Inner, dt: f64
     assert_eq!(stabilised.scheme().stabiliser().is_none(), same);
 }
 
-/// Also for a body that moves at first: the damping that P does not hold acts in the first half step.
+/// The same for a body with an initial motion: the damping that is not in P acts in the first half step.
 #[test]
 fn just_beyond_the_limit_the_first_step_is_nearly_that_of_central_difference() {
     for system in [stiffness_damped(2e-3, 0.0), dashpots(0.3)] {
@@ -344,7 +344,7 @@ fn just_beyond_the_limit_the_first_step_is_nearly_that_of_central_difference() {
     }
 }
 
-/// No inertia is added if stability does not need it: the error is that of central difference, and smaller if more
+/// No inertia is added if stability does not need it: the error is that of central difference, and smaller if several
 /// sweeps centre the damping.
 #[test]
 fn within_the_stable_step_of_central_difference_its_error_is_no_larger() {
@@ -375,7 +375,7 @@ fn within_the_stable_step_of_central_difference_its_error_is_no_larger() {
     }
 }
 
-/// The displacements after each of so many steps.
+/// The displacements after each of `steps` steps.
 #[cfg(feature = "implicit")]
 fn displacements(
     system: &dyn System,
@@ -391,7 +391,7 @@ fn displacements(
     (0..60).map(step).collect()
 }
 
-/// Both agree to 1e-8, sooner or later.
+/// Both agree to 1e-8 after enough sweeps.
 #[cfg(feature = "implicit")]
 fn assert_becomes_newmark(system: &LinearModel, start: &State, blend: Blend) {
     for (share, inner) in [
@@ -415,10 +415,9 @@ fn assert_becomes_newmark(system: &LinearModel, start: &State, blend: Blend) {
     }
 }
 
-/// With beta = s/4 and gamma = 1/2 both obey
-/// `A (u+ - 2 u + u-) = dt^2 (F - K u) - dt D (u - u-)`, `A = M + dt/2 D + s dt^2/4 K`. The network's
-/// first step is `A (u1 - u0) = dt M v0 + dt^2/2 (F - K u0)`; Newmark's adds
-/// `(1 - s) dt^3/4 D a0` on the right: the same without damping, with s = 1, or where a0 = 0.
+/// With beta = s/4 and gamma = 1/2 both obey `A (u+ - 2 u + u-) = dt^2 (F - K u) - dt D (u - u-)`,
+/// `A = M + dt/2 D + s dt^2/4 K`. The network's first step is `A (u1 - u0) = dt M v0 + dt^2/2 (F - K u0)`; Newmark's
+/// adds `(1 - s) dt^3/4 D a0` on the right: the same without damping, with s = 1, or with a0 = 0.
 #[cfg(feature = "implicit")]
 #[test]
 fn many_sweeps_make_it_newmark_s_method() {
@@ -486,7 +485,7 @@ fn otherwise_the_first_steps_differ_by_the_jerk_of_the_damping() {
     assert!(error <= 1e-8, "{error:e}");
 }
 
-/// The order observed between `parts` and twice as many steps in place of each of 20 of `dt`.
+/// The observed order between `parts` and twice as many steps for each of 20 steps of `dt`.
 fn observed_order(
     system: &LinearModel,
     start: &State,
@@ -540,8 +539,8 @@ fn order_2_with_mass_damping_and_as_declared_with_other_damping() {
     }
 }
 
-/// The cube's network with one cell on a spring so stiff that no step resolves it: all others move
-/// with P beyond the limit at each of these steps.
+/// The cube's network with one cell on a very stiff spring that no step resolves: at each of these steps all other
+/// cells move with P beyond the limit.
 #[test]
 fn beyond_the_limit_one_sweep_is_of_order_2_with_mass_damping_and_1_with_other() {
     let mut stiffness = cube(3).operators().stiffness().as_ref().clone();

@@ -1,6 +1,5 @@
-//! The reproduction scene of the paper's second example, section 4.2: a cube of edge 0.2 m held at
-//! its four lateral faces, of uncalibrated springs under mass damping, with 500 Pa on its top from
-//! t = 0 on.
+//! The reproduction scene of the paper's second example, section 4.2: a cube of edge 0.2 m fixed at its four lateral
+//! faces, of uncalibrated springs under mass damping, with 500 Pa on its top from t = 0 on.
 
 use std::sync::OnceLock;
 
@@ -29,13 +28,13 @@ pub(crate) fn springs(damping_ratio: f64) -> Law {
     }
 }
 
-/// A cube held at its four lateral faces under 500 Pa on its top.
+/// A cube fixed at its four lateral faces under 500 Pa on its top.
 pub(crate) fn scene(cells: usize, edge: f64, law: Law, damping: Rayleigh) -> Model {
     let mesh = structured::cube(cells, edge, Split::Kuhn).unwrap();
     Model::build(&mesh, &problem(law, damping, [0.0, 0.0, -500.0])).unwrap()
 }
 
-/// A body held at its four lateral faces under a traction on its top (Pa).
+/// A body fixed at its four lateral faces under a traction on its top (Pa).
 pub(crate) fn problem(law: Law, damping: Rayleigh, traction: [f64; 3]) -> Problem {
     Problem {
         damping,
@@ -69,7 +68,7 @@ pub(crate) fn paper_cube() -> &'static Model {
     MODEL.get_or_init(|| cube(10))
 }
 
-/// Displacements at 51 instants of the first second, and how the run went.
+/// Displacements at 51 instants of the first second, and the outcome of the run.
 pub(crate) fn run(
     model: &Model,
     integrator: &mut dyn Integrator,

@@ -1,4 +1,4 @@
-//! The promise of `cnn-energy`.
+//! The energy guarantee of `cnn-energy`.
 
 use sinew_core::vectors::{dot, norm, weighted_dot};
 use sinew_core::{Integrator, LoadTime, OptionValue, Options, State, System, Trial};
@@ -15,7 +15,7 @@ pub(crate) fn energy_method(kind: &str, sweeps: u32) -> Box<dyn Integrator> {
     build("cnn-energy", &options(kind, sweeps))
 }
 
-/// Kinetic and elastic energy of a state (J), and the size of what is rounded in it.
+/// Kinetic and elastic energy of a state (J), and the size of its rounded terms.
 fn energy(system: &dyn System, state: &State) -> [f64; 2] {
     let trial = Trial::of(state, LoadTime::at(state.t()));
     let mut force = vec![0.0; state.u.len()];
@@ -25,7 +25,8 @@ fn energy(system: &dyn System, state: &State) -> [f64; 2] {
     [total, total.abs() + norm(&force) * norm(&state.u)]
 }
 
-/// Work of the loads in a step (J), their mean over the step times the way; and the size of what that is the difference of.
+/// Work of the loads in a step (J), their mean over the step times the displacement; and the size of the terms whose
+/// difference it is.
 fn work(system: &dyn System, kind: &str, before: &State, after: &State, dt: f64) -> [f64; 2] {
     let moved: Vec<f64> = after.u.iter().zip(&before.u).map(|(b, a)| b - a).collect();
     let of = |when: LoadTime<'_>| {
@@ -43,7 +44,8 @@ fn work(system: &dyn System, kind: &str, before: &State, after: &State, dt: f64)
     }
 }
 
-/// Takes steps and holds the energy to that at the start and the work of the loads since; where it rose above.
+/// Takes steps and compares the energy with that at the start plus the work of the loads since; returns the step at
+/// which it rose above.
 pub(crate) fn never_rises(
     system: &dyn System,
     (kind, sweeps): (&str, u32),

@@ -6,12 +6,12 @@ use sinew_core::{LinearModel, LinearSystem, Ramp, State};
 
 use sinew_testkit::dense::{dense, dense_damping};
 
-/// Over a stretch without kinks a ramp is `c x`, x moving by a linear law of its own: x = (1, p, q)
-/// with p' = a p + b q, q' = e p + g q, and p' = h besides.
+/// In an interval without kinks a ramp is `c x`, x following its own linear law: x = (1, p, q) with p' = a p + b q, q'
+/// = e p + g q, and in addition p' = h.
 struct Piece {
     /// c.
     value: [f64; 3],
-    /// x at the start of the stretch.
+    /// x at the start of the interval.
     start: [f64; 3],
     /// x' = rates x.
     rates: [[f64; 3]; 3],
@@ -60,8 +60,8 @@ fn piece(ramp: &Ramp, t: f64) -> Piece {
     }
 }
 
-/// The states after so many steps, each by one exponential of `(omega u, v)` and of the laws of the
-/// loads, x' = rates x.
+/// The states after `steps` steps, each by one exponential of `(omega u, v)` and of the laws of the loads, x' = rates
+/// x.
 pub(crate) fn exponentials(
     system: &LinearModel,
     start: &State,

@@ -17,7 +17,7 @@ fn method(id: &'static str, options: Options) -> Method {
     })
 }
 
-/// No motion: its steps are compared with their definition only.
+/// A program without a motion: its steps are compared with their definition only.
 fn power_iteration() -> Method {
     let properties = Properties::of_order(1, Needs::Matrices, EnergyBehaviour::Falls);
     let program = |system: &dyn System, _: f64| {

@@ -47,7 +47,7 @@ pub(crate) fn inner(kind: &str, sweeps: Option<f64>) -> OptionValue {
     OptionValue::Table(entries)
 }
 
-/// Takes so many steps.
+/// Takes `steps` steps.
 pub(crate) fn advance(
     integrator: &mut dyn Integrator,
     system: &dyn System,
@@ -60,7 +60,7 @@ pub(crate) fn advance(
     }
 }
 
-/// The velocity at the displacement's time after so many steps from rest.
+/// The velocity at the displacement's time after `steps` steps from rest.
 pub(crate) fn velocity_after(
     integrator: &mut dyn Integrator,
     system: &dyn System,

@@ -164,8 +164,8 @@ impl<F: Fn(f64) -> [f64; 3] + Send + Sync> Potential for Scalar<F> {
     }
 }
 
-/// wall - mass - mass - .. - mass, with links that pull with `k e + c e^3` when they are longer by e, and refuse to be so by
-/// more than a limit.
+/// wall - mass - mass - .. - mass, with links that pull with `k e + c e^3` when their elongation is e, and refuse an
+/// elongation beyond a limit.
 pub(crate) struct Chain {
     pub(crate) stiffness: f64,
     pub(crate) cubic: f64,

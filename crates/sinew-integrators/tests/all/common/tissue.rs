@@ -14,7 +14,7 @@ pub(crate) fn body(law: Law) -> Problem {
     Problem::of([Region::new(law, DENSITY)])
 }
 
-/// A group held along these axes.
+/// A group fixed along these axes.
 pub(crate) fn held(group: &str, axes: [bool; 3]) -> Fixed {
     Fixed::at(group).along(axes)
 }

@@ -23,7 +23,7 @@ fn moving(dofs: usize) -> State {
     State::new(wave(1e-3, 7.1), wave(0.1, 3.7))
 }
 
-/// Under the cube's load, over a stretch of five critical steps, each in so many parts.
+/// The order under the cube's load, over an interval of five critical steps, each divided into `parts` steps.
 fn order(system: &LinearModel, start: &State, parts: usize) -> f64 {
     let limit = critical_step(system.operators());
     let states = |id: &str, parts: usize| {

@@ -28,7 +28,7 @@ fn plain_limit(system: &dyn System) -> f64 {
     limit(&*build("central-difference", &plain()), system)
 }
 
-/// Displacements every 20 ms of the first .4 s, if the run came so far.
+/// Displacements every 20 ms of the first .4 s, if the run reached that time.
 fn displacements(
     model: &Model,
     integrator: &mut dyn Integrator,
@@ -49,7 +49,7 @@ fn displacements(
     (!diverged(&report)).then_some(instants)
 }
 
-/// Error of a method in steps of 20 ms over `parts`.
+/// Error of a method in steps of 20 ms divided by `parts`.
 fn error(model: &Model, integrator: &mut dyn Integrator, parts: usize) -> Option<f64> {
     let mut exact = build("propagator", &plain().with_number("tolerance", 1e-12));
     let reference = displacements(model, &mut *exact, 1).unwrap();
@@ -70,7 +70,7 @@ fn uniform_error() -> f64 {
     })
 }
 
-/// The mark: at the uniform mesh's step at most twice its error.
+/// The target: at the uniform mesh's step at most twice its error.
 #[test]
 fn a_sliver_costs_neither_step_nor_accuracy() {
     for thinness in [20.0, 100.0, 1000.0] {
@@ -191,7 +191,7 @@ fn steps_solve_their_equation() {
     );
 }
 
-/// The velocity at the displacement's time, which a staggered method is asked for.
+/// The velocity at the displacement's time, as a staggered method reports it.
 #[test]
 fn velocities_of_a_patch_are_those_of_the_motion() {
     let model = model(&with_sliver(1000.0), MASS_DAMPING);
@@ -213,7 +213,7 @@ fn a_checkpoint_continues_to_the_same_bits() {
     assert_eq!(through, halves);
 }
 
-/// The two tetrahedra over the coplanar faces that the vertex was moved towards.
+/// The two tetrahedra at the coplanar faces towards which the vertex was moved.
 #[test]
 fn the_elements_that_forced_a_patch_are_named() {
     let model = model(&with_sliver(1000.0), MASS_DAMPING);
@@ -237,7 +237,7 @@ fn the_elements_that_forced_a_patch_are_named() {
     );
 }
 
-/// On a uniform mesh no element stands out, and none goes into a patch for a little longer step.
+/// On a uniform mesh no element stands out, and no element is put into a patch for a slightly longer step.
 #[test]
 fn the_stable_step_counts_on_patches_only_where_they_pay() {
     let uniform = model(

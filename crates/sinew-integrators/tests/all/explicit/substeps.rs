@@ -1,4 +1,4 @@
-//! Steps cut into parts.
+//! Steps divided into substeps.
 
 use crate::common::cube::cube;
 use crate::common::{advance, build, largest, plain};
@@ -32,7 +32,7 @@ fn limit(id: &str, model: &Model) -> f64 {
     }
 }
 
-/// Sweeps of a step once the method is under way.
+/// Sweeps of a step after the method's first step.
 fn sweeps(id: &str, options: &Options, model: &Model, dt: f64) -> u64 {
     let mut state = State::at_rest(model.dofs());
     let mut integrator = build(id, options);
@@ -112,7 +112,7 @@ fn the_count_follows_the_step_and_the_system() {
     assert_eq!(parts(&coarse, dt), 4);
 }
 
-/// Forward Euler has no stable step without damping, so there is nothing to choose parts by.
+/// Forward Euler has no stable step without damping, so there is no basis for the choice of substeps.
 #[test]
 fn where_no_step_is_stable_automatic_parts_are_refused() {
     let undamped = LinearModel::new(LinearOperators::oscillator(0.1, 100.0, 0.0).unwrap());

@@ -102,7 +102,7 @@ fn bad_values_are_refused_by_each_method() {
 
 // The limits.
 
-/// Ten times the speed of the lightest cell with all the energy of a load that is there at once, `F'K^-1 F/2`.
+/// Ten times the speed of the lightest cell with the whole energy of a suddenly applied load, `F'K^-1 F/2`.
 #[cfg(feature = "implicit")]
 #[test]
 fn on_the_papers_cube_the_limit_is_that_of_the_loads_work() {
@@ -119,7 +119,7 @@ fn on_the_papers_cube_the_limit_is_that_of_the_loads_work() {
     assert!((found / limit - 1.0).abs() < 1e-6, "{found} {limit}");
 }
 
-/// Ten times the speed of all the energy there can be.
+/// Ten times the speed for the largest possible energy.
 #[test]
 fn the_oscillators_limit_is_that_of_its_energy() {
     let ten = 10.0;
@@ -151,7 +151,7 @@ fn assert_limit(system: &dyn System, start: &State, expected: f64) {
     assert!((found / expected - 1.0).abs() < 1e-6, "{found} {expected}");
 }
 
-/// A force that turns round at each zero of the velocity does the most work a force can.
+/// A force that reverses at each zero of the velocity does the most work a force can.
 #[test]
 fn a_load_in_resonance_stays_within_the_limit_and_comes_near_it() {
     let half_period = std::f64::consts::PI / 1000.0_f64.sqrt();
@@ -195,7 +195,7 @@ fn what_the_start_brings_is_its_energy() {
     }
 }
 
-/// Another system is another motion; the same one is the same, whoever integrates it.
+/// Another system is another motion; the same system is the same motion with any integrator.
 #[test]
 fn the_start_is_that_of_the_system_at_hand() {
     let (first, second) = (cube(3), cube(3));
@@ -234,7 +234,7 @@ fn top_load(ramp: Ramp) -> LoadSpec {
     LoadSpec::new("top", LoadKind::Traction([0.0, 0.0, -500.0])).with_ramp(ramp)
 }
 
-/// Any number that is not reached changes nothing, at any step, whatever else the method does.
+/// A number that is not reached changes nothing, at any step and with any other option.
 #[test]
 fn a_number_that_is_not_reached_changes_nothing() {
     let model = cube(3);
@@ -268,11 +268,11 @@ fn paper_cube_under(pressure: f64) -> Model {
 /// Result of a run of one second.
 #[derive(Debug)]
 struct Second {
-    /// The largest displacement (m); infinite where it passed a hundred times the size of the body.
+    /// The largest displacement (m); infinite if it passed a hundred times the size of the body.
     size: f64,
     /// Share of saturated (dof, step) pairs.
     saturated: f64,
-    /// Parts of each step.
+    /// Substeps of each step.
     parts: f64,
 }
 
@@ -329,7 +329,7 @@ fn at_any_step_every_method_stays_bounded_with_the_guard_and_none_without() {
     }
 }
 
-/// With a number, nothing is cut: beyond their stable step these two turn the restoring force round, and cells run
+/// With a number, no step is divided: beyond their stable step these two reverse the restoring force, and cells run
 /// away at the limit.
 #[test]
 fn a_number_clamps_and_cuts_nothing() {
@@ -351,7 +351,7 @@ fn parts(model: &Model, id: &str, dt: f64, start: &State) -> f64 {
     fact(&*integrator, Guarded::SUBSTEPS)
 }
 
-/// Methods that know a stable step on the paper's cube.
+/// Methods with a stable step on the paper's cube.
 const STABLE_UP_TO: [&str; 7] = [
     "forward-euler",
     "symplectic-euler",
@@ -422,8 +422,8 @@ fn a_cut_step_is_so_many_substeps_to_the_bit() {
     }
 }
 
-/// Forward Euler and the paper's network without damping: parts in which no cell passes a fifth of its size, and
-/// clamped motion beside that.
+/// Forward Euler and the paper's network without damping: substeps in which no cell moves by more than a fifth of its
+/// size, and clamped motion in addition.
 #[test]
 fn where_no_step_is_stable_parts_are_chosen_by_size_and_the_motion_stays_bounded() {
     let model = scene(4, 0.2, springs(0.0), mass_damping(0.0));
@@ -446,7 +446,7 @@ fn where_no_step_is_stable_parts_are_chosen_by_size_and_the_motion_stays_bounded
     }
 }
 
-/// Cells of a thousandth of the width weigh a millionth: a fifth of their size would take millions of parts.
+/// Cells of a thousandth of the width weigh a millionth: a fifth of their size would need millions of substeps.
 #[test]
 fn parts_by_size_are_a_thousand_at_most() {
     let mut mesh = structured::block([1, 1, 20], [0.02, 0.02, 0.2], Split::Kuhn).unwrap();
@@ -462,7 +462,7 @@ fn parts_by_size_are_a_thousand_at_most() {
     assert_eq!(parts(&model, "forward-euler", 0.02, &rest), 1000.0);
 }
 
-/// Cells that start at 2 m/s raise the limits, and with them the number of parts.
+/// Cells that start at 2 m/s raise the limits, and with them the number of substeps.
 #[test]
 fn a_fast_start_cuts_steps_too_and_so_does_a_fresh_integrator_later() {
     let model = scene(3, 0.2, springs(0.0), mass_damping(0.0));
@@ -568,7 +568,7 @@ fn a_kept_acceleration_is_that_of_the_clamped_motion() {
     }
 }
 
-/// Continued by a fresh integrator from a clone, saturated or not, in parts or not.
+/// A run that a fresh integrator continues from a clone, with and without saturation, with and without substeps.
 #[test]
 fn a_clone_continues_to_the_bit_while_cells_saturate() {
     let model = paper_cube_under(5.0);
@@ -598,7 +598,7 @@ fn a_clone_continues_to_the_bit_while_cells_saturate() {
     }
 }
 
-/// A system that keeps the states it was told of.
+/// A system that keeps the states of which it was notified.
 struct Told {
     inner: LinearModel,
     states: Mutex<Vec<State>>,
@@ -670,7 +670,7 @@ fn turned(r: &[[f64; 3]; 3], x: [f64; 3]) -> [f64; 3] {
     r.map(|row| row.iter().zip(x).map(|(r, x)| r * x).sum())
 }
 
-/// A cube under oblique traction, and the same turned.
+/// A cube under oblique traction, and the same rotated.
 fn cube_and_turned(r: &[[f64; 3]; 3]) -> (Model, Model) {
     let mesh = structured::cube(5, 0.2, Split::Kuhn).unwrap();
     let mut other = mesh.clone();
@@ -727,7 +727,7 @@ fn a_guarded_motion_turns_with_the_scene_and_the_papers_clamp_does_not() {
     }
 }
 
-/// A tapered bar hanging from its thick end, and the same turned by 37 degrees.
+/// A tapered bar hanging from its thick end, and the same rotated by 37 degrees.
 #[test]
 fn the_limits_of_a_turned_bar_under_gravity_are_the_same() {
     let mut mesh = structured::block([2, 2, 8], [0.04, 0.05, 0.3], Split::Kuhn).unwrap();

@@ -1,4 +1,4 @@
-//! `saturation = "auto"` at and below the stable step: nothing is clamped, whatever the body.
+//! `saturation = "auto"` at and below the stable step: nothing is clamped, for any body.
 
 use std::sync::Arc;
 
@@ -29,7 +29,7 @@ fn auto() -> Options {
     plain().with("saturation", OptionValue::Text("auto".into()))
 }
 
-/// The method's stable step [s]; twice that of leapfrog where it is stable at any step.
+/// The method's stable step [s]; twice that of leapfrog if it is stable at any step.
 fn stable_step(id: &str, system: &dyn System) -> f64 {
     let of = |id| build(id, &plain()).stable_step(system).unwrap();
     match of(id) {
@@ -106,7 +106,7 @@ fn horn(ratio: f64) -> impl Fn(f64) -> f64 {
     move |height| ratio.powf(-height)
 }
 
-/// Until the pulse has come back from the tip: waves run at 1.82 m/s.
+/// The motion until the pulse has come back from the tip: waves run at 1.82 m/s.
 #[test]
 fn cones_and_horns_whip_as_without_a_guard() {
     let time = 1.3 * 0.3 / 1.82;
@@ -121,7 +121,7 @@ fn cones_and_horns_whip_as_without_a_guard() {
 
 // Bodies at random.
 
-/// A tapered, notched or two-material body, what acts on it and how it moves at first.
+/// A tapered, notched or two-material body, its loads and its initial motion.
 #[derive(Clone, Debug)]
 struct Slender {
     cells: [usize; 3],
@@ -129,7 +129,7 @@ struct Slender {
     widths: [f64; 3],
     /// Height of the notch (between 0 and 1).
     notch: f64,
-    /// Modulus (Pa) and density (kg/m^3) of the upper half, where it is of another material.
+    /// Modulus (Pa) and density (kg/m^3) of the upper half, if it is of another material.
     upper: Option<(f64, f64)>,
     poissons_ratio: f64,
     damping: Rayleigh,
@@ -142,11 +142,11 @@ struct Slender {
 #[derive(Clone, Debug)]
 enum Acts {
     Nothing,
-    /// On a free body, up to this time (s).
+    /// A pulse on a free body, up to this time (s).
     Pulse([f64; 3], f64),
-    /// On a body held at its foot, in this time (s).
+    /// A load on a body fixed at its foot, within this time (s).
     Sin2([f64; 3], f64),
-    /// On a body held at its foot (m/s^2).
+    /// Gravity on a body fixed at its foot (m/s^2).
     Gravity([f64; 3]),
 }
 
@@ -258,8 +258,8 @@ fn slender_bodies() -> impl Strategy<Value = Slender> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(200))]
 
-    /// A run in which nothing is saturated is the method's own, since a clamp is all that a guard does to a
-    /// step that it does not cut.
+    /// A run in which nothing is saturated is the method's own, since a guard only clamps a step that it does not
+    /// divide.
     #[test]
     fn no_slender_body_is_clamped_at_or_below_the_stable_step(body in slender_bodies()) {
         let model = body.model();
@@ -278,7 +278,7 @@ proptest! {
     }
 }
 
-/// The same body with what loads it for a while only, so that it need not be held.
+/// The same body with a load that acts for a while only, so that it needs no supports.
 fn briefly_loaded(mut body: Body, time: f64) -> Body {
     body.problem.gravity = None;
     for load in &mut body.problem.loads {
@@ -319,7 +319,7 @@ proptest! {
     }
 }
 
-/// A beam ten times as long as thick, held at its foot.
+/// A beam ten times as long as thick, fixed at its foot.
 fn beam(traction: [f64; 3], gravity: Option<[f64; 3]>, poissons_ratio: f64) -> (TetMesh, Model) {
     let mesh = structured::block([1, 1, 10], [0.01, 0.01, 0.1], Split::Kuhn).unwrap();
     let problem = Problem {
@@ -401,8 +401,8 @@ fn ramps() -> impl Strategy<Value = Ramp> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(600))]
 
-    /// The bound of a body's energy is met by one mode that has all of it. Damping that is weak, critical or far
-    /// beyond, of mass or of stiffness; mass damping that no step resolves.
+    /// One mode with the whole energy reaches the bound of a body's energy. Cases: damping that is weak, critical or
+    /// far beyond critical, of mass or of stiffness, and mass damping that no step resolves.
     #[test]
     fn no_mode_with_all_the_energy_is_clamped(
         mass in prop_oneof![Just(0.0), 0.0..4.0, Just(2.0), 0.0..50.0],
@@ -428,8 +428,8 @@ proptest! {
     }
 }
 
-/// Masses in a row, each lighter than the one before by the same factor, with springs that carry a wave to the
-/// lightest without reflection; the first is held or pushed.
+/// Masses in a row, each lighter than the one before by the same factor, with springs that carry a wave to the lightest
+/// without reflection; the first is fixed or pushed.
 fn tapered_chain(masses: u32, lightest: f64) -> LinearModel {
     let factor = lightest.powf(1.0 / f64::from(masses - 1));
     let mass: Vec<f64> = (0..masses).map(|n| factor.powf(f64::from(n))).collect();
@@ -448,7 +448,8 @@ fn tapered_chain(masses: u32, lightest: f64) -> LinearModel {
 }
 
 /// In the exact motion, here rk4 at a twentieth of its stable step, each mass stays below a tenth of its limit: the
-/// rest is room for what methods compute. The lightest gets many times faster than the first.
+/// rest is a margin for the velocities that methods compute. The lightest mass becomes many times faster than the
+/// first.
 #[test]
 fn the_limit_is_ten_times_a_bound_of_exact_motion_in_each_cell_of_a_whip() {
     for lightest in [0.1, 1e-3, 1e-6] {

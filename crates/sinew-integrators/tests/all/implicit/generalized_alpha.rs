@@ -1,5 +1,5 @@
-//! `generalized-alpha`: its order, what it leaves of motion too fast for the step, and the methods
-//! it becomes.
+//! `generalized-alpha`: its order, its damping of motion too fast for the step, and the methods that it equals in
+//! special cases.
 
 use crate::common::cube::{altered, cube, mass_damping, scene, springs};
 use crate::common::{advance, build, largest, plain, relative_error};
@@ -81,7 +81,7 @@ fn order_2_whatever_it_damps() {
     }
 }
 
-/// A step of an oscillator far too slow for it, on `(u, v dt, a dt^2)`.
+/// A step far too long for an oscillator, on `(u, v dt, a dt^2)`.
 fn amplification(options: &Options) -> DMatrix<f64> {
     let (mass, spring): (f64, f64) = (0.1, 100.0);
     let system = LinearModel::new(LinearOperators::oscillator(mass, spring, 0.0).unwrap());
@@ -143,11 +143,10 @@ fn assert_same_as_newmark(options: &Options, rounding: f64) {
     }
 }
 
-/// With rho = 1, a_m = a_f = 1/2, beta = 1/4 and gamma = 1/2: the mean of `M a + D v + K u - F` at both
-/// ends of a step vanishes. It vanishes at the start, where the acceleration is the consistent
-/// one, hence at every step, as in Newmark's method: the two are one, under any damping and, as
-/// loads are averaged like forces, any load. (Taking loads at the middle of the step would part
-/// them.)
+/// With rho = 1, a_m = a_f = 1/2, beta = 1/4 and gamma = 1/2: the mean of `M a + D v + K u - F` at both ends of a step
+/// vanishes. It vanishes at the start, where the acceleration is the consistent one, hence at every step, as in
+/// Newmark's method: the two are one, under any damping and, as loads are averaged like forces, any load. (With loads
+/// at the middle of the step the two would differ.)
 #[test]
 fn with_all_left_it_is_newmark_s_method_under_any_damping_and_load() {
     assert_same_as_newmark(&rho(1.0), 1e-9);

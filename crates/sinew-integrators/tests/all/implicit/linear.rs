@@ -1,4 +1,4 @@
-//! Implicit methods against dense arithmetic, what they keep between steps, and equilibria.
+//! Implicit methods against dense arithmetic, the data that they keep between steps, and equilibria.
 
 use crate::common::cube::cube;
 use crate::common::dense_methods::{Dense, STEPS};
@@ -96,7 +96,7 @@ fn a_load_of_another_size_is_refused() {
     );
 }
 
-/// One factor serves as long as the step and the system stay; it is made anew when one changes.
+/// One factor serves as long as the step and the system stay; it is computed again when one changes.
 #[test]
 fn factors_are_kept() {
     let model = cube(3);
@@ -164,7 +164,7 @@ fn what_a_factor_was_used_for_before_leaves_no_trace() {
     }
 }
 
-/// Every method, implicit or not, comes to rest where K u = F.
+/// Every method, implicit or not, comes to rest at K u = F.
 #[test]
 fn damped_motion_ends_at_the_static_solution() {
     let model = cube(4);

@@ -179,7 +179,7 @@ fn truss(u: f64) -> [f64; 3] {
     ]
 }
 
-/// Displacement and load at which the apex gives way: the stiffness above is 0 where length^3 = rest.
+/// Displacement and load at which the apex snaps through: the stiffness is 0 at length^3 = rest.
 fn limit_point() -> (f64, f64) {
     let height = (HEIGHT.hypot(1.0).powf(2.0 / 3.0) - 1.0).sqrt();
     let u = HEIGHT - height;
@@ -261,7 +261,7 @@ fn stiffness_damping_by_the_current_tangent_takes_few_iterations_more() {
     }
 }
 
-/// A mass that a stiff spring holds on a circle.
+/// A mass that a stiff spring keeps on a circle.
 fn sling() -> (ForceModel<crate::common::nonlinear::Law<Sling>>, State) {
     let sling = Sling {
         stiffness: 1e4,

@@ -113,7 +113,8 @@ fn a_release_takes_few_projections_and_long_newmark_steps_tell_that_their_energy
     );
 }
 
-/// A cantilever of 10:1 whose end a dead force moves by a third of its length, against the same in quarters of the load by another code.
+/// A cantilever of 10:1 whose end a dead load moves by a third of its length, compared at each quarter of the load with
+/// another code.
 #[test]
 fn a_cantilever_bends_far() {
     let mesh = structured::block([2, 2, 20], [0.1, 0.1, 1.0], Split::Mirrored).unwrap();

@@ -1,4 +1,4 @@
-//! Blocks that a moved support compresses far, by steps that are cut by their stiffness.
+//! Blocks that a moved support compresses far, in steps that are divided by their stiffness.
 
 use crate::common::tissue::{body, held};
 use crate::common::{build, plain};
@@ -13,7 +13,7 @@ const EDGE: Element = Element::FbarEdge {
     patch: None,
 };
 
-/// A block of 60 by 60 by 100 mm whose top goes by `displacement` (m) within `rise` (s).
+/// A block of 60 by 60 by 100 mm whose top moves by `displacement` (m) within `rise` (s).
 fn block(
     cells: [usize; 3],
     (law, poissons_ratio, element): (&'static str, f64, Element),
@@ -29,7 +29,7 @@ fn block(
     Model::build(&mesh, &problem).unwrap()
 }
 
-/// Kinetic and elastic energy (J) where the supports rest.
+/// Kinetic and elastic energy (J) while the supports are at rest.
 fn energy(model: &Model, state: &State) -> f64 {
     let mut v = vec![0.0; state.u.len()];
     state.velocity_at_t(model, Inputs::none(), &mut v).unwrap();
@@ -39,8 +39,9 @@ fn energy(model: &Model, state: &State) -> f64 {
     elastic.unwrap().energy + moving.map(|(v, mass)| 0.5 * mass * v * v).sum::<f64>()
 }
 
-/// Supports that rest do no work: from the end of the rise on a body has the energy that fixed steps of a tenth of the stable one lead to there. Between two looks at
-/// it the fastest motion became faster than the own blocks of the cells tell, by a third in time, in tissue that is squeezed to 60 % of its height.
+/// Supports at rest do no work: from the end of the rise on the body has the same energy as with fixed steps of a tenth
+/// of the stable one. In tissue compressed to 60 % of its height, between two checks the fastest motion became a third
+/// faster in time than the diagonal blocks of the cells show.
 #[test]
 fn compressed_tissue_gets_no_energy_from_steps_that_are_cut_by_its_stiffness() {
     let duration = 1.07;
@@ -91,7 +92,7 @@ fn compressed_tissue_gets_no_energy_from_steps_that_are_cut_by_its_stiffness() {
     }
 }
 
-/// A motion that needed many parts once does not cost them for ever.
+/// A motion that once needed many substeps does not need them permanently.
 #[test]
 fn steps_are_cut_into_fewer_parts_again_once_a_while_has_needed_fewer() {
     let law = ("neo-hookean", 0.45, EDGE);

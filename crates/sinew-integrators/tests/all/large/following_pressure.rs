@@ -33,7 +33,7 @@ fn load(group: &str, kind: LoadKind) -> LoadSpec {
     LoadSpec::new(group, kind)
 }
 
-/// Under pressure (Pa) on these groups.
+/// A body under pressure (Pa) on these groups.
 fn pressed(element: Element, pressure: f64, groups: &[&str]) -> Problem {
     let loads = groups.iter();
     let loads = loads.map(|group| load(group, LoadKind::FollowingPressure(pressure)));
@@ -44,7 +44,7 @@ fn pressed(element: Element, pressure: f64, groups: &[&str]) -> Problem {
     }
 }
 
-/// A displacement (m) of the degrees of freedom by the place of their nodes.
+/// A displacement (m) of the degrees of freedom as a function of the position of their nodes.
 fn displaced(model: &Model, by: impl Fn([f64; 3]) -> [f64; 3]) -> Vec<f64> {
     let points = model.nodes().iter();
     let points = points.map(|node| model.mesh().points[*node as usize]);
@@ -147,7 +147,7 @@ fn forces_of_pressure_all_round_are_the_gradient_of_the_volume_and_their_stiffne
     }
 }
 
-/// Under pressure on one side alone the derivative has a part without symmetry, which comes in products.
+/// Under pressure on one side alone the derivative has an unsymmetric part, which enters as products.
 #[test]
 fn the_derivative_of_pressure_on_one_side_is_the_sum_of_its_symmetric_and_its_skew_part() {
     let model = Model::build(&block(2), &pressed(Element::P1, 500.0, &["top"])).unwrap();
@@ -273,7 +273,8 @@ fn supports_carry_what_the_pressure_on_the_deformed_surface_asks() {
     assert!(tilt > 0.05 * SIZE, "{tilt}");
 }
 
-/// With W the elastic energy, `T + W + p V` is constant under pressure all round, which a method of order 2 keeps to order 2.
+/// With W the elastic energy, `T + W + p V` is constant under pressure all round, which a method of order 2 conserves
+/// to order 2.
 #[test]
 fn a_body_that_breathes_under_pressure_keeps_its_energy() {
     let pressure = 1500.0;
@@ -312,7 +313,8 @@ fn a_body_that_breathes_under_pressure_keeps_its_energy() {
     }
 }
 
-/// A load that lags behind the surface is no load of constant direction: the trapezoidal rule would make energy of the difference.
+/// A load that lags behind the surface is no load of constant direction: the trapezoidal rule would turn the difference
+/// into energy.
 #[test]
 fn cellular_energy_steps_follow_a_surface_by_implicit_euler_alone() {
     let model = Model::build(&block(2), &pressed(Element::P1, 300.0, &ALL_ROUND)).unwrap();
@@ -325,7 +327,7 @@ fn cellular_energy_steps_follow_a_surface_by_implicit_euler_alone() {
     of("ie").prepare(&model, 1e-3).unwrap();
 }
 
-/// A pressure on one side alone has a derivative without symmetry at the rim, by which the iteration converges linearly.
+/// A pressure on one side alone has an unsymmetric derivative at the rim, so that the iteration converges linearly.
 #[test]
 fn a_cube_finds_its_equilibrium_under_pressure_on_one_side() {
     for (cells, pressure) in [(2, -2500.0), (4, -1500.0), (4, 1500.0)] {

@@ -1,5 +1,5 @@
-//! Large motions of neo-hookean blocks, a released stretch and a push, by steps that are cut, in single precision and by the paper's network.
-//! What fixed steps find is in the verification.
+//! Large motions of neo-hookean blocks, a released stretch and a push: with substeps, in single precision and with the
+//! paper's network. The results of fixed steps are in the verification.
 
 use crate::common::{build, plain, relative_error};
 use sinew_core::spectrum::largest_eigenvalue;
@@ -16,7 +16,7 @@ use sinew_fem::{
 use sinew_mesh::TetMesh;
 use sinew_mesh::structured::{self, Split};
 
-/// A block with its bottom held, and a start.
+/// A block with its bottom fixed, and an initial state.
 struct Scene {
     mesh: TetMesh,
     model: Model,
@@ -113,7 +113,7 @@ impl Scene {
             .collect()
     }
 
-    /// The displacements by central difference at `instants` instants, so many steps a second.
+    /// The displacements by central difference at `instants` instants, with `rate` steps per second.
     fn run(&self, rate: usize, instants: usize) -> Result<Vec<Vec<f64>>, StepError> {
         self.run_by("central-difference", &plain(), rate, instants)
     }
@@ -138,7 +138,7 @@ impl Scene {
         Ok(seen)
     }
 
-    /// [`Scene::run`] extrapolated to steps of no length.
+    /// [`Scene::run`] extrapolated to a step of zero length.
     fn reference(&self, rate: usize, instants: usize) -> Vec<Vec<f64>> {
         let [coarse, fine] = [rate / 2, rate].map(|rate| self.run(rate, instants).unwrap());
         let pairs = coarse.into_iter().zip(fine);
@@ -152,7 +152,8 @@ impl Scene {
             .collect()
     }
 
-    /// The stable step (s) of undamped leapfrog about a state, by the largest eigenvalue of the tangent to many digits.
+    /// The stable step (s) of undamped leapfrog about a state, from the largest eigenvalue of the tangent with many
+    /// digits.
     fn limit(&self, state: &State) -> f64 {
         let zero = vec![0.0; state.u.len()];
         let trial = Trial {
@@ -172,7 +173,7 @@ impl Scene {
     }
 }
 
-/// Each figure within so much of the one expected.
+/// Checks that each value is within the tolerance of the expected one.
 #[track_caller]
 fn assert_near(found: impl IntoIterator<Item = f64>, expected: &[f64], tolerance: f64) {
     let found: Vec<f64> = found.into_iter().collect();
@@ -186,8 +187,8 @@ fn assert_near(found: impl IntoIterator<Item = f64>, expected: &[f64], tolerance
     }
 }
 
-/// Steps cut by the current stiffness go through a release that steps of the stable length at rest do not survive, and go on from a saved
-/// state with the same bits.
+/// Steps divided by the current stiffness complete a release in which steps of the stable length at rest fail, and
+/// continue from a saved state with the same bits.
 #[test]
 fn steps_follow_the_current_stiffness() {
     let scene = Scene::release();
@@ -242,8 +243,8 @@ fn steps_follow_the_current_stiffness() {
     assert_eq!(resumed, state);
 }
 
-/// Fibres that stiffen a hundredfold within a step end a pull of 4 kPa, by steps of which some are too long and are taken again: the motion is that of fine
-/// steps, and goes on from a saved state with the same bits.
+/// Fibres that stiffen a hundredfold within a step stop a pull of 4 kPa. Some steps are too long and are taken again.
+/// The motion is that of fine steps, and continues from a saved state with the same bits.
 #[test]
 fn steps_that_fibres_stop_are_taken_again_in_shorter_parts() {
     let mut scene = Scene::new(([4; 3], [0.04; 3]), 0.1, |_, problem| {
@@ -273,8 +274,8 @@ fn steps_that_fibres_stop_are_taken_again_in_shorter_parts() {
     assert_eq!(resumed, state);
 }
 
-/// A cube is thrown so fast that it would be half as long again after a step that is far below the stable one at rest, had it no fibres that
-/// stop it: it keeps its energy.
+/// A cube is thrown so fast that without fibres it would be half as long again after one step, which is far below the
+/// stable step at rest. The fibres stop it, and its energy is kept.
 #[test]
 fn a_throw_against_fibres_keeps_its_energy() {
     let mut scene = Scene::new(([3; 3], [0.1; 3]), 0.3, |_, _| {});
@@ -292,8 +293,8 @@ fn a_throw_against_fibres_keeps_its_energy() {
     }
 }
 
-/// The paper's network takes the force of a law as any other: exact below forward Euler's stable step, which damping gives it, and refused by
-/// name where longer steps turn an element inside out.
+/// The paper's network accepts the force of a law like any other: it is exact below forward Euler's stable step, which
+/// damping provides, and refused by name if longer steps invert an element.
 #[test]
 fn the_papers_network_presses_tissue_below_its_stable_step_and_is_refused_beyond() {
     let mut scene = Scene::push();
@@ -328,7 +329,8 @@ fn options_that_need_matrices_are_refused_by_name_with_what_does_instead() {
     }
 }
 
-/// An undamped cube that sags under its weight, at nine tenths of the stable step: parts that became fewer again would swing it up.
+/// An undamped cube that sags under its weight, at nine tenths of the stable step: a reduced number of substeps would
+/// increase its oscillation.
 #[test]
 fn steps_by_the_current_stiffness_make_no_energy() {
     const GRAVITY: f64 = 9.81;
@@ -359,8 +361,8 @@ fn steps_by_the_current_stiffness_make_no_energy() {
     }
 }
 
-/// Beside the same steps in f64, also where a pressure is a hundred times as large as the stress that bends: nothing in the loops is a
-/// difference of large numbers. A stretch that swings to and fro adds the most.
+/// Comparison with the same steps in f64, also for a pressure that is a hundred times as large as the bending stress:
+/// nothing in the loops is a difference of large numbers. An oscillating stretch has the largest error.
 #[test]
 fn single_precision_is_off_by_its_rounding() {
     let in_f32 = plain().with_text("precision", "f32");

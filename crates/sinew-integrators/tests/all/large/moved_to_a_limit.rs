@@ -16,7 +16,7 @@ fn pulled(speed: f64) -> Model {
     block(("gent", parameters), speed)
 }
 
-/// A block of 100 x 100 x 200 mm whose top goes up at `speed` (m/s).
+/// A block of 100 x 100 x 200 mm whose top moves up at `speed` (m/s).
 fn block((law, parameters): (&'static str, Parameters), speed: f64) -> Model {
     let mesh = structured::block([1, 1, 2], [0.1, 0.1, 0.2], Split::Kuhn).unwrap();
     let mut problem = body(Law::hyperelastic(law, parameters));
@@ -26,9 +26,9 @@ fn block((law, parameters): (&'static str, Parameters), speed: f64) -> Model {
     Model::build(&mesh, &problem).unwrap()
 }
 
-/// The tissue in the middle of the block has to follow within the step in which the support moves: where it stays behind, and
-/// where it goes on as before, elements at the support are beyond the limit. A step that is taken balances inertia and forces at its end,
-/// which is what defines both methods.
+/// The tissue in the middle of the block has to follow within the step in which the support moves: if it stays at rest,
+/// or if it continues as before, elements at the support are beyond the limit. A completed step balances inertia and
+/// forces at its end, which defines both methods.
 #[test]
 fn steps_of_a_moved_support_are_solved_though_both_first_guesses_leave_the_laws_domain() {
     let model = pulled(1.0);
@@ -62,7 +62,7 @@ fn steps_of_a_moved_support_are_solved_though_both_first_guesses_leave_the_laws_
     }
 }
 
-/// A support that goes on and on ends the run with the element and the limit.
+/// A support that keeps moving ends the run with an error that names the element and the limit.
 #[test]
 fn a_support_that_no_tissue_can_follow_is_refused_with_the_element_and_the_limit() {
     let model = pulled(100.0);

@@ -1,4 +1,4 @@
-//! Runs of tissue that remembers: creep, continued runs, static states, and what is refused.
+//! Runs of viscoelastic tissue: creep, continued runs, static states, and refused inputs.
 
 use crate::common::build;
 use crate::common::tissue::body;
@@ -74,8 +74,9 @@ fn top(mesh: &TetMesh, model: &Model, u: &[f64]) -> f64 {
     ends.iter().sum::<f64>() / ends.len() as f64
 }
 
-/// `1/(E (1 - g)) (1 - g exp(-(1 - g) t/tau))`: the strain by stress (1/Pa) of a bar that is pulled by a constant stress from t = 0 on, of a solid whose stress
-/// relaxes as `E (1 - g + g exp(-t/tau))` (Christensen, Theory of Viscoelasticity, 1982).
+/// `1/(E (1 - g)) (1 - g exp(-(1 - g) t/tau))`: the strain per stress (1/Pa) of a bar under a constant stress from t =
+/// 0 on, for a solid whose stress relaxes as `E (1 - g + g exp(-t/tau))` (Christensen, Theory of Viscoelasticity,
+/// 1982).
 fn compliance(t: f64) -> f64 {
     let left = 1.0 - SHARE;
     (1.0 - SHARE * f64::exp(-left * t / TIME)) / (YOUNGS_MODULUS * left)
@@ -110,7 +111,7 @@ fn a_bar_under_a_constant_load_creeps_as_the_standard_linear_solid() {
     }
 }
 
-/// Bytes of a state that is half way hold all that the rest of the run depends on.
+/// The bytes of a state half way contain all data on which the rest of the run depends.
 #[test]
 fn a_run_that_goes_on_from_bytes_has_the_bits_of_one_that_never_ended() {
     let mesh = bar();
@@ -148,7 +149,7 @@ fn a_run_that_goes_on_from_bytes_has_the_bits_of_one_that_never_ended() {
     }
 }
 
-/// Nothing moves where the state at the start is the static one, of which all has relaxed.
+/// Nothing moves if the initial state is the static one, which is fully relaxed.
 #[test]
 fn a_static_state_is_one_that_is_held_until_all_has_relaxed() {
     let mesh = bar();

@@ -1,4 +1,5 @@
-//! Stiffness damping of hyperelastic bodies in motion: one for all methods, which leaves turns and glides alone and never drives a body.
+//! Stiffness damping of hyperelastic bodies in motion: the same for all methods, without effect on rotations and
+//! translations, and never a source of energy.
 
 use crate::common::{advance, build, plain, relative_error};
 use sinew_core::{ElasticLaw, LoadTime, Options, Ramp, State, System, Trial};
@@ -21,7 +22,7 @@ fn sweeps(count: f64) -> Options {
     plain().with_number("sweeps", count)
 }
 
-/// Places (m) of the nodes of a free body.
+/// Positions (m) of the nodes of a free body.
 fn places(mesh: &TetMesh, u: &[f64]) -> Vec<[f64; 3]> {
     let places = mesh.points.iter().zip(u.as_chunks::<3>().0);
     places
@@ -29,7 +30,7 @@ fn places(mesh: &TetMesh, u: &[f64]) -> Vec<[f64; 3]> {
         .collect()
 }
 
-/// The velocities (m/s) of a turn about the z axis through the middle of a plate of this width (m).
+/// The velocities (m/s) of a rotation about the z axis through the middle of a plate of this width (m).
 fn spin(mesh: &TetMesh, width: f64, omega: f64) -> Vec<f64> {
     let middle = 0.5 * width;
     let of = |[x, y, _]: [f64; 3]| [-omega * (y - middle), omega * (x - middle), 0.0];
@@ -72,7 +73,8 @@ fn a_spinning_plate_keeps_its_angular_momentum() {
     }
 }
 
-/// In long steps a velocity is the way of a step over its time, which strains a body that turns unless it is taken half way.
+/// In long steps a velocity is the displacement of a step over its length, which strains a rotating body unless damping
+/// acts half way.
 #[test]
 fn damping_brings_no_energy_into_a_plate_that_turns_far_in_a_step() {
     let mesh = structured::block([3, 3, 1], [0.09, 0.09, 0.03], Split::Mirrored).unwrap();
@@ -102,7 +104,8 @@ fn energy(model: &Model, state: &State) -> f64 {
     kinetic + elastic
 }
 
-/// Under pressure all round p V is its potential; with that and the elastic one the energy of a free body only falls.
+/// Under pressure all round p V is its potential; with that and the elastic one the energy of a free body only
+/// decreases.
 #[test]
 fn under_pressure_that_follows_the_surface_a_damped_body_gains_no_energy() {
     let pressure = 2000.0;
@@ -129,7 +132,7 @@ fn under_pressure_that_follows_the_surface_a_damped_body_gains_no_energy() {
     }
 }
 
-/// A beam held at one end that falls under its weight, and turns by some 50 degrees.
+/// A beam fixed at one end that falls under its weight, and rotates by some 50 degrees.
 fn falling() -> Model {
     let mesh = structured::block([5, 1, 1], [0.2, 0.04, 0.04], Split::Mirrored).unwrap();
     let (held, _): (Vec<u32>, Vec<u32>) =
@@ -189,7 +192,7 @@ fn newtons_method_takes_few_iterations_under_damping_by_the_rate_of_strain() {
     }
 }
 
-/// A body and the part of it that is moved, all with one velocity: nothing strains, and nothing pulls.
+/// A body and its moved part, all with one velocity: there is no strain, and no force.
 #[test]
 fn a_body_that_glides_with_its_supports_feels_no_damping() {
     let speed = [0.3, -0.2, 0.1];

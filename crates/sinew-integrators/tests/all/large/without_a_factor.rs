@@ -1,4 +1,4 @@
-//! Newton's method by conjugate gradients, against the same with a factor.
+//! Newton's method with conjugate gradients, compared with the same method with a factor.
 
 use crate::common::tissue::{body, held};
 use crate::common::{advance, build, plain, relative_error};
@@ -23,7 +23,7 @@ fn cube(cells: usize) -> TetMesh {
     structured::cube(cells, 0.1, Split::Kuhn).unwrap()
 }
 
-/// A neo-Hookean body of this Poisson's ratio, held at its bottom.
+/// A neo-Hookean body of this Poisson's ratio, fixed at its bottom.
 fn tissue(poissons_ratio: f64, element: Element) -> Problem {
     let parameters = Parameters::new(3500.0, poissons_ratio);
     let mut problem = body(Law::hyperelastic("neo-hookean", parameters));
@@ -32,7 +32,7 @@ fn tissue(poissons_ratio: f64, element: Element) -> Problem {
     problem
 }
 
-/// [`tissue`] whose top is pulled at (Pa) from t = 0 on.
+/// [`tissue`] whose top is pulled with a traction (Pa) from t = 0 on.
 fn pulled(poissons_ratio: f64, element: Element, traction: [f64; 3]) -> Problem {
     let mut problem = tissue(poissons_ratio, element);
     problem.loads = vec![LoadSpec::new("top", LoadKind::Traction(traction))];
@@ -59,7 +59,7 @@ fn run(
     Ok((seen, work))
 }
 
-/// The motion of an option equals that with a factor, and takes none.
+/// The motion with an option equals that with a factor, and uses no factor.
 #[track_caller]
 fn assert_same(model: &Model, method: &str, factor: &str, (steps, dt): (usize, f64), most: f64) {
     let (expected, work) = run(
@@ -97,7 +97,7 @@ fn motions_are_those_with_a_factor_to_the_tolerance() {
     }
 }
 
-/// What damping and loads add to the derivative without symmetry is left to iterations.
+/// Iterations handle the unsymmetric terms that damping and loads add to the derivative.
 #[test]
 fn so_are_they_under_stiffness_damping_and_pressure_that_follows_the_surface() {
     for element in ELEMENTS {
@@ -130,7 +130,7 @@ fn nearly_incompressible_tissue_in_long_steps_takes_a_factor_by_name() {
     assert_eq!(run(&mut *always, &model, 6, 0.016).unwrap().0, found);
 }
 
-/// A column that a dead load bends far: on its way the tangent is indefinite in long steps.
+/// A column that a dead load bends far: during the motion the tangent is indefinite in long steps.
 #[test]
 fn a_column_that_buckles_comes_to_the_same_rest() {
     let mesh = structured::block([2, 2, 12], [0.02, 0.02, 0.12], Split::Mirrored).unwrap();
@@ -173,7 +173,7 @@ fn a_run_continued_from_a_saved_state_has_the_same_bits() {
     }
 }
 
-/// Of a body that has room for a factor in no memory conjugate gradients are all there is.
+/// Conjugate gradients are the only solver if no memory can contain a factor of the body.
 #[test]
 fn without_memory_for_a_factor_steps_go_on() {
     let problem = pulled(0.4999, Element::P1, [0.0, 0.0, 600.0]);

@@ -8,7 +8,7 @@ use sinew_cnn::{Machine, Program, ReferenceMachine};
 use sinew_core::{Batch, Options, State, StepError, System};
 use sinew_machines::{Kind, KnownMachine, PrecisionName, Unfit, register};
 
-/// Steps that machines of this kind have taken.
+/// Number of steps that machines of this kind have taken.
 static STEPS: AtomicUsize = AtomicUsize::new(0);
 
 /// The reference machine, which counts steps.

@@ -34,7 +34,7 @@ fn region(law: Law, element: Element, group: Option<&str>) -> Region {
     }
 }
 
-/// A cube with a lower and an upper part, which is held at the bottom and pressed on the top.
+/// A cube with a lower and an upper part, fixed at the bottom and loaded by pressure on the top.
 fn problem(regions: Vec<Region>) -> Problem {
     Problem::of(regions)
         .with_fixed(held("bottom", [true; 3]))
@@ -188,7 +188,7 @@ sinew_cnn::machine_conformance_on_bodies!(
     2e-5
 );
 
-/// The loops over elements are what runs, and say so.
+/// The loops over elements run, and are reported.
 #[test]
 fn bodies_are_run_by_loops_over_elements() {
     for body in bodies() {

@@ -10,7 +10,7 @@ use sinew_core::{
 const MASS: f64 = 0.1;
 const MASS_DAMPING: f64 = 10.0;
 
-/// A mass on a spring and dashpots of every kind asked for, under a load that rises.
+/// A mass on a spring and the requested kinds of dashpots, under a load that rises.
 fn oscillator(stiffness_damping: f64, dashpot: bool) -> LinearModel {
     let plain = LinearOperators::oscillator(MASS, 100.0, 0.0).unwrap();
     let stiffness = BlockMatrix::clone(plain.stiffness());
@@ -125,7 +125,7 @@ fn methods_without_sweeps_have_no_program() {
     assert!(integrator.program().is_none());
 }
 
-/// The coefficient of a term on a printed line: 0 where there is none.
+/// The coefficient of a term on a printed line: 0 if absent.
 fn coefficient(line: &str, term: &str) -> f64 {
     let line = line.replace(" - ", " + -").replace(['(', ')'], "");
     let (_, sum) = line.split_once(['=', '-']).unwrap_or(("", &line));

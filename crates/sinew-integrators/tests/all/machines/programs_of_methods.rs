@@ -13,7 +13,7 @@ static METHODS: LazyLock<Vec<Method>> = LazyLock::new(methods);
 
 sinew_cnn::machine_conformance!(reference, METHODS, || Box::new(ReferenceMachine::default()));
 
-/// The kernels for any matrix, with these instructions where the machine has them.
+/// The kernels for any matrix, with these instructions if the machine has them.
 fn general(set: InstructionSet) -> Box<dyn Machine> {
     Box::new(Chosen::new(Settings {
         kind: Kind::GENERAL,
@@ -26,7 +26,7 @@ sinew_cnn::machine_conformance!(portable, METHODS, || general(InstructionSet::Po
 sinew_cnn::machine_conformance!(avx2, METHODS, || general(InstructionSet::Avx2));
 sinew_cnn::machine_conformance!(avx512, METHODS, || general(InstructionSet::Avx512));
 
-/// The suite runs what the methods make: no entry of the list is refused everywhere.
+/// The suite runs the programs of the methods: no entry of the list is refused for all systems.
 #[test]
 fn every_method_has_a_program_for_some_system() {
     use sinew_core::{LinearModel, LinearOperators};

@@ -1,5 +1,5 @@
-//! After set-up, a step with modes from Lanczos bases allocates nothing, even where it has to find out
-//! how much of a state lies outside them.
+//! After set-up, a step with modes from Lanczos bases allocates nothing, even if it has to compute the share of a state
+//! outside them.
 
 use crate::common::cube::cube;
 use crate::common::{advance, build, largest, plain};

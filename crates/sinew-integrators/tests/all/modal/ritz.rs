@@ -1,5 +1,5 @@
-//! `modal` with Ritz vectors of the loads: exact where they span the motion, statically exact with any number, better
-//! than modes at the same number, and off by what is said before the run.
+//! `modal` with Ritz vectors of the loads: exact if they span the motion, statically exact with any number, better than
+//! modes at the same number, and with an error as estimated before the run.
 
 use std::f64::consts::TAU;
 
@@ -27,7 +27,7 @@ fn fact(integrator: &dyn Integrator, name: &str) -> f64 {
     facts.iter().find(|fact| fact.name == name).unwrap().value
 }
 
-/// Displacements after each of so many steps from rest.
+/// Displacements after each of `steps` steps from rest.
 fn motion(
     system: &dyn System,
     integrator: &mut dyn Integrator,
@@ -48,7 +48,7 @@ fn exact(system: &dyn System, dt: f64, steps: usize) -> Vec<Vec<f64>> {
     motion(system, &mut *build("propagator", &plain()), dt, steps)
 }
 
-/// Pushes at a side and at an edge that come and go, besides a constant one.
+/// Pushes at a side and at an edge that begin and end, in addition to a constant one.
 fn several_loads(model: &Model, damping: Damping) -> LinearModel {
     let n = model.dofs() as u32;
     let pulse = |from, to| Ramp::Pulse { from, to };
@@ -81,7 +81,7 @@ fn as_many_vectors_as_degrees_of_freedom_are_exact() {
     assert!(fact(&*integrator, "left_out") < 1e-8);
 }
 
-/// A damped body comes to rest under its loads where it would with all its modes, with a vector for each load alone.
+/// With one vector for each load, a damped body under loads comes to rest where it would with all its modes.
 #[test]
 fn the_static_part_is_exact_with_one_vector_for_each_load() {
     let model = scene(6, 0.1, LAW, mass_damping(0.0));
@@ -105,8 +105,8 @@ fn the_static_part_is_exact_with_one_vector_for_each_load() {
     assert!(error < 1e-9, "{error:e}");
 }
 
-/// Cubes of which nothing damps the motion, or the masses do, over eight of their slowest periods: twelve vectors of
-/// each kind, and what is said before the run, which is within a factor of 1.5 of what is found.
+/// Cubes without damping and with mass damping, over eight of their slowest periods: twelve vectors of each kind, and
+/// the error estimated before the run, which is within a factor of 1.5 of the actual one.
 #[test]
 fn twelve_ritz_vectors_beat_twelve_modes_and_say_their_error() {
     let cases = [scene(10, 0.1, LAW, mass_damping(0.0)), cube(7)];

@@ -76,7 +76,7 @@ fn worst_residual(system: &dyn LinearSystem, modal: &Frame<Modal>) -> f64 {
     worst
 }
 
-/// Displacements at so many instants.
+/// Displacements at `instants` instants.
 fn motion(
     system: &dyn System,
     integrator: &mut dyn Integrator,
@@ -193,7 +193,7 @@ fn what_the_loads_do_not_excite_is_not_taken() {
     }
 }
 
-/// Nothing but the first state excites any mode: the slowest are taken.
+/// Only the initial state excites modes: the slowest ones are taken.
 #[test]
 fn a_chain_without_loads_swings_freely() {
     let system = chain(600, Damping::default(), vec![]);
@@ -207,7 +207,7 @@ fn a_chain_without_loads_swings_freely() {
     assert!(error < 1e-8, "{error:e}");
 }
 
-/// Lowest angular frequencies (rad/s) of the cube held at its sides.
+/// Lowest angular frequencies (rad/s) of the cube fixed at its sides.
 #[test]
 fn frequencies_of_the_cube() {
     for (law, expected) in [
@@ -234,7 +234,7 @@ fn frequencies_of_the_cube() {
     assert!((lowest / (2.0 * PI) - 7.27).abs() <= 0.005, "{lowest}");
 }
 
-/// 4.4 %: a hundred modes of all that the load excites. Bundles of fast modes do better.
+/// An error of 4.4 % with a hundred of all modes that the load excites. Groups of fast modes do better.
 #[test]
 fn a_hundred_modes_of_the_peers_cube() {
     let (error, modal) = peers_error(&modes(100.0).with_number("basis", 800.0));
@@ -414,7 +414,7 @@ fn a_pulse_within_a_step_is_two_steps() {
     assert!((state.v[0] - (on.1 - off.1)).abs() < 1e-12);
 }
 
-/// Nothing holds the body: six motions without stiffness, and Newton's law for the whole.
+/// A body without supports: six motions without stiffness, and Newton's law for the whole.
 #[test]
 fn a_floating_body_flies() {
     let traction = LoadKind::Traction([3.0, 0.0, -10.0]);
@@ -456,7 +456,7 @@ fn a_floating_body_flies() {
     assert!(error < 0.01, "{error}");
 }
 
-/// Components that are held are no motions without stiffness.
+/// Fixed components are no motions without stiffness.
 #[test]
 fn held_components_are_no_modes() {
     let supports = [

@@ -1,4 +1,4 @@
-//! `propagator`: undamped motions do not grow, whatever the tolerance, the step and the number of steps.
+//! `propagator`: undamped motions do not grow, for any tolerance, step and number of steps.
 
 use crate::common::cube::altered;
 use crate::common::exponential::exponentials;
@@ -14,7 +14,7 @@ use sinew_fem::{Fixed, Model, Problem};
 use sinew_mesh::structured::{self, Split};
 use sinew_testkit::body::bodies_up_to;
 
-/// The kinds of which each step is a contraction.
+/// The kinds whose steps are contractions.
 const KINDS: [&str; 2] = ["chebyshev", "krylov"];
 
 fn options(kind: &str, tolerance: f64) -> Options {
@@ -74,7 +74,7 @@ fn fact(integrator: &dyn Integrator, name: &str) -> f64 {
     facts.iter().find(|fact| fact.name == name).unwrap().value
 }
 
-/// Components in every mode.
+/// A state with components in every mode.
 fn scattered(system: &LinearModel) -> State {
     let limit = critical_step(system.operators());
     let value = |dof: usize, phase: f64| (dof as f64 * 1.7 + phase).sin();
@@ -106,8 +106,8 @@ fn a_raised_cube_gains_no_energy_at_any_tolerance() {
     }
 }
 
-/// The two-step form's velocity is a mean over a step, so that only the displacements can be compared:
-/// modes beat, but none swings wider and wider.
+/// The two-step form's velocity is a mean over a step, so that only the displacements can be compared: modes beat, but
+/// no amplitude keeps growing.
 #[test]
 fn the_two_step_form_swings_no_wider_at_the_end_than_at_the_beginning() {
     let (model, start) = raised_cube(2);
@@ -176,8 +176,7 @@ fn a_step_is_off_by_no_more_than_its_tolerance_says() {
     }
 }
 
-/// Loads that stay, under damping: where they balance the springs the body comes to rest, however loose
-/// the tolerance.
+/// Permanent loads with damping: the body comes to rest in equilibrium with the springs, for any tolerance.
 #[test]
 fn equilibria_are_exact_at_any_tolerance() {
     let (model, _) = raised_cube(2);
@@ -212,7 +211,8 @@ fn equilibria_are_exact_at_any_tolerance() {
     }
 }
 
-/// It drifts on at its speed, short of the exact way by less than the tolerance, and never gains energy.
+/// The body moves on at its speed; its error relative to the exact distance is less than the tolerance, and it never
+/// gains energy.
 #[test]
 fn a_body_that_is_not_held_drifts_on_and_gains_no_energy() {
     let (model, mut start) = cube_of_tissue(2, vec![]);

@@ -1,4 +1,4 @@
-//! `propagator` in two-step form, fitted to the loads: what is estimated is found, and no mode grows.
+//! `propagator` in two-step form, fitted to the loads: the error is as estimated, and no mode grows.
 
 use std::sync::Arc;
 
@@ -60,8 +60,8 @@ fn modes(squares: &[f64], forces: &[f64], alpha: f64) -> LinearModel {
     LinearModel::new(operators.unwrap())
 }
 
-/// Largest amplitude of any mode about its equilibrium in so many steps, over that of the exact motion, from a
-/// velocity alone and from a displacement alone.
+/// Largest amplitude of any mode about its equilibrium in `steps` steps, over that of the exact motion, from a velocity
+/// alone and from a displacement alone.
 fn largest_amplitude(system: &LinearModel, dt: f64, tolerance: f64, steps: usize) -> f64 {
     try_largest_amplitude(system, dt, tolerance, steps).unwrap()
 }
@@ -99,9 +99,9 @@ fn try_largest_amplitude(
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(32))]
 
-    /// However loosely it is fitted, to whichever of the modes, undamped, damped or creeping: no mode swings wider
-    /// than twice the exact motion, 2000 steps later too. What has no such fit is refused: one body in thousands, in
-    /// which motion dies within a step or the tolerance is tight.
+    /// For any tolerance and any fitted modes, undamped, damped or creeping: no amplitude of a mode is larger than
+    /// twice that of the exact motion, even 2000 steps later. Bodies without such a fit are refused: one body in
+    /// thousands, in which motion dies out within a step or the tolerance is tight.
     #[test]
     fn no_mode_of_a_random_spectrum_grows(
         squares in prop::collection::vec(1e-4..1.0, 1..40),
@@ -127,7 +127,7 @@ proptest! {
     }
 
     /// The displacements of bodies at random, under loads that jump, damped or creeping: with a fine fit they are
-    /// exact, so that first step, recurrence and jumps fit each other.
+    /// exact, which shows that first step, recurrence and jumps are consistent.
     #[test]
     fn random_bodies_move_as_their_matrix_exponential_says(
         body in bodies_up_to(1),
@@ -162,7 +162,7 @@ proptest! {
     }
 }
 
-/// Modes over the whole spectrum, of which the slowest alone is loaded, followed for a hundred thousand steps.
+/// Modes over the whole spectrum, of which only the slowest is loaded, followed for a hundred thousand steps.
 #[test]
 fn nothing_grows_in_a_hundred_thousand_steps() {
     let squares: Vec<f64> = (1..=25).map(|j| (f64::from(j) / 25.0).powi(2)).collect();
@@ -188,7 +188,7 @@ fn a_mode_that_creeps_does_not_overshoot() {
     assert!(found <= 2.0, "{found}");
 }
 
-/// A mode at each of 3000 places, the polynomial's double roots among them.
+/// Modes at each of 3000 eigenvalues, the polynomial's double roots among them.
 #[test]
 fn no_mode_grows_wherever_it_lies() {
     let squares: Vec<f64> = (1..=3000).map(|j| f64::from(j) / 3000.0).collect();
@@ -246,7 +246,7 @@ fn the_estimate_is_the_error_of_the_closed_form() {
     }
 }
 
-/// A body that nothing holds flies off at F t^2/(2 M).
+/// A body without supports moves by F t^2/(2 M).
 #[test]
 fn a_free_body_falls() {
     let model = cube(2);
@@ -299,7 +299,7 @@ fn a_uniform_fit_is_the_default() {
     );
 }
 
-/// Loads that excite other modes are fitted by another polynomial, with the same integrator too.
+/// Loads that excite other modes get another polynomial, also with the same integrator.
 #[test]
 fn other_loads_have_another_fit() {
     let squares: Vec<f64> = (1..=60).map(|j| f64::from(j) / 60.0).collect();

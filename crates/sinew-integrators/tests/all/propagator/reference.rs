@@ -1,4 +1,4 @@
-//! `propagator` against closed forms and dense matrix exponentials, and what it refuses.
+//! `propagator` against closed forms and dense matrix exponentials, and the inputs that it refuses.
 
 use std::sync::Arc;
 
@@ -85,7 +85,7 @@ fn every_ramp(dofs: usize, dt: f64, force: f64) -> Vec<Load> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
-    /// Under every ramp and every proportional damping, free bodies among them.
+    /// Motion under every ramp and every proportional damping, free bodies among them.
     #[test]
     fn random_networks_move_as_their_matrix_exponential_says(
         body in bodies_up_to(1),
@@ -145,8 +145,8 @@ fn the_oscillator_moves_as_its_closed_form_says() {
     }
 }
 
-/// Times add up to a little less or more than the instants they stand for: .1 eight times is less
-/// than .8. A jump there still belongs to the step that begins.
+/// Sums of times are a little less or more than the instants that they represent: .1 added eight times is less than .8.
+/// A jump there still belongs to the step that begins.
 #[test]
 fn loads_jump_at_steps_whatever_their_sum_rounds_to() {
     let operators = LinearOperators::oscillator(0.1, 100.0, 1.0).unwrap();

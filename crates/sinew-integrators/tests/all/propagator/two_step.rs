@@ -80,8 +80,8 @@ proptest! {
         prop_assert!(worst <= 1e-9 * size, "{worst:e} of {size:e}");
     }
 
-    /// However few sweeps a loose tolerance leaves, no mode grows: 1500 steps later the motion
-    /// is as large as at the beginning, or smaller.
+    /// With any loose tolerance, and thus few sweeps, no mode grows: 1500 steps later the motion is as large as at the
+    /// beginning, or smaller.
     #[test]
     fn no_tolerance_and_no_step_makes_it_unstable(
         body in bodies_up_to(1),
@@ -111,7 +111,7 @@ proptest! {
     }
 }
 
-/// The reproduction scene in steps of 20 ms: what the one-step form takes 1050 sweeps a second for.
+/// The reproduction scene in steps of 20 ms, for which the one-step form takes 1050 sweeps a second.
 #[test]
 fn half_the_sweeps_of_the_one_step_form() {
     let measure = |options: &Options| {
@@ -139,8 +139,8 @@ fn a_checkpoint_continues_to_the_same_bits() {
     assert_eq!(through, halves);
 }
 
-/// Another method goes on from the velocity at the displacement's time, which is good to second
-/// order in the step.
+/// Another method continues from the velocity at the displacement's time, which is accurate to second order in the
+/// step.
 #[test]
 fn another_method_can_go_on() {
     let model = cube(3);
@@ -229,7 +229,7 @@ fn modes(squares: &[f64]) -> LinearModel {
     LinearModel::new(operators.unwrap())
 }
 
-/// The largest amplitude of any mode within so many steps, over that of the exact motion.
+/// The largest amplitude of any mode within `steps` steps, over that of the exact motion.
 fn largest_amplitude(squares: &[f64], dt: f64, tolerance: f64, steps: usize) -> f64 {
     let system = modes(squares);
     let mut integrator = two_step(tolerance);
@@ -243,8 +243,8 @@ fn largest_amplitude(squares: &[f64], dt: f64, tolerance: f64, steps: usize) -> 
     largest / std::f64::consts::SQRT_2
 }
 
-/// Peaks of the polynomial that are nearly as high as the highest, and zeros that the sine has
-/// elsewhere: where a mode lies at one of them, it is stable and keeps its size all the same.
+/// Peaks of the polynomial that are nearly as high as the highest, and zeros that are not zeros of the sine: a mode at
+/// one of them is stable and keeps its amplitude.
 #[test]
 fn no_mode_grows_wherever_it_lies() {
     // Each was wrong by 1e17 and more after 1000 steps where one peak alone was looked at.

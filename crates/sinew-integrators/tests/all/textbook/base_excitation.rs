@@ -37,13 +37,13 @@ fn tower(law: Law, damping: Rayleigh, courses: Vec<Course>) -> Model {
     Model::build(&mesh, &problem).unwrap()
 }
 
-/// A way of the base over time, relative to [`WAY`].
+/// A path of the base over time, relative to [`WAY`].
 #[derive(Clone, Debug)]
 enum Way {
     Rise(f64),
     /// Times and values of straight lines.
     Lines(Vec<f64>, Vec<f64>),
-    /// At 1/s from t = 0 on.
+    /// Motion at 1/s from t = 0 on.
     Speed,
 }
 
@@ -81,7 +81,7 @@ struct Tower {
 }
 
 impl Tower {
-    /// Its numbers, from the one element's stiffness E h/6 and mass rho h^3/24, Poisson's ratio being 0.
+    /// Its parameters, from the stiffness of the single element E h/6 and mass rho h^3/24, Poisson's ratio being 0.
     fn elastic(youngs_modulus: f64, damping: Rayleigh) -> Self {
         let mass = DENSITY * EDGE.powi(3) / 24.0;
         let omega_squared = youngs_modulus * EDGE / 6.0 / mass;
@@ -92,7 +92,7 @@ impl Tower {
         }
     }
 
-    /// From (u, u') under `load` omega^2 after `t` (s).
+    /// (u, u') at time `t` (s), from the initial (u, u') under `load` omega^2.
     fn free(self, [u, v]: [f64; 2], load: f64, t: f64) -> [f64; 2] {
         let motion = DampedOscillator {
             omega: self.omega,
@@ -104,8 +104,8 @@ impl Tower {
         motion.at(t).into()
     }
 
-    /// (u, u') at `t` (s) over the way, from rest (textbooks on vibrations: support excitation, e.g. Clough and
-    /// Penzien, Dynamics of Structures, section 3-6).
+    /// (u, u') at `t` (s) of the motion along the path, from rest (textbooks on vibrations: support excitation, e.g.
+    /// Clough and Penzien, Dynamics of Structures, section 3-6).
     fn at(self, way: &Way, t: f64) -> [f64; 2] {
         let Self {
             omega,
@@ -153,7 +153,7 @@ impl Tower {
     }
 }
 
-/// Relative error of a method over the duration in `coarse` times `refinement` steps; `None` where it refuses the loads.
+/// Relative error of a method over the duration in `coarse` times `refinement` steps; `None` if it refuses the loads.
 fn error(
     (id, options): (&str, &Options),
     model: &Model,
@@ -181,7 +181,7 @@ fn error(
     Some((sum / size).sqrt())
 }
 
-/// The order that a method declares for a way, with stiffness damping or without; `None` for exact ones.
+/// The order that a method declares for a path, with stiffness damping or without; `None` for exact methods.
 fn declared(properties: &Properties, smooth: bool, damped: bool) -> Option<u8> {
     let order = |accuracy: Accuracy| accuracy.order(true);
     let loads = match properties.changing_loads {
@@ -278,7 +278,7 @@ fn every_method_follows_a_moving_base_at_its_order() {
     assert!(taken > 150, "{taken}");
 }
 
-/// A way is a load, or two with stiffness damping, of which Ritz vectors are made.
+/// A path is a load, or two with stiffness damping, from which Ritz vectors are computed.
 #[cfg(feature = "implicit")]
 #[test]
 fn ritz_vectors_follow_a_moving_base() {
@@ -335,7 +335,7 @@ fn dashpots_see_the_velocity_of_the_base() {
     assert_eq!(refusals, ["propagator", "modal"]);
 }
 
-/// A base that is moved as it happens is one whose table was known beforehand.
+/// A base that an input moves during the run moves like one whose table was known beforehand.
 #[test]
 fn a_base_moved_by_an_input_is_one_moved_by_its_table() {
     let damping = Rayleigh::new(0.0, 2e-3);

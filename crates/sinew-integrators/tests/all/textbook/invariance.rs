@@ -21,7 +21,7 @@ fn flat(rows: &Dense) -> Vec<f64> {
 /// Initial motion of a body, and the steps in which it is followed.
 #[derive(Clone, Copy)]
 struct Motion {
-    /// The largest first displacement; velocities are such that a step goes as far.
+    /// The largest first displacement; velocities are such that a step moves as far.
     u: f64,
     dt: f64,
     /// Q over the largest first velocity: below 1, some are saturated.
@@ -29,7 +29,7 @@ struct Motion {
 }
 
 impl Motion {
-    /// Within the stable step of a model.
+    /// A motion within the stable step of a model.
     fn of(model: &Model, share: f64) -> Self {
         let dt = 0.3 * fastest_time(model);
         Self { u: 1e-4, dt, share }

@@ -21,7 +21,7 @@ fn oscillator(ramp: Ramp) -> LinearModel {
     LinearModel::new(operators.with_loads(vec![load]).unwrap())
 }
 
-/// The displacement (m) after so many steps; `None` where the method refuses the load.
+/// The displacement (m) after `steps` steps; `None` if the method refuses the load.
 fn displacement(
     integrator: &mut dyn Integrator,
     system: &LinearModel,
@@ -84,7 +84,7 @@ fn a_pulse_and_a_table_after_a_million_steps_do_what_early_ones_do() {
     }
 }
 
-/// A method sees one of the two loads, its neighbours in the list the other.
+/// Each method receives one of the two loads, its neighbours in the list the other.
 #[test]
 fn what_comes_to_stay_is_there_after_a_million_steps() {
     let ramps = [Ramp::Step, Ramp::Sin2 { rise: 0.25 }].map(oscillator);

@@ -1,4 +1,4 @@
-//! Runs of bodies of which parts are moved, against textbook motions and exact ones.
+//! Runs of bodies with moved parts, compared with textbook motions and exact ones.
 
 use std::f64::consts::PI;
 
@@ -20,13 +20,13 @@ fn moved(on: impl Into<On>, axes: [bool; 3], displacement: [f64; 3], rise: f64) 
     Moving::new(on, [Course::new(displacement, ramp)]).along(axes)
 }
 
-/// A bar held at its bottom, 3 x 4 x 5 hexahedra.
+/// A bar fixed at its bottom, 3 x 4 x 5 hexahedra.
 fn bar(problem: &Problem) -> Model {
     let mesh = structured::block([3, 4, 5], SIZE, Split::Kuhn).unwrap();
     Model::build(&mesh, problem).unwrap()
 }
 
-/// A bar that is held along its whole length sideways and pulled at one end swings about its new length at c/(2 L):
+/// A bar that is fixed laterally along its whole length and pulled at one end vibrates about its new length at c/(2 L):
 /// Rayleigh, The Theory of Sound, section 150, both ends being given.
 #[test]
 fn a_pulled_bar_swings_at_its_first_axial_frequency() {
@@ -74,7 +74,7 @@ fn a_pulled_bar_swings_at_its_first_axial_frequency() {
     );
 }
 
-/// A body all of whose outside moves as one moves with it, undeformed.
+/// A body whose whole surface moves rigidly moves with it, undeformed.
 #[test]
 fn a_body_moved_at_its_whole_outside_stays_as_it_is() {
     let edge = 0.1;

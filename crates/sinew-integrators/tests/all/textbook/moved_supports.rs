@@ -30,8 +30,8 @@ struct Method {
     dt: f64,
 }
 
-/// All methods and their variants that take a body, with a step of `long` (s), or where they must follow the fastest motion, a quarter of
-/// what that allows. `small` is the body at small strain.
+/// All methods and their variants that support a body, with a step of `long` (s), or a quarter of the stable step for
+/// methods that must resolve the fastest motion. `small` is the body at small strain.
 fn methods(model: &Model, small: &Model, long: f64) -> Vec<Method> {
     let critical = 2.0 / Spectrum::of(small.operators()).omega_max;
     let mut methods = Vec::new();
@@ -67,7 +67,8 @@ fn methods(model: &Model, small: &Model, long: f64) -> Vec<Method> {
     methods
 }
 
-/// Steps of a body, each shown with its number, its time (s) and the forces (N) of supports at all nodes; none where a method refuses the motion.
+/// Steps of a body, each shown with its number, its time (s) and the forces (N) of supports at all nodes; none if a
+/// method refuses the motion.
 fn follow(
     method: &mut Method,
     model: &Model,
@@ -108,7 +109,7 @@ fn is_linear(model: &Model) -> bool {
     (model as &dyn System).as_linear().is_some()
 }
 
-/// Newton's first law, at steps beyond the fastest motion where a method takes them.
+/// Newton's first law, at steps beyond the fastest motion for methods that support them.
 #[test]
 fn a_body_and_its_clamp_at_one_speed_feel_no_force() {
     let size = [0.2, 0.05, 0.05];
@@ -158,8 +159,9 @@ fn a_body_and_its_clamp_at_one_speed_feel_no_force() {
     }
 }
 
-/// The stabilised network at these multiples of the step of central difference, on a block whose end moves as `course` says, with all of it at this velocity (m/s) first: the
-/// largest force (N) on the support in so many steps, from the third on.
+/// The stabilised network at these multiples of the step of central difference, on a block whose end moves as `course`
+/// describes; initially the whole block has this velocity (m/s). Returns the largest force (N) on the support in
+/// `steps` steps, from the third on.
 fn beyond_the_stable_step(
     (times, options): (f64, &Options),
     (stiffness, modulus): (f64, f64),
@@ -226,7 +228,8 @@ fn beyond_the_stable_step_the_stabilised_network_carries_what_supports_carry() {
     );
 }
 
-/// Few modes of a bar that is shaken slowly by its end, or glides with it, along all axes: the support feels the mass times the acceleration, with any number of modes and either kind of vectors.
+/// A bar with few modes that is slowly shaken at its end, or moves with it, along all axes: the support receives the
+/// mass times the acceleration, with any number of modes and both kinds of vectors.
 #[cfg(feature = "implicit")]
 #[test]
 fn few_modes_carry_what_supports_carry() {
@@ -283,7 +286,8 @@ fn few_modes_carry_what_supports_carry() {
     }
 }
 
-/// A bar that is stretched at one speed all over, held along its whole length sideways: there is no inertia, whatever the cells.
+/// A bar that is stretched at one speed everywhere and fixed laterally along its whole length: there is no inertia, for
+/// any mesh.
 #[test]
 fn a_bar_in_tension_pulls_by_its_law_whatever_the_cells() {
     let size = [0.2, 0.02, 0.02];
@@ -349,8 +353,8 @@ fn a_bar_in_tension_pulls_by_its_law_whatever_the_cells() {
     }
 }
 
-/// A block on a table that moves at a speed and gains more: the table pushes with the whole mass times the acceleration, its own nodes' share
-/// included, however its way is given.
+/// A block on a table that moves at a speed and accelerates: the table pushes with the whole mass times the
+/// acceleration, its own nodes' share included, for any description of its path.
 #[test]
 fn a_shaken_block_is_pushed_by_its_mass_times_the_acceleration() {
     let edge = 0.1;
@@ -421,8 +425,8 @@ fn a_shaken_block_is_pushed_by_its_mass_times_the_acceleration() {
     }
 }
 
-/// A small block on a table that gains speed along x, with damping that is stiff beside its inertia, held back from the start on as far as it hangs behind; with
-/// the model at small strain, and the table's acceleration (m/s^2).
+/// A small block on a table that accelerates along x, with stiff damping compared with its inertia, initially displaced
+/// backwards to its lag; with the model at small strain, and the table's acceleration (m/s^2).
 fn damped_block(law: fn(f64) -> Law) -> (Model, Model, State, impl Fn(f64) -> f64) {
     let mesh = structured::cube(2, 0.02, Split::Mirrored).unwrap();
     let (amplitude, rise, modulus) = (0.05, 0.4, 2e5);
@@ -447,7 +451,8 @@ fn damped_block(law: fn(f64) -> Law) -> (Model, Model, State, impl Fn(f64) -> f6
     (model(law(modulus)), small, start, acceleration)
 }
 
-/// Damping acts on no motion that all nodes share, so whatever a method sets beside whose speed, the forces add up to mass times acceleration.
+/// Damping acts on no motion that all nodes share, so for any velocities that a method combines, the forces add up to
+/// mass times acceleration.
 #[test]
 fn a_shaken_block_with_damping_is_pushed_by_its_mass_times_the_acceleration() {
     let laws: [fn(f64) -> Law; 2] = [|modulus| linear(modulus, 0.3), neo_hookean];
@@ -477,8 +482,9 @@ fn neo_hookean(modulus: f64) -> Law {
     Law::hyperelastic("neo-hookean", Parameters::new(modulus, 0.3))
 }
 
-/// Newton's second law for the motion that a first-order method makes, to its last digits: a table pushes with the force that changes the momentum of the nodes which move by
-/// themselves in the step that takes the forces of a state, the next one or the last, and with what its own nodes need.
+/// Newton's second law for the motion of a first-order method, to its last digits: a table pushes with the force that
+/// changes the momentum of the free nodes in the step that takes the forces of a state, the next one or the last, and
+/// with the force for its own nodes.
 #[test]
 fn a_damped_block_is_pushed_by_what_its_methods_own_step_gains_of_momentum() {
     let converged = Options::new().with_number("sweeps", 400.0);
@@ -524,7 +530,8 @@ fn a_damped_block_is_pushed_by_what_its_methods_own_step_gains_of_momentum() {
     }
 }
 
-/// At small strain every law is the linear one, also where a damped body is jerked: a support's change of speed reaches it whole, on steps and between them.
+/// At small strain every law equals the linear one, also for a damped body whose support jumps in speed: the body
+/// receives the whole change of speed, on steps and between them.
 #[test]
 fn jerks_of_a_support_reach_a_damped_body_by_every_law_as_by_the_linear_one() {
     let mesh = structured::cube(2, 0.1, Split::Mirrored).unwrap();

@@ -1,4 +1,4 @@
-//! The energy that methods take by themselves: what is missing from the balance of a step.
+//! The energy that methods dissipate numerically: the residual of the balance of a step.
 
 use crate::common::cube::{altered, mass_damping, scene, springs};
 use sinew_core::{
@@ -22,8 +22,8 @@ fn body(ramp: Ramp) -> LinearModel {
     altered(&model, damping, loads)
 }
 
-/// The largest difference, over some steps, of the energy that is missing from the one that is said to be taken, over
-/// the energy at first; and the latter's sum over it.
+/// The largest difference, over some steps, between the energy missing from the balance and the stated dissipation,
+/// over the initial energy; and the sum of the latter over the initial energy.
 fn missing(id: &str, options: &Options, ramp: &Ramp) -> [f64; 2] {
     let dt = 0.004;
     let model = body(ramp.clone());
@@ -80,7 +80,7 @@ fn missing(id: &str, options: &Options, ramp: &Ramp) -> [f64; 2] {
     [worst, sum]
 }
 
-/// Newmark (beta, gamma) and generalised alpha, also where their parameters are no sensible choice.
+/// Newmark (beta, gamma) and generalised alpha, also with parameters that are no sensible choice.
 fn cases() -> Vec<(&'static str, Options)> {
     let of = |pairs: &[(&str, f64)]| {
         pairs.iter().fold(Options::new(), |options, (key, value)| {
@@ -110,7 +110,7 @@ fn what_is_missing_from_the_balance_of_a_step_is_the_closed_form() {
 }
 
 /// Mean acceleration (Hughes, The Finite Element Method, 9.2) and the midpoint rule, which generalised alpha is for a
-/// spectral radius of 1, take nothing.
+/// spectral radius of 1, dissipate nothing.
 #[test]
 fn mean_acceleration_takes_nothing() {
     for (id, options) in [

@@ -10,7 +10,7 @@ use sinew_mesh::structured::{Split, cube};
 
 pub(crate) const TISSUE: Law = Law::linear(3500.0, 0.45);
 
-/// A cube of `cells` cells along each edge, held at its sides.
+/// A cube of `cells` cells along each edge, fixed at its sides.
 pub(crate) fn held_cube(cells: usize, split: Split) -> Model {
     body(&cube(cells, 0.1, split).unwrap(), "sides")
 }

@@ -11,7 +11,7 @@ pub(crate) struct Dense<'a, T> {
 }
 
 impl<'a, T: Precision> Dense<'a, T> {
-    /// The vectors as a test begins with them.
+    /// The vectors at the beginning of a test.
     pub(crate) fn of(case: &'a Case<T>) -> Self {
         let layers = 0..case.layers;
         let cell = |field, cell| {
@@ -25,7 +25,7 @@ impl<'a, T: Precision> Dense<'a, T> {
         Self { case, values }
     }
 
-    /// Makes a sweep; returns how many values a clamp reached.
+    /// Runs a sweep; returns the number of values that a clamp bounded.
     pub(crate) fn sweep(&mut self, map: &CellMap<T>) -> u64 {
         let q: Vec<Vec<f64>> = (0..self.case.cells())
             .map(|cell| self.q(map, cell))

@@ -20,13 +20,13 @@ pub(crate) fn scattered(index: usize) -> f64 {
 /// A layout of rows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
-    /// Every row by itself, with entries of its own, of a graph without a lattice.
+    /// Every row stored separately with its own entries, of a graph without a lattice.
     General,
-    /// Templates: one for each way in which cells lie at the border.
+    /// Templates: one for each position of cells relative to the border.
     Border,
     /// Templates that rows at the border share with those inside.
     Merged,
-    /// The same with a cut between cells, whose rows lack neighbours where other cells are.
+    /// The same with a cut between cells: their rows lack neighbours although those cells exist.
     Cut,
 }
 
@@ -164,7 +164,7 @@ impl<T: Precision> Case<T> {
         }
     }
 
-    /// Number of templates, where there are any.
+    /// Number of templates, if any.
     pub(crate) fn templates(&self) -> Option<usize> {
         match &self.rows[0] {
             Rows::General(_) => None,
@@ -217,7 +217,7 @@ impl<T: Precision> Case<T> {
         Fields::new(self.fields(), self.layers, self.positions(), self.reach)
     }
 
-    /// All vectors as a test begins with them.
+    /// All vectors at the beginning of a test.
     pub(crate) fn filled(&self) -> Fields<T> {
         let mut fields = self.zero();
         for field in 0..self.fields() {
