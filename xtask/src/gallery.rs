@@ -16,17 +16,16 @@ const SCENES: &str = "scenes/ready";
 const PICTURES: &str = "docs/book/src/gallery";
 /// Size of a picture (pixels).
 const SIZE: &str = "720x405";
-/// Scenes whose motion is visible without colours; the others are coloured by their displacement.
-const TISSUE: [&str; 9] = [
-    "artery",
-    "handle",
-    "incision",
-    "layers",
-    "muscle",
-    "needle-push",
-    "press",
-    "retract",
-    "slit",
+/// Colours of scenes that are not coloured by their displacement.
+const COLOURS: [(&str, &str); 8] = [
+    ("artery", "stress"),
+    ("handle", "tissue"),
+    ("incision", "stress"),
+    ("layers", "tissue"),
+    ("needle-push", "tissue"),
+    ("press", "tissue"),
+    ("retract", "tissue"),
+    ("slit", "stress"),
 ];
 /// Scene of the README's film, and the film.
 const FILM: (&str, &str) = ("retract", "docs/film.png");
@@ -51,10 +50,8 @@ pub(crate) fn run() -> Result<(), Failure> {
         let at = instant(&folder)?;
         let picture = shown(&root().join(PICTURES).join(format!("{name}.png")));
         let film = ["film", &shown(&folder), "--force", "--out"];
-        let colour = match TISSUE.contains(&&*name) {
-            true => "tissue",
-            false => "displacement",
-        };
+        let own = COLOURS.iter().find(|(scene, _)| *scene == name);
+        let colour = own.map_or("displacement", |(_, colour)| colour);
         let options = [&picture, "--at", &at, "--size", SIZE, "--colour", colour];
         call(&sinew, &[&film[..], &options].concat())?;
         if name == FILM.0 {

@@ -24,7 +24,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let is_settled = RunFolder::settle(&arguments.folder)?;
     let (folder, scene) = RunFolder::reopen(&arguments.folder)?;
     if is_settled || folder.is_finished()? {
-        complain("the run in it has come to its end: there is nothing to go on with");
+        complain("the run in it has ended: there is nothing to continue");
         return Ok(());
     }
     limit_memory(&scene);

@@ -130,7 +130,7 @@ fn fifty_kills_cost_no_byte() {
     assert_eq!(hidden.count(), 0);
     let (code, said) = folder.says(&["resume", "killed"]);
     assert_eq!(code, Some(0));
-    assert!(said.contains("has come to its end"), "{said}");
+    assert!(said.contains("has ended"), "{said}");
 }
 
 /// Signals that this process ignores, a bit each from 1 on.
@@ -462,7 +462,7 @@ fn a_run_that_was_killed_when_all_was_written_is_complete() {
     fs::write(folder.path("out.old/.sinew-999999999-1.tmp"), "x").unwrap();
     let (code, said) = folder.says(&["resume", "out"]);
     assert_eq!(code, Some(0), "{said}");
-    assert!(said.contains("has come to its end"), "{said}");
+    assert!(said.contains("has ended"), "{said}");
     assert!(!folder.path("out.old").exists());
     let (code, said) = folder.says(&run);
     assert_eq!(code, Some(0), "{said}");
