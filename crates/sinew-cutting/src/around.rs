@@ -2,31 +2,32 @@
 
 use crate::incidence::Incidence;
 
-/// The tetrahedra at nodes that may be near a blade, whose corners are places in one list of nodes: so that at each sheet those at nodes that are near now, and
-/// all of their nodes, are found in passes through short lists.
+/// The tetrahedra at nodes that may be near a blade, with corners as indices in one list of nodes. So for each sheet
+/// the tetrahedra at nodes that are currently near, and all of their nodes, are found in passes through short lists.
 #[derive(Default)]
 pub(crate) struct Around {
     pub(crate) is_known: bool,
     /// True if the tetrahedra at nodes near the blade were found.
     is_found: bool,
-    /// The nodes that may be near, and behind them the other corners.
+    /// The nodes that may be near, and after them the other corners.
     nodes: Vec<u32>,
     /// Number of the nodes that may be near.
     listed: usize,
     tets: Vec<u32>,
     corners: Vec<[u32; 4]>,
-    /// The take in which each tetrahedron of the body was listed, and their number.
+    /// The number of the call of [`Around::take`] in which each tetrahedron of the body was listed, and the number of
+    /// calls.
     of_tet: Vec<u32>,
     takes: u32,
-    /// The place of each node of the body among the nodes; of one that is none of them, any.
+    /// The index of each node of the body among the nodes; arbitrary for a node that is not among them.
     place_of: Vec<u32>,
-    /// One flag per node: true if it is near now.
+    /// One flag per node: true if it is currently near.
     is_near: Vec<bool>,
-    /// One flag per node: true if it is a corner of a tetrahedron at a node that is near now.
+    /// One flag per node: true if it is a corner of a tetrahedron at a node that is currently near.
     is_beside: Vec<bool>,
     /// The nodes that have this flag.
     beside: Vec<u32>,
-    /// The tetrahedra at nodes that are near now, and the nodes of each.
+    /// The tetrahedra at nodes that are currently near, and the nodes of each.
     at_near: Vec<(u32, [u32; 4])>,
 }
 
@@ -50,7 +51,7 @@ impl Around {
         }
     }
 
-    /// Takes the tetrahedra at these nodes of a body.
+    /// Lists the tetrahedra at these nodes of a body.
     pub(crate) fn take(
         &mut self,
         listed: impl Iterator<Item = u32>,
@@ -95,7 +96,7 @@ impl Around {
         self.is_beside.resize(self.nodes.len(), false);
     }
 
-    /// Finds the tetrahedra at nodes that are near now, and their corners.
+    /// Finds the tetrahedra at nodes that are currently near, and their corners.
     pub(crate) fn find(&mut self, is_near: impl Fn(u32) -> bool) {
         let mut are_same = self.is_found;
         for (flag, node) in self.is_near.iter_mut().zip(&self.nodes[..self.listed]) {

@@ -20,34 +20,34 @@ use sinew_mesh::vector::{Vector, bounds_of, length, sub};
 /// Marks the absence of a tetrahedron.
 pub(crate) const NONE: u32 = u32::MAX;
 
-/// A body of tetrahedra whose faces can be split and whose tetrahedra can be taken away.
+/// A body of tetrahedra whose faces can be split and whose tetrahedra can be removed.
 ///
 /// Tetrahedra keep their numbers, and nodes theirs; copies of nodes are appended. Space for [`spare_nodes`] of them is
 /// reserved at the beginning: until it is used up, strokes allocate nothing.
 pub struct CuttableBody {
     pub(crate) properties: Box<dyn TetProperties>,
-    /// Rest positions of the mesh's own nodes, as the mesh gave them.
+    /// Rest positions of the mesh's own nodes, as given by the mesh.
     pub(crate) first_places: Vec<Vector>,
     /// Shortest edge at each node of the mesh.
     pub(crate) edge_at: Vec<f64>,
     pub(crate) longest_edge: f64,
     /// The largest frequency of a tetrahedron of the mesh (1/s).
     pub(crate) largest_frequency: f64,
-    /// Places at rest.
+    /// Positions at rest.
     pub(crate) points: Vec<Vector>,
-    /// The node of the mesh that each node is, or is a copy of.
+    /// Node of the mesh for each node: the node itself, or the original of a copy.
     pub(crate) origins: Vec<u32>,
     /// One flag per node: true if it must not be moved at rest, because it is on a cut face, at a removed tetrahedron,
     /// or was fixed on request.
     pub(crate) is_kept: Vec<bool>,
     /// Nodes, increasing, whose rest positions are temporarily fixed.
     pub(crate) held: Vec<u32>,
-    /// The node that each one was copied from since this body was created or read back; itself if it is no copy made
+    /// The node that each one was copied from since this body was created or read back; itself if it is not a copy made
     /// since then.
     pub(crate) copied_from: Vec<u32>,
     pub(crate) tets: Vec<[u32; 4]>,
     pub(crate) is_removed: Vec<bool>,
-    /// The tetrahedron beyond the face opposite each vertex.
+    /// The tetrahedron on the other side of the face opposite each vertex.
     pub(crate) neighbours: Vec<[u32; 4]>,
     pub(crate) incidence: Incidence,
     pub(crate) marks: Marks,
@@ -58,7 +58,7 @@ pub struct CuttableBody {
     pub(crate) around: Around,
 }
 
-/// Lists that strokes use again.
+/// Buffers that strokes reuse.
 #[derive(Default)]
 pub(crate) struct Room {
     /// The last search in which each tetrahedron was seen.
@@ -74,7 +74,7 @@ pub(crate) struct Room {
     /// The last search in which each tetrahedron at such a node was listed.
     pub(crate) listed_in: Vec<u32>,
     pub(crate) nodes: SeenNodes,
-    /// Nodes that may be moved, with their distance from the sheet by their shortest edge.
+    /// Nodes that may be moved, with their distance from the sheet relative to their shortest edge.
     pub(crate) near: Vec<(f64, u32)>,
     /// Nodes of faces that were cut, each once.
     pub(crate) corners: Vec<u32>,
@@ -207,13 +207,13 @@ impl CuttableBody {
         self.held.sort_unstable();
     }
 
-    /// Number of nodes, copies and nodes that lost their last tetrahedron included.
+    /// Number of nodes, including copies and nodes without remaining tetrahedra.
     #[must_use]
     pub fn nodes(&self) -> usize {
         self.points.len()
     }
 
-    /// Places of the nodes at rest (m).
+    /// Positions of the nodes at rest (m).
     #[must_use]
     pub fn points(&self) -> &[[f64; 3]] {
         &self.points
@@ -231,13 +231,13 @@ impl CuttableBody {
         &self.is_removed
     }
 
-    /// The node of the mesh that each node is, or is a copy of.
+    /// Node of the mesh for each node: the node itself, or the original of a copy.
     #[must_use]
     pub fn origins(&self) -> &[u32] {
         &self.origins
     }
 
-    /// The node that a node was copied from; itself if this body has not made it as a copy.
+    /// The original of a node; the node itself if this body has not made it as a copy.
     #[must_use]
     pub fn copied_from(&self, node: u32) -> u32 {
         self.copied_from[node as usize]
@@ -249,7 +249,7 @@ impl CuttableBody {
         self.incidence.of(node)
     }
 
-    /// The tetrahedron beyond the face opposite a vertex (0 to 3); `None` at the surface and across cuts.
+    /// The tetrahedron on the other side of the face opposite a vertex (0 to 3); `None` at the surface and across cuts.
     #[must_use]
     pub fn neighbour(&self, tet: u32, vertex: usize) -> Option<u32> {
         let neighbour = self.neighbours[tet as usize][vertex];
@@ -273,8 +273,8 @@ impl CuttableBody {
         }
     }
 
-    /// The mesh of the current body, with the groups and the data of the uncut one, which must be the mesh that it
-    /// was made of.
+    /// The mesh of the current body, with the groups and the data of the uncut one, which must be the mesh from which
+    /// the body was made.
     #[must_use]
     pub fn mesh(&self, uncut: &TetMesh) -> CutMesh {
         uncut.after_cuts(self.as_cut())
@@ -298,7 +298,7 @@ impl CuttableBody {
         self.has_among(0..positions.len() as u32, [from, to], positions)
     }
 
-    /// True if a blade is inside the body, of whose nodes all that are near it are among these.
+    /// True if a blade is inside the body. These nodes must include all nodes of the body near the blade.
     pub(crate) fn has_among(
         &self,
         nodes: impl Iterator<Item = u32>,
@@ -314,7 +314,7 @@ impl CuttableBody {
         })
     }
 
-    /// The bound of a frequency (1/s) that each tetrahedron keeps: the mesh's largest.
+    /// The upper bound of the frequency (1/s) of all tetrahedra: the largest one of the mesh.
     #[must_use]
     pub fn largest_frequency(&self) -> f64 {
         self.largest_frequency

@@ -11,21 +11,21 @@ use crate::touch::Seeing;
 use crate::uncut::Uncut;
 use sinew_mesh::vector::{Vector, bounds_of, cross, length, sub};
 
-/// Passes over the tetrahedra that a sheet touches in which these may change sides.
+/// Number of passes in which the tetrahedra that a sheet touches may change sides.
 const SMOOTHING: usize = 2;
 
 impl CuttableBody {
     /// Cuts by a sheet in the current configuration, with these positions (m) of the nodes. Copies of nodes get the
     /// positions of their originals; nodes that are moved at rest onto the sheet get their new positions.
     ///
-    /// Nodes within a share `snap` of their shortest edge are moved first; 0 moves none. If the sheet begins at the
-    /// end of the last one, its beginning moves with the tissue since then, and nodes keep the sides on which the
-    /// blade passed them. A face is cut if it has tetrahedra on both sides, once the blade is over its centroid or
-    /// past its nodes, and has come through the tetrahedra next to it. So one that was entered in part stays whole
-    /// until a later stroke comes through; [`CuttableBody::lift`] forgets.
+    /// Nodes within a share `snap` of their shortest edge are moved first; 0 moves none. If the sheet begins at the end
+    /// of the last one, its beginning moves with the tissue since then, and nodes keep the sides on which the blade
+    /// passed them. A face is cut if the tetrahedra next to it are on different sides, as soon as the blade is over its
+    /// centroid or past its nodes and has passed through these tetrahedra. So a partly entered tetrahedron stays whole
+    /// until a later stroke passes through it; [`CuttableBody::lift`] resets this.
     ///
     /// # Errors
-    /// [`CutError::Positions`] unless there is a position for each node; nothing is changed then.
+    /// [`CutError::Positions`] unless there is a position for each node; the body is then unchanged.
     pub fn stroke(
         &mut self,
         sheet: &Sheet,
@@ -36,8 +36,7 @@ impl CuttableBody {
     }
 
     /// Cuts the tissue that a blade, a segment, passes from one pose to the next, each given by its two ends (m), as
-    /// [`CuttableBody::stroke`] does by a sheet.
-    /// A blade that rests cuts the tissue that comes through it.
+    /// [`CuttableBody::stroke`] does by a sheet. A resting blade cuts the tissue that moves through it.
     ///
     /// # Errors
     /// Same as [`CuttableBody::stroke`].
@@ -114,18 +113,19 @@ impl CuttableBody {
         self.split(positions);
     }
 
-    /// Lifts the blade: the next stroke continues no tetrahedron that this one left partly cut. Returns the uncut
-    /// part, as [`CuttableBody::uncut`].
+    /// Lifts the blade: the next stroke continues no tetrahedron that this one left partly cut. Returns the uncut part,
+    /// see [`CuttableBody::uncut`].
     pub fn lift(&mut self) -> Option<Uncut> {
         let uncut = self.uncut();
         self.marks.clear();
         uncut
     }
 
-    /// Cuts faces, each given by a tetrahedron and the vertex (0 to 3) opposite. Faces of the surface stay what they are.
+    /// Cuts faces, each given by a tetrahedron and the vertex (0 to 3) opposite. Faces of the surface are ignored.
     ///
     /// # Errors
-    /// [`CutError::Positions`] unless there is a position for each node, and [`CutError::NoFace`] for a face that does not exist; nothing is changed then.
+    /// [`CutError::Positions`] unless there is a position for each node, and [`CutError::NoFace`] for a face that does
+    /// not exist; the body is then unchanged.
     pub fn cut_faces(
         &mut self,
         faces: impl IntoIterator<Item = (u32, usize)>,
@@ -166,8 +166,8 @@ impl CuttableBody {
         self.marks.set(tet, mark);
     }
 
-    /// Marks the edges of a tetrahedron as crossed whose ends the blade has passed on different sides: by their
-    /// positions when it passed them, not by the current ones.
+    /// Marks as crossed those edges of a tetrahedron whose ends the blade has passed on different sides. The positions
+    /// at the time of passing count, not the current ones.
     fn complete(&mut self, tet: u32, sheet: &Sheet) {
         let (beside, nodes) = (self.beside(tet), self.tets[tet as usize]);
         let flats = self.room.nodes.flats(nodes);
@@ -195,9 +195,9 @@ impl CuttableBody {
         self.marks.set(tet, mark);
     }
 
-    /// Lets a tetrahedron that the sheet divides change sides if the cut faces then lie nearer to the sheet. So
-    /// single ones do not come off as chips, and the cut is smoother than by the side of most of each tetrahedron
-    /// alone.
+    /// Moves a tetrahedron that the sheet divides to the other side if the cut faces are then nearer to the sheet. So
+    /// single tetrahedra are not separated as chips, and the cut is smoother than if the larger part of each
+    /// tetrahedron alone determined its side.
     fn smooth(&mut self, tet: u32, positions: &[Vector]) {
         let beside = self.beside(tet);
         let mut mark = self.marks.of(tet);
@@ -229,7 +229,7 @@ impl CuttableBody {
         }
     }
 
-    /// The side of a tetrahedron: that of its mark, or else of its current position.
+    /// The side of a tetrahedron: that of its mark, otherwise that of its current position.
     fn side_of(&self, tet: u32) -> i8 {
         match self.marks.of(tet).side {
             0 => self.beside(tet).side(),
@@ -275,7 +275,7 @@ impl CuttableBody {
             || nodes.all(|node| self.marks.has_passed(node))
     }
 
-    /// True if faces of a tetrahedron may be cut: the blade has come through it, or passes outside it.
+    /// True if faces of a tetrahedron may be cut: the blade has passed through it, or passes outside it.
     fn lets_through(&self, tet: u32) -> bool {
         let mark = self.marks.of(tet);
         if mark.is_crossed() {

@@ -7,16 +7,16 @@ use sinew_mesh::vector::{Vector, add, dot, scaled, sub};
 pub(crate) struct Drift {
     /// The first end of the blade.
     pub(crate) from: Vector,
-    /// The blade by its length squared.
+    /// The blade's vector over its length squared.
     pub(crate) along: Vector,
     /// The displacement of tissue at the first end.
     pub(crate) at_first: Vector,
-    /// The displacement of tissue at the last end less that.
+    /// The displacement of tissue at the last end minus that at the first.
     pub(crate) slope: Vector,
 }
 
 impl Drift {
-    /// The displacement of the tissue next to the blade, at a place before that motion.
+    /// The displacement of the tissue next to the blade, at a position before that motion.
     pub(crate) fn at(&self, before: Vector) -> Vector {
         let share = dot(sub(before, self.from), self.along);
         add(self.at_first, scaled(self.slope, share))

@@ -16,7 +16,7 @@ pub enum CutError {
         /// The tetrahedron.
         tet: usize,
     },
-    /// A face that no tetrahedron has.
+    /// A face that belongs to no tetrahedron.
     #[error(
         "face {vertex} of tetrahedron {tet} (0-based): there are {tets} tetrahedra, with faces 0 to 3"
     )]

@@ -3,7 +3,7 @@
 /// A point of tissue, projected onto the plane of a sheet along its normal.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Flat {
-    /// Its place in the plane, from the sheet's centre.
+    /// Its position in the plane, from the sheet's centre.
     pub(crate) place: [f64; 2],
     /// Displacement of the point in the plane since the blade was at the beginning of the sheet, relative to that of
     /// the beginning.

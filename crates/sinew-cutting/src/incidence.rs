@@ -2,8 +2,8 @@
 
 /// The tetrahedra at each node, increasing.
 ///
-/// Cuts only take tetrahedra away from nodes, or divide them among a node and its copies: so the list of a node has
-/// space for all of its copies' lists as well, and nothing moves.
+/// Cuts only remove tetrahedra from nodes, or divide them among a node and its copies. So the list of a node has space
+/// for the lists of all its copies as well, and no data is moved.
 #[derive(Clone, Debug)]
 pub(crate) struct Incidence {
     starts: Vec<u32>,
@@ -60,7 +60,7 @@ impl Incidence {
         start as usize..(start + count) as usize
     }
 
-    /// Takes a tetrahedron away from a node.
+    /// Removes a tetrahedron from a node.
     pub(crate) fn remove(&mut self, node: u32, tet: u32) {
         let range = self.range(node);
         let tets = &mut self.tets[range];
@@ -70,8 +70,8 @@ impl Incidence {
         }
     }
 
-    /// Divides the tetrahedra of a node by the group of each, group 0 staying with the node and each further one becoming a new
-    /// node, numbered on from the last. Each group keeps its order.
+    /// Divides the tetrahedra of a node by the group of each, where group 0 stays with the node and each further group
+    /// becomes a new node, numbered after the last one. Each group keeps its order.
     pub(crate) fn divide(&mut self, node: u32, groups: u32, group_of: impl Fn(u32) -> u32) {
         let range = self.range(node);
         self.tets[range.clone()].sort_unstable_by_key(|tet| (group_of(*tet), *tet));

@@ -1,10 +1,10 @@
 //! Cuts through bodies of tetrahedra.
 //!
-//! A blade, a segment, sweeps a [`Sheet`] from one pose to the next through tissue that may move meanwhile. [`CuttableBody::stroke`] moves nodes near
-//! it onto it, cuts the faces that are nearest to it, and splits their nodes (Nienhuys and van der Stappen, A surgery simulation
-//! supporting cuts and finite element deformation, MICCAI 2001). No tetrahedron is created, so mass is conserved, and
-//! no stable step falls below the bound of the single tetrahedra. [`CuttableBody::remove`] removes tetrahedra with
-//! their mass.
+//! A blade, a segment, sweeps a [`Sheet`] from one pose to the next through tissue that may move at the same time.
+//! [`CuttableBody::stroke`] moves nodes near it onto it, cuts the faces that are nearest to it, and splits their nodes
+//! (Nienhuys and van der Stappen, A surgery simulation supporting cuts and finite element deformation, MICCAI 2001). No
+//! tetrahedron is created, so mass is conserved, and no stable step falls below the bound of the single tetrahedra.
+//! [`CuttableBody::remove`] removes tetrahedra with their mass.
 //!
 //! ```
 //! use sinew_cutting::{CuttableBody, Sheet, TetProperties};

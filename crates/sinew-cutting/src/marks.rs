@@ -3,13 +3,13 @@
 use crate::course::Course;
 use crate::tet::EDGES;
 
-/// Progress of the blade through one tetrahedron since the blade was set on.
+/// Progress of the blade through one tetrahedron since the blade was applied.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Mark {
-    /// Side on which the tetrahedron stays: -1 or 1; 0 before it was touched.
+    /// Side to which the tetrahedron belongs: -1 or 1; 0 before it is touched.
     pub(crate) side: i8,
-    /// Edges that were crossed, by their places.
+    /// Edges that were crossed, one bit each.
     edges: u8,
     /// Vertices that lie on the sheet.
     on_sheet: u8,
@@ -70,7 +70,7 @@ impl Mark {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) enum NodeSide {
-    /// Not settled: its current position counts.
+    /// The side is not determined: the current position counts.
     #[default]
     Open,
     OnSheet,
@@ -89,7 +89,7 @@ impl NodeSide {
     }
 }
 
-/// The marks of all tetrahedra since the blade was set on.
+/// The marks of all tetrahedra since the blade was applied.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Marks {
@@ -98,7 +98,7 @@ pub(crate) struct Marks {
     marked: Vec<u32>,
     /// Mean normal of the last sheets, at most 1 long.
     pub(crate) normal: Option<[f64; 3]>,
-    /// Direction across the blade in which it went last.
+    /// Direction across the blade in which it moved last.
     pub(crate) heading: Option<[f64; 3]>,
     pub(crate) course: Course,
     /// The side of each node.
@@ -136,7 +136,7 @@ impl Marks {
             && (self.places.is_empty() || self.places.len() == nodes)
     }
 
-    /// A copy with space for nodes to come.
+    /// A copy with space for further nodes.
     pub(crate) fn with_space(&self, spare: usize) -> Self {
         let nodes = self.sides.len();
         let mut marks = Self::new(nodes, self.of.len(), spare);
@@ -153,7 +153,8 @@ impl Marks {
         self.sides[node as usize]
     }
 
-    /// The side of a node for the current stroke, by an edge of it that was crossed, or else as the blade passed it.
+    /// The side of a node for the current stroke: from an edge of the node that was crossed, otherwise from the time at
+    /// which the blade passed it.
     pub(crate) fn known_side(&self, node: u32) -> NodeSide {
         match self.sides[node as usize] {
             NodeSide::Open => self.passed[node as usize],
@@ -176,12 +177,12 @@ impl Marks {
         is_first
     }
 
-    /// Forgets which nodes the blade has passed.
+    /// Clears the list of nodes that the blade has passed.
     pub(crate) fn forget_passed(&mut self) {
         self.passed.fill(NodeSide::default());
     }
 
-    /// Settles the side of a node at this distance from the sheet, unless it is.
+    /// Determines the side of a node at this distance from the sheet, unless it is determined already.
     pub(crate) fn settle_node(&mut self, node: u32, distance: f64) {
         let side = &mut self.sides[node as usize];
         if *side == NodeSide::Open {
@@ -197,26 +198,27 @@ impl Marks {
         }
     }
 
-    /// Keeps where the nodes are, copies included, for the next sheet.
+    /// Stores the positions of the nodes, copies included, for the next sheet.
     pub(crate) fn keep_places(&mut self, places: &[[f64; 3]]) {
         self.places.clear();
         self.places.extend_from_slice(places);
     }
 
-    /// Forgets where tissue was and where the blade headed, as one begins that has not come from where the last sheet ended.
+    /// Discards the positions of tissue and the direction of the blade, for a sheet that does not begin at the end of
+    /// the last one.
     pub(crate) fn start_anew(&mut self) {
         self.heading = None;
         self.places.clear();
     }
 
-    /// Records the place (m) to which a node was moved, so that this does not count as motion of tissue.
+    /// Records the position (m) to which a node was moved, so that this does not count as motion of tissue.
     pub(crate) fn set_place(&mut self, node: u32, place: [f64; 3]) {
         if let Some(before) = self.places.get_mut(node as usize) {
             *before = place;
         }
     }
 
-    /// Adds a node at the place of another one.
+    /// Adds a node at the position of another one.
     pub(crate) fn copy_node(&mut self, node: u32) {
         self.sides.push(self.sides[node as usize]);
         self.passed.push(self.passed[node as usize]);

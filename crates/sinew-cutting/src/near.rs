@@ -5,24 +5,25 @@ use sinew_mesh::vector::Vector;
 /// Share of the longest edge by which the blade, and each node along each axis, may move before the list is rebuilt.
 const ROOM: f64 = 0.25;
 
-/// Factor by which the list is made larger, so that rounding loses no node.
+/// Safety factor of the list's range, so that no node is lost by rounding.
 const MARGIN: f64 = 1.01;
 
-/// The nodes that may be within an edge of a blade, as long as it stays within a box and no node has gone far since they were found.
+/// The nodes that may be within an edge of a blade, as long as it stays within a box and no node has moved far since
+/// they were found.
 ///
-/// A cache: it follows from the positions of the nodes alone and changes no result, so it can be dropped and rebuilt
-/// at any time.
+/// It is a cache: it follows from the positions of the nodes alone and changes no result, so it can be discarded and
+/// rebuilt at any time.
 #[derive(Default)]
 pub(crate) struct NearNodes {
     /// The box (m) within which the blade must stay; `None` if nothing is known.
     within: Option<[Vector; 2]>,
-    /// Increasing.
+    /// The nodes, increasing.
     nodes: Vec<u32>,
     /// Positions (m) of all nodes when the list was built.
     places: Vec<Vector>,
-    /// The displacement (m) along each axis that each node may have made since.
+    /// The displacement (m) along each axis that is allowed for each node since then.
     room: f64,
-    /// True if no node was farther away than that from its place at the last sheet.
+    /// True if no node was farther than that from its position at the last sheet.
     knows_last: bool,
 }
 
@@ -54,7 +55,7 @@ impl NearNodes {
         }
     }
 
-    /// Forgets them: nodes were moved at rest, or are others.
+    /// Discards the list, because nodes were moved at rest or have changed.
     pub(crate) fn forget(&mut self) {
         self.within = None;
     }
@@ -96,7 +97,7 @@ impl NearNodes {
         true
     }
 
-    /// True if it knows which of `count` nodes may be within an edge of a box.
+    /// True if the list is valid for `count` nodes and this box: it contains all nodes within an edge of the box.
     pub(crate) fn knows(&self, near: [Vector; 2], count: usize) -> bool {
         self.holds(near) && self.places.len() == count
     }
@@ -129,7 +130,7 @@ impl NearNodes {
     }
 }
 
-/// True if both lists have the same length and no two places differ by more than `room` along any axis.
+/// True if both lists have the same length and no two positions differ by more than `room` along any axis.
 fn is_within(room: f64, places: &[Vector], others: &[Vector]) -> bool {
     // Without a branch, so that several are compared at a time: this is done at each sheet.
     let pairs = places.as_flattened().iter().zip(others.as_flattened());
@@ -156,7 +157,7 @@ mod tests {
         std::array::from_fn(|_| random(seed))
     }
 
-    /// The nodes that may come within an edge of a box between their places `from` and `to`.
+    /// The nodes that may come within an edge of a box between their positions `from` and `to`.
     fn all_near([low, high]: [Vector; 2], from: &[Vector], to: &[Vector]) -> Vec<u32> {
         let nodes = (0..).zip(from.iter().zip(to));
         let near = nodes.filter(|(_, (from, to))| {

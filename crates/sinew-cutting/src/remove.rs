@@ -11,7 +11,7 @@ impl CuttableBody {
     /// is no longer used.
     ///
     /// # Errors
-    /// [`CutError::Positions`] unless there is a position for each node; nothing is changed then.
+    /// [`CutError::Positions`] unless there is a position for each node; the body is then unchanged.
     pub fn remove(
         &mut self,
         mut is_inside: impl FnMut([f64; 3]) -> bool,
@@ -28,7 +28,7 @@ impl CuttableBody {
         Ok(self.take_away(removal, positions))
     }
 
-    /// Removes the tetrahedra (0-based) that `is_gone` names, as [`CuttableBody::remove`].
+    /// Removes the tetrahedra (0-based) for which `is_gone` is true, otherwise the same as [`CuttableBody::remove`].
     ///
     /// # Errors
     /// Same as [`CuttableBody::remove`].
@@ -54,7 +54,7 @@ impl CuttableBody {
         removal
     }
 
-    /// Takes the tetrahedra of a removal away.
+    /// Removes the tetrahedra of a removal.
     fn take_away(&mut self, mut removal: Removal, positions: &mut Vec<[f64; 3]>) -> &Removal {
         self.near.forget();
         for tet in removal.tets.iter().copied() {

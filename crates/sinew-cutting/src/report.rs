@@ -12,7 +12,7 @@ pub struct Stroke {
     /// Mass (kg) added by moved nodes: only rounding, except for nodes of a curved surface and in regions of varying
     /// density.
     pub mass_gained: f64,
-    /// Nodes that were moved at rest onto the sheet, in this order.
+    /// Nodes that were moved at rest onto the sheet, in the order of the moves.
     pub moved: Vec<MovedNode>,
     /// The original of each new node; the new ones follow the last node in this order.
     pub copied: Vec<u32>,
@@ -23,11 +23,11 @@ pub struct Stroke {
 /// Changes made by a removal of tetrahedra.
 #[derive(Clone, Debug, Default)]
 pub struct Removal {
-    /// The tetrahedra that are gone, increasing.
+    /// The removed tetrahedra, increasing.
     pub tets: Vec<u32>,
     /// Their mass (kg).
     pub mass: f64,
-    /// The node that each new node is a copy of: parts that hung together at a node or an edge only come apart.
+    /// The original of each new node: parts that were joined at a node or an edge only are separated.
     pub copied: Vec<u32>,
 }
 

@@ -5,7 +5,7 @@ use crate::tet::EDGES;
 use crate::uncut::CHIP;
 use sinew_mesh::vector::{Vector, add, dot, length, mean, scaled, sub};
 
-/// Share of an edge by which a stroke that enters the body is more than touch.
+/// Share of an edge: a stroke that enters the body by less counts as a touch.
 const TOUCH: f64 = 1e-6;
 
 /// Small pieces that a stroke cut off and touched in all their tetrahedra, apart from the pieces that it separated.
@@ -16,12 +16,12 @@ pub struct Chips {
     pub count: usize,
     /// Tetrahedra of the largest one.
     pub tets: usize,
-    /// The middle of the first one (m), where the body lay at the last sheet.
+    /// The middle of the first one (m), in the configuration at the last sheet.
     pub place: Vector,
 }
 
 impl Chips {
-    /// Both of two, at the place of this one.
+    /// The sum of both, at the position of this one.
     #[must_use]
     pub fn and(self, other: Self) -> Self {
         Self {
@@ -42,12 +42,12 @@ pub struct Missed {
     pub depth: Option<f64>,
     /// The longest edge (m) at rest of the tetrahedra that it entered.
     pub edge: f64,
-    /// Their middle (m), where the body lay at the last sheet.
+    /// Their middle (m), in the configuration at the last sheet.
     pub place: Vector,
 }
 
 impl Missed {
-    /// Both of two, of which this was the first.
+    /// The sum of both, of which this was the first.
     #[must_use]
     pub fn and(self, other: Self) -> Self {
         Self {
@@ -118,7 +118,7 @@ impl CuttableBody {
         (0..self.tets.len() as u32).any(|tet| self.marks.of(tet).is_settled())
     }
 
-    /// The middle of tetrahedra, of which there is one at least, where the body lay at the last sheet.
+    /// The middle of at least one tetrahedron, in the configuration at the last sheet.
     fn middle(&self, tets: impl Iterator<Item = u32>) -> Vector {
         let place = |node: u32| self.marks.places[node as usize];
         let middles = tets.map(|tet| mean(self.tets[tet as usize].map(place)));

@@ -1,4 +1,4 @@
-//! A cut body apart from its process, from which it continues with the same bits.
+//! A saved cut body, from which another process continues with the same bits.
 
 use crate::body::CuttableBody;
 use crate::incidence::Incidence;
@@ -17,13 +17,13 @@ pub struct SavedBody {
     marks: Marks,
 }
 
-/// A refusal of the cuts of another body.
+/// The error for the cuts of another body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("these are not the cuts of this body")]
 pub struct SavedBodyError;
 
 impl CuttableBody {
-    /// Keeps the changes that cuts made to the body.
+    /// Saves the changes that cuts made to the body.
     #[must_use]
     pub fn save(&self) -> SavedBody {
         SavedBody {
@@ -37,10 +37,10 @@ impl CuttableBody {
         }
     }
 
-    /// Becomes the body that [`CuttableBody::save`] was called on, which was made of the same mesh.
+    /// Restores the body on which [`CuttableBody::save`] was called; that body was made from the same mesh.
     ///
     /// # Errors
-    /// [`SavedBodyError`] for another body; nothing is changed then.
+    /// [`SavedBodyError`] for another body; this body is then unchanged.
     pub fn restore(&mut self, saved: &SavedBody) -> Result<(), SavedBodyError> {
         let SavedBody {
             points,

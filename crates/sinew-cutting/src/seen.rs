@@ -55,12 +55,12 @@ impl SeenNodes {
         nodes.map(|node| self.flats[node as usize])
     }
 
-    /// The distance of a node from the plane, and its place in it.
+    /// The distance of a node from the plane, and its position in it.
     pub(crate) fn of(&self, node: u32) -> (f64, Flat) {
         (self.distances[node as usize], self.flats[node as usize])
     }
 
-    /// True if a node is seen for the first time in search number `look`.
+    /// True if a node is seen for the first time in the search with the number `look`.
     pub(crate) fn is_new(&mut self, node: u32, look: u32) -> bool {
         let is_new = std::mem::replace(&mut self.looks[node as usize], look) != look;
         if is_new {
@@ -104,7 +104,7 @@ impl SeenNodes {
         a & b & c & d == 0
     }
 
-    /// Sets a node's distance from the plane and its place in it.
+    /// Sets a node's distance from the plane and its position in it.
     pub(crate) fn set(&mut self, node: u32, distance: f64, flat: Flat) {
         self.distances[node as usize] = distance;
         self.flats[node as usize] = flat;

@@ -4,10 +4,11 @@ use crate::drift::Drift;
 use crate::flat::Flat;
 use sinew_mesh::vector::{Vector, add, bounds_of, cross, dot, length, mean, scaled, sub};
 
-/// Share of its size by which the rim of a sheet reaches out, so that nothing is lost between two that follow each other.
+/// Share of its size by which the rim of a sheet is extended, so that there is no gap between two consecutive sheets.
 const RIM: f64 = 1e-9;
 
-/// Share of its size by which the box around a sheet reaches out: beyond its rim, unless the sheet is narrower than this.
+/// Share of its size by which the box around a sheet is extended: beyond its rim, unless the sheet is narrower than
+/// this.
 const BOX_RIM: f64 = 1e-5;
 
 /// The quadrilateral that a blade, a segment, sweeps from one pose to the next, in its mean plane; two triangles if
@@ -19,12 +20,12 @@ pub struct Sheet {
     normal: Vector,
     /// Axes in the plane.
     axes: [Vector; 2],
-    /// The corners by these axes, from the centre.
+    /// The corners in these axes, from the centre.
     corners_flat: [[f64; 2]; 4],
     /// The box around them, rim included.
     flat_bounds: [[f64; 2]; 2],
     size: f64,
-    /// Motion of the tissue that carried the beginning of the sheet along.
+    /// Motion of the tissue with which the beginning of the sheet has moved.
     drift: Drift,
 }
 
@@ -69,12 +70,12 @@ impl Sheet {
         })
     }
 
-    /// The same sheet, whose beginning went with tissue.
+    /// The same sheet, whose beginning moved with tissue.
     pub(crate) fn with_drift(self, drift: Drift) -> Self {
         Self { drift, ..self }
     }
 
-    /// The displacement of the tissue next to the blade, at a place before that motion.
+    /// The displacement of the tissue next to the blade, at a position before that motion.
     pub(crate) fn drift_at(&self, before: Vector) -> Vector {
         self.drift.at(before)
     }
@@ -112,7 +113,7 @@ impl Sheet {
         dot(self.normal, sub(point, self.centre))
     }
 
-    /// The same sheet with its normal turned round.
+    /// The same sheet with its normal reversed.
     pub(crate) fn reversed(&self) -> Self {
         Self {
             normal: scaled(self.normal, -1.0),
@@ -120,7 +121,7 @@ impl Sheet {
         }
     }
 
-    /// A point of tissue in the sheet's plane, which has moved so far since the blade was where the sheet begins.
+    /// A point of tissue in the sheet's plane, with its displacement since the blade was at the beginning of the sheet.
     pub(crate) fn flat(&self, point: Vector, moved: Vector) -> Flat {
         let flat = |vector: Vector| self.axes.map(|axis| dot(axis, vector));
         let drift = self.drift.at(sub(point, moved));
@@ -130,7 +131,8 @@ impl Sheet {
         }
     }
 
-    /// The box in its plane outside of which nothing is passed, unless it has moved in the plane: the least and greatest coordinates.
+    /// The box in its plane that contains all passed points, except those that have moved in the plane: the least and
+    /// largest coordinates.
     pub(crate) fn flat_bounds(&self) -> [[f64; 2]; 2] {
         self.flat_bounds
     }
@@ -149,8 +151,8 @@ impl Sheet {
         })
     }
 
-    /// True if the blade passes a point. Relative to tissue that has moved, the blade began farther on by the same
-    /// amount. Without that, tissue that moves towards a blade would slip through between two sheets.
+    /// True if the blade passes a point. Relative to tissue that has moved, the beginning of the blade is displaced by
+    /// the same amount. Otherwise tissue that moves towards a blade would pass between two sheets.
     #[inline]
     pub(crate) fn passes(&self, point: Flat) -> bool {
         let Flat { place, shift } = point;
@@ -202,14 +204,15 @@ impl Sheet {
         turns.iter().all(|turn| turn * whole >= -room)
     }
 
-    /// The least and greatest coordinates of the sheet.
+    /// The least and largest coordinates of the sheet.
     pub(crate) fn bounds(&self) -> [Vector; 2] {
         bounds_of(self.corners)
     }
 }
 
-/// A normal of the surface swept by a blade whose ends move to opposite sides, as when it turns about its middle: the
-/// two halves count with one sign, since they would cancel otherwise. `None` if both ends move to one side.
+/// A normal of the surface swept by a blade whose ends move to opposite sides, for example when it turns about its
+/// middle. The two halves count with the same sign, since they would cancel otherwise. `None` if both ends move to the
+/// same side.
 fn turned_over(&[a, b, c, d]: &[Vector; 4]) -> Option<Vector> {
     let blade = scaled(add(sub(b, a), sub(c, d)), 0.5);
     let [of_first, of_second] = [sub(d, a), sub(c, b)].map(|way| cross(blade, way));

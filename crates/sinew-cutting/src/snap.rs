@@ -14,18 +14,18 @@ pub const FREQUENCY_GROWTH: f64 = 1.25;
 /// Minimum quality of a tetrahedron with a moved node, as a share of its quality in the mesh.
 const QUALITY: f64 = 0.3;
 
-/// Cosine of the angle beyond which two triangles of the surface belong to two faces of it.
+/// Cosine of the angle beyond which two triangles of the surface count as belonging to two faces of the surface.
 const SAME_FACE: f64 = 0.95;
 
 /// The directions in which a node may move at rest.
 enum Freedom {
-    /// All: it lies inside.
+    /// All directions: the node is inside.
     Space,
-    /// Directions in the plane normal to this unit normal of the surface.
+    /// Directions in the plane perpendicular to this unit normal of the surface.
     Face(Vector),
-    /// This unit vector along an edge of the surface.
+    /// The direction of this unit vector along an edge of the surface.
     Edge(Vector),
-    /// None: it is a corner of the surface.
+    /// No direction: the node is a corner of the surface.
     Corner,
 }
 
@@ -43,9 +43,9 @@ impl Freedom {
 
 impl CuttableBody {
     /// Moves nodes of crossed edges that are within a share `snap` of their shortest edge onto the sheet, nearest
-    /// first. The mesh moves through the tissue: each goes, at rest, to the point of tissue that lies on the sheet
-    /// now. Nodes of the surface stay in their face, and those of an earlier cut are not moved, because its two faces
-    /// fit each other, nor are fixed ones.
+    /// first. The mesh moves relative to the tissue: each node moves, at rest, to the point of tissue that is now on
+    /// the sheet. Nodes of the surface stay in their face. Nodes of an earlier cut are not moved, because its two faces
+    /// must match; fixed nodes are not moved either.
     pub(crate) fn snap(&mut self, sheet: &Sheet, positions: &mut [Vector], snap: f64) {
         let mut near = std::mem::take(&mut self.room.near);
         near.clear();
@@ -123,8 +123,9 @@ impl CuttableBody {
         }
     }
 
-    /// The shortest displacement of a node at rest, by a tetrahedron's current shape, onto the sheet: the least share
-    /// of the other vertices in the new place (below 0 outside the tetrahedron), the place, and the move.
+    /// The shortest displacement of a node at rest onto the sheet, from a tetrahedron's current shape: the least
+    /// barycentric coordinate of the new position for the other vertices (below 0 outside the tetrahedron), the
+    /// position, and the displacement.
     fn way(
         &self,
         node: u32,

@@ -3,13 +3,14 @@
 use crate::body::{CuttableBody, NONE};
 use crate::tet::FACES;
 
-/// Marks a tetrahedron of no group yet.
+/// Marks a tetrahedron without a group.
 const NO_GROUP: u32 = u32::MAX;
 
 impl CuttableBody {
-    /// Splits the nodes in `room.corners`: tetrahedra at a node that are joined through uncut faces there form a group; the group of
-    /// the lowest one keeps the node, and each further one gets a copy. So the front of a cut, where all are joined, stays whole.
-    /// The node copied is appended to `copied`, each tetrahedron with a copy to `changed`, and its position to `positions`.
+    /// Splits the nodes in `room.corners`: tetrahedra at a node that are joined through uncut faces there form a group;
+    /// the group of the lowest one keeps the node, and each further one gets a copy. So the front of a cut, at which
+    /// all are joined, stays whole. The original node is appended to `copied`, each tetrahedron with a copy to
+    /// `changed`, and its position to `positions`.
     pub(crate) fn split_corners(
         &mut self,
         positions: &mut Vec<[f64; 3]>,
@@ -54,7 +55,7 @@ impl CuttableBody {
         self.room.corners = corners;
     }
 
-    /// Gives each tetrahedron at a node its group; the number of groups.
+    /// Assigns a group to each tetrahedron at a node; returns the number of groups.
     fn group(&mut self, node: u32) -> u32 {
         let Self {
             room,

@@ -8,7 +8,7 @@ const FARTHEST: f64 = 1e6;
 /// A pose of a blade at a time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BladePose {
-    /// Number of the stroke: it changes when the blade was lifted.
+    /// Number of the stroke: it changes when the blade is lifted.
     pub stroke: f64,
     /// Time (s).
     pub t: f64,
@@ -16,7 +16,7 @@ pub struct BladePose {
     pub ends: [[f64; 3]; 2],
 }
 
-/// Reasons for which poses make no strokes. Rows count from 1.
+/// Reasons for which poses are not valid strokes. Rows count from 1.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum StrokesError {
@@ -58,7 +58,7 @@ pub enum StrokesError {
         /// Time of the row before (s).
         before: f64,
     },
-    /// A stroke of one pose.
+    /// A stroke with only one pose.
     #[error("row {row}: stroke {stroke} has this row only; a stroke needs two poses of the blade")]
     OnePose {
         /// The row.
@@ -66,7 +66,7 @@ pub enum StrokesError {
         /// Number of the stroke.
         stroke: f64,
     },
-    /// A stroke that comes again.
+    /// A stroke that appears again.
     #[error(
         "row {row}: stroke {stroke} already ended in an earlier row; give the new stroke another number"
     )]
@@ -97,12 +97,12 @@ impl StrokesError {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Strokes(Vec<BladePose>);
 
-/// Action of a blade within a time.
+/// Action of a blade within a time interval.
 #[derive(Clone, Copy, Debug)]
 pub enum BladeAct {
-    /// It is lifted, or set on again.
+    /// The blade is lifted, or applied again.
     Lift,
-    /// It moves from one pose to another, each given by both ends (m), or rests.
+    /// The blade moves from one pose to another, each given by both ends (m), or rests.
     Sweep([[[f64; 3]; 2]; 2]),
 }
 
@@ -149,9 +149,9 @@ impl Strokes {
         Ok(Self(poses))
     }
 
-    /// Actions of the blade after `from` and up to `to` (s), in order: a sweep for each straight line of which a part
-    /// falls into that time, and a lift if a stroke ends from `from` on. The sweeps and lifts of a time are the same
-    /// when it is cut at any instants and its parts are put together.
+    /// Actions of the blade after `from` and up to `to` (s), in order: a sweep for each straight line that overlaps
+    /// this time interval, and a lift if a stroke ends at or after `from`. The sweeps and lifts of an interval are the
+    /// same as those of its parts, for any division.
     pub fn between(&self, from: f64, to: f64) -> impl Iterator<Item = BladeAct> {
         let first = self
             .0
@@ -186,7 +186,8 @@ impl Strokes {
         })
     }
 
-    /// The time (s) from which on the blade is next in the middle of a stroke, or is lifted; `None` after the last stroke.
+    /// The next time (s), from `t` on, at which the blade is in the middle of a stroke, or is lifted; `None` after the
+    /// last stroke.
     #[must_use]
     pub fn next_from(&self, t: f64) -> Option<f64> {
         let end = self.0.partition_point(|pose| pose.t <= t).max(1);

@@ -5,7 +5,7 @@ use crate::drift::Drift;
 use crate::sheet::Sheet;
 use sinew_mesh::vector::{Vector, add, bounds_of, dot, length, scaled, sub};
 
-/// Share of the longest edge within which tissue counts in full for how it moves at a blade.
+/// Share of the longest edge within which tissue has full weight in the motion of tissue at a blade.
 const NEAR: f64 = 0.5;
 
 /// Cosine of the angle between the paths of both ends beyond which a sheet is warped too much.
@@ -30,8 +30,8 @@ impl Sums {
         self.share_moved = add(self.share_moved, scaled(moved, weight * share));
     }
 
-    /// The line of least squares: at share 0, and by how much more at share 1. Level if the shares spread by less
-    /// than `least`.
+    /// The line of least squares: the value at share 0, and the increase up to share 1. The line is constant if the
+    /// shares spread by less than `least`.
     fn line(&self, least: f64) -> [Vector; 2] {
         let mean = self.share / self.weight;
         let spread = self.square / self.weight - mean * mean;
@@ -48,9 +48,9 @@ impl Sums {
 
 impl CuttableBody {
     /// The sheet that a blade sweeps from one pose to the next through tissue that has moved to these positions since
-    /// the last sheet: its beginning moves with the tissue next to it, by the nearest nodes. So it begins in the
-    /// tissue where the last sheet ended, and a resting blade cuts tissue that moves through it. `None` if it has no
-    /// area.
+    /// the last sheet: its beginning moves with the tissue next to it, according to the nearest nodes. So it begins in
+    /// the tissue at the end of the last sheet, and a resting blade cuts tissue that moves through it. `None` if it has
+    /// no area.
     pub(crate) fn swept(
         &self,
         [before, after]: [[Vector; 2]; 2],
@@ -135,7 +135,7 @@ impl CuttableBody {
         Some(Sheet::swept(begin, end)?.with_drift(drift))
     }
 
-    /// Orients a sheet so that its sides match those of the sheets before.
+    /// Orients a sheet so that its sides match those of the previous sheets.
     pub(crate) fn turned_as_before(&mut self, sheet: &Sheet) -> Sheet {
         let Some(last) = self.marks.normal else {
             self.marks.normal = Some(sheet.normal());

@@ -2,7 +2,7 @@
 
 use sinew_mesh::vector::{Vector, cross, dot, scaled, sub};
 
-/// The nodes of each face, opposite the node of the same place; their normals point outwards if the volume is
+/// The nodes of each face, opposite the node with the same index; their normals point outwards if the volume is
 /// positive.
 pub(crate) const FACES: [[usize; 3]; 4] = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];
 

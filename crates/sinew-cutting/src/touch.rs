@@ -20,7 +20,7 @@ const AT_EDGE: f64 = 0.02;
 pub(crate) struct Beside(pub(crate) [f64; 4]);
 
 impl Beside {
-    /// The side on which most of it lies; 1 if both have as much.
+    /// The side with the larger part of it; 1 if both parts are equal.
     pub(crate) fn side(self) -> i8 {
         if self.0.iter().sum::<f64>() < 0.0 {
             -1
@@ -47,9 +47,9 @@ pub(crate) struct Seeing<'a> {
     turn: Option<Turn>,
 }
 
-/// The turn of a blade between two sheets, by which it may pass nodes that no sheet covers.
+/// The rotation of a blade between two sheets, in which it may pass nodes that no sheet covers.
 struct Turn {
-    /// The directions of its motion, last and current.
+    /// The directions of its motion, previous and current.
     last: Vector,
     now: Vector,
     /// The first end of the blade.
@@ -57,12 +57,12 @@ struct Turn {
     blade: Vector,
     /// The blade's length squared.
     squared: f64,
-    /// Distance (m) within which nodes are at its edge: sheets of different planes do not meet to the last digit.
+    /// Distance (m) within which nodes are at its edge: sheets of different planes do not match exactly.
     room: f64,
 }
 
 impl<'a> Seeing<'a> {
-    /// A view of the nodes by a sheet whose blade moved in direction `last` before.
+    /// A view of the nodes from a sheet whose blade moved in direction `last` before.
     pub(crate) fn new(sheet: &'a Sheet, last: Option<Vector>, longest_edge: f64) -> Self {
         let turn = |last: Vector| {
             let (now, [[first, end], _]) = (sheet.heading(), sheet.poses());
@@ -82,8 +82,8 @@ impl<'a> Seeing<'a> {
         }
     }
 
-    /// True if a node that lay ahead of the blade, at a place before the sheet, now lies behind it because the blade's direction has turned. Nodes on
-    /// the outer side of the turn do.
+    /// True if a node that was ahead of the blade, at a position before the sheet, is now behind it because the blade's
+    /// direction has turned. This happens on the outer side of the turn.
     fn passes_by_turn(&self, before: Vector) -> bool {
         let Some(Turn {
             last,
@@ -183,9 +183,9 @@ impl CuttableBody {
         }
     }
 
-    /// Settles, until the blade is lifted, the sides of nodes at edges of a tetrahedron that the sheet crosses, and of those on it. Tissue
-    /// moves while it is cut: a node that came to lie just beyond the sheet would else have one side for some of its edges and the
-    /// other for the rest.
+    /// Determines, until the blade is lifted, the sides of nodes at edges of a tetrahedron that the sheet crosses, and
+    /// of nodes on the sheet. Tissue moves while it is cut: otherwise a node that moves just beyond the sheet would
+    /// have one side for some of its edges and the other side for the rest.
     pub(crate) fn settle_nodes(&mut self, (tet, passed): (u32, Passed)) {
         let beside = self.beside(tet);
         let nodes = self.tets[tet as usize];
@@ -199,7 +199,8 @@ impl CuttableBody {
         }
     }
 
-    /// A test of places (m): true if a tetrahedron with a vertex there may reach into a box, unless it is stretched.
+    /// A test of positions (m): true if a tetrahedron with a vertex there may reach into a box, provided that it is not
+    /// stretched.
     pub(crate) fn is_near(&self, [low, high]: [Vector; 2]) -> impl Fn(&Vector) -> bool + use<> {
         let reach = self.longest_edge;
         let [low, high] = [
@@ -209,8 +210,9 @@ impl CuttableBody {
         move |place| (0..3).all(|axis| low[axis] <= place[axis] && place[axis] <= high[axis])
     }
 
-    /// Finds the tetrahedra that a sheet touches, increasing, into `room.touched`: from nodes near it, and from
-    /// neighbour to neighbour, so that extremely stretched tetrahedra are found if a chain of others leads to them.
+    /// Finds the tetrahedra that a sheet touches, increasing, into `room.touched`: starting at nodes near the sheet,
+    /// and then from neighbour to neighbour. So extremely stretched tetrahedra are found if a chain of others leads to
+    /// them.
     pub(crate) fn find_touched(&mut self, seeing: &Seeing<'_>, positions: &[Vector]) {
         self.room.start_look(positions.len());
         let bounds = seeing.sheet.bounds();
@@ -256,8 +258,8 @@ impl CuttableBody {
         self.room.touched.sort_unstable_by_key(|(tet, _)| *tet);
     }
 
-    /// Finds the tetrahedra, increasing, that this search has not touched, one of whose nodes the blade has passed in
-    /// it, and at which faces may remain to be cut, into `room.left`.
+    /// Finds the tetrahedra, increasing, that this search has not touched, with a node that the blade has passed in
+    /// this search, and with faces that may remain to be cut, into `room.left`.
     pub(crate) fn find_left(
         &mut self,
         touched: &[(u32, Passed)],

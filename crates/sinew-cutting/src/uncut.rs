@@ -1,10 +1,11 @@
-//! Bridges of tissue that a stroke left.
+//! Bridges of tissue that a stroke left uncut.
 
 use crate::body::{CuttableBody, NONE};
 use crate::tet::FACES;
 use sinew_mesh::vector::{Vector, add, bounds_of, cross, length, mean, scaled, sub};
 
-/// Share of the longest edge within which the end of a sheet and the beginning of the next one are at one place.
+/// Share of the longest edge within which the end of a sheet and the beginning of the next one count as the same
+/// position.
 const SAME_PLACE: f64 = 1e-6;
 
 /// The part of tetrahedra in chips.
@@ -16,12 +17,12 @@ pub(crate) const CHIP: u32 = NONE - 1;
 pub struct Uncut {
     /// Area of the faces at rest (m^2).
     pub area: f64,
-    /// Their middle (m), where the body lay at the last sheet.
+    /// Their middle (m), in the configuration at the last sheet.
     pub place: [f64; 3],
 }
 
 impl Uncut {
-    /// Both of two, at their common middle.
+    /// The sum of both, at their common middle.
     #[must_use]
     pub fn and(self, other: Self) -> Self {
         let area = self.area + other.area;
@@ -33,8 +34,8 @@ impl Uncut {
 
 impl CuttableBody {
     /// Tissue left uncut by the current stroke, in a body that the blade has left. `None` while the blade is inside the
-    /// body, and for a stroke that was no cut through: it began inside the body, had an end of the blade inside it, or
-    /// went back.
+    /// body, and for a stroke that does not pass through the body: it began inside the body, had an end of the blade
+    /// inside it, or moved back.
     #[must_use]
     pub fn uncut(&self) -> Option<Uncut> {
         let course = &self.marks.course;
@@ -80,9 +81,9 @@ impl CuttableBody {
         self.marks.of(tet).side > 0
     }
 
-    /// The part of each tetrahedron, if all faces between the sides were cut; [`CHIP`] if the blade has touched all
-    /// of it, and it is not the largest one of a side that has no other. Chips that stay on the other side make a cut
-    /// rough, and are no bridges.
+    /// The part of each tetrahedron, if all faces between the sides were cut; [`CHIP`] if the blade has touched all of
+    /// it, and it is not the largest part of a side that has only such parts. Chips that stay on the other side make a
+    /// cut rough, but are not bridges.
     pub(crate) fn parts(&self) -> Vec<u32> {
         let tets = self.tets.len();
         let mut parts = vec![NONE; tets];

@@ -1,13 +1,13 @@
-//! Axes: ranges, ticks, and where a value lies.
+//! Axes: ranges, ticks, and positions of values.
 
 use crate::number;
 
 /// The spread of values along an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scale {
-    /// Evenly.
+    /// Linear.
     Linear,
-    /// Logarithmic; values that are not positive are left out, but minus infinity lies below all.
+    /// Logarithmic; values that are not positive are left out, but minus infinity is below all values.
     Log,
 }
 
@@ -65,7 +65,7 @@ impl Axis {
     }
 }
 
-/// Margin round the data, and some extent if the data have none.
+/// Margin around the data, and some extent if the data have none.
 fn padded(scale: Scale, data: impl Iterator<Item = f64>) -> (f64, f64) {
     let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
     for x in data.map(|x| scale.forward(x)).filter(|x| x.is_finite()) {
@@ -112,8 +112,7 @@ pub struct Tick {
 }
 
 impl Fitted {
-    /// Position of a value as a share of the axis: 0 at the low end, 1 at the high end. NaN where
-    /// the axis cannot show it.
+    /// Position of a value as a share of the axis: 0 at the low end, 1 at the high end. NaN if the axis cannot show it.
     #[must_use]
     pub fn share(&self, x: f64) -> f64 {
         (self.scale.forward(x) - self.low) / (self.high - self.low)

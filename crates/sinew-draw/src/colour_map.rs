@@ -24,7 +24,7 @@ pub fn viridis(share: f64) -> Colour {
     mix(VIRIDIS[stop], VIRIDIS[stop + 1], place - stop as f64)
 }
 
-/// A colour made darker: 1 leaves it, 0 is black.
+/// A darker colour: 1 leaves it unchanged, 0 is black.
 #[must_use]
 pub fn shade(colour: Colour, light: f64) -> Colour {
     mix(Colour(0, 0, 0), colour, light.clamp(0.0, 1.0))

@@ -49,20 +49,20 @@ pub struct Series {
 /// A point of a series.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Point {
-    /// Place on the horizontal axis.
+    /// Position on the horizontal axis.
     pub x: f64,
-    /// Place on the vertical axis.
+    /// Position on the vertical axis.
     pub y: f64,
-    /// Text that shows on hovering over its marker.
+    /// Text shown when the pointer is over its marker.
     pub note: String,
-    /// Ringed.
+    /// True to draw a ring around its marker.
     pub ringed: bool,
 }
 
 /// A line across the frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rule {
-    /// Its place on the axis that it crosses.
+    /// Its position on the axis that it crosses.
     pub at: f64,
     /// Description of its meaning.
     pub label: String,
@@ -121,7 +121,7 @@ impl Series {
         }
     }
 
-    /// A line without markers, as of a displacement over time.
+    /// A line without markers, for example of a displacement over time.
     #[must_use]
     pub fn line(
         name: impl Into<String>,

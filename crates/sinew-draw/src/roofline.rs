@@ -1,5 +1,5 @@
-//! Roofline plots (Williams, Waterman and Patterson, Commun. ACM 52, 2009): operations a second over
-//! operations for each byte, beneath the limits of memory and arithmetic.
+//! Roofline plots (Williams, Waterman and Patterson, Commun. ACM 52, 2009): operations per second over operations per
+//! byte, beneath the limits of memory and arithmetic.
 
 use crate::axis::{Axis, Fitted, Tick};
 use crate::style::{Dash, Marker, Style};
@@ -38,7 +38,7 @@ pub struct Roofline {
 pub struct Family {
     /// Its name in the legend.
     pub name: String,
-    /// Label, operations a byte, and operations a second (GFLOP/s) of each mark.
+    /// Label, operations per byte, and operations per second (GFLOP/s) of each mark.
     pub marks: Vec<(String, f64, f64)>,
 }
 
@@ -79,7 +79,7 @@ impl Layout {
 }
 
 impl Roofline {
-    /// The picture as a file of its own or for a page.
+    /// The picture as a separate file or for a page.
     #[must_use]
     pub fn svg(&self) -> String {
         let layout = Layout::of(self);
@@ -129,7 +129,8 @@ impl Roofline {
         )
     }
 
-    /// Names of arithmetic at the right, of memories where their roof leaves the frame's left or lower side.
+    /// Writes the names of arithmetic on the right, and those of memories at the point at which their roof leaves the
+    /// frame's left or lower side.
     fn name_roofs(&self, svg: &mut Svg, layout: &Layout) {
         let frame = layout.frame;
         let mut rates: Vec<&(String, f64)> = self.arithmetic.iter().collect();
@@ -173,7 +174,7 @@ impl Roofline {
 }
 
 impl Family {
-    /// Marks, with their labels in a column to the right of them, joined by thin lines.
+    /// Draws marks, with their labels in a column to the right of them, joined by thin lines.
     fn draw(&self, svg: &mut Svg, layout: &Layout, style: Style) {
         let mut marks: Vec<(&str, (f64, f64))> = self
             .marks
@@ -216,7 +217,7 @@ impl Family {
     }
 }
 
-/// Places in increasing order, moved apart until each has space for a line, about where they were.
+/// Positions in increasing order, moved apart until each has space for a line, near their original positions.
 fn apart(mut places: Vec<f64>) -> Vec<f64> {
     for _ in 0..200 {
         let mut moved = false;
@@ -303,7 +304,7 @@ mod tests {
         assert!((middle - 100.8).abs() < 0.1);
     }
 
-    /// Roofs meet where memory delivers what arithmetic takes: 50 GB/s and 100 GFLOP/s at 2 flop a byte.
+    /// Roofs meet at equal rates of memory and arithmetic: 50 GB/s and 100 GFLOP/s at 2 flop per byte.
     #[test]
     fn a_mark_at_the_ridge_lies_on_both_roofs() {
         let plot = Roofline {

@@ -1,4 +1,4 @@
-//! Plots side by side under one title, as a picture of its own.
+//! Plots side by side under one title, as a separate picture.
 
 use crate::plot::Plot;
 use crate::svg::{Paint, Svg, Text, text_width};
@@ -12,18 +12,18 @@ const LEADING: f64 = 1.45;
 /// Plots side by side, with a title and lines of text above them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sheet {
-    /// Description for those who cannot see it.
+    /// Description for readers who cannot see it.
     pub described: String,
     /// Title, which is broken into lines if it is long.
     pub title: String,
-    /// Paragraphs below it, broken likewise.
+    /// Paragraphs below it, broken in the same way.
     pub lines: Vec<String>,
     /// The plots, from left to right.
     pub plots: Vec<Plot>,
 }
 
 impl Sheet {
-    /// The picture as a file of its own.
+    /// The picture as a separate file.
     #[must_use]
     pub fn svg(&self) -> String {
         let width: f64 = self.plots.iter().map(|plot| plot.width).sum();

@@ -1,4 +1,4 @@
-//! Colours, markers and dashes that stay apart without colour vision.
+//! Colours, markers and dashes that can be distinguished without colour vision.
 
 /// An sRGB colour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -142,7 +142,7 @@ pub struct Style {
     pub dash: Dash,
     /// Width of the line (px).
     pub width: f64,
-    /// The line goes right, then up or down, from point to point.
+    /// True for a line that moves right, then up or down, from point to point.
     pub steps: bool,
 }
 
@@ -159,7 +159,7 @@ impl Style {
         }
     }
 
-    /// The style of a member of the n-th family: one colour and dash per family, other markers.
+    /// The style of a member of the n-th family: one colour and dash per family, with different markers.
     #[must_use]
     pub fn of_family(family: usize, member: usize) -> Self {
         Self {
@@ -209,7 +209,7 @@ mod tests {
         a.max(b) / a.min(b)
     }
 
-    /// Coordinates in CIE L*a*b* (D65), where a distance of 2.3 is just seen.
+    /// Coordinates in CIE L*a*b* (D65), in which a distance of 2.3 is just visible.
     fn lab(colour: Colour) -> [f64; 3] {
         let [r, g, b] = linear(colour);
         let f = |t: f64| {

@@ -41,7 +41,7 @@ pub struct Surface<'a> {
 }
 
 impl<'a> Surface<'a> {
-    /// A surface with all else by default.
+    /// A surface with default values of all other fields.
     #[must_use]
     pub fn new(
         title: impl Into<String>,
@@ -63,8 +63,8 @@ impl<'a> Surface<'a> {
         }
     }
 
-    /// The picture. Triangles with a vertex that is missing or not finite are left out, and the
-    /// picture says how many.
+    /// The picture. Triangles with a vertex that is missing or not finite are left out, and the picture states their
+    /// number.
     #[must_use]
     pub fn svg(&self) -> String {
         let (shown, left_out) = self.facets();
@@ -207,7 +207,7 @@ struct Facet {
     value: f64,
 }
 
-/// From the projection to the picture.
+/// The map from the projection to the picture.
 struct View {
     scale: f64,
     shift: (f64, f64),
@@ -247,7 +247,7 @@ impl View {
         }
     }
 
-    /// A length along one of the three axes, which the projection shortens alike.
+    /// A length along one of the three axes, which the projection shortens equally.
     fn scale_bar(&self, svg: &mut Svg, frame: Frame) {
         let per_metre = self.scale * projection::SHORTENING;
         let length = nice_step(60.0 / per_metre);

@@ -53,7 +53,7 @@ impl Frame {
 }
 
 impl Svg {
-    /// A picture of the given size, described for those who cannot see it.
+    /// A picture of the given size, described for readers who cannot see it.
     #[must_use]
     pub fn new(width: f64, height: f64, described: &str) -> Self {
         let mut svg = Self { out: String::new() };
@@ -73,7 +73,7 @@ impl Svg {
         svg
     }
 
-    /// The picture, whole.
+    /// The complete picture.
     #[must_use]
     pub fn finish(mut self) -> String {
         self.out.push_str("</svg>\n");
@@ -103,7 +103,7 @@ impl Svg {
         self.polyline(&[from, to], stroke);
     }
 
-    /// A broken line; fewer than two points are none.
+    /// A broken line; nothing is drawn for fewer than two points.
     pub fn polyline(&mut self, points: &[(f64, f64)], stroke: Stroke) {
         if points.len() < 2 {
             return;
@@ -119,7 +119,7 @@ impl Svg {
         ));
     }
 
-    /// A filled polygon with an edge of its own colour, which hides the seams between neighbours.
+    /// A filled polygon with an edge of the same colour, which hides the seams between neighbours.
     pub fn facet(&mut self, points: &[(f64, f64)], colour: Colour, edge: Colour) {
         self.put(format_args!(
             "<path d=\"{}\" fill=\"{colour}\" stroke=\"{edge}\" stroke-width=\"0.5\" \
@@ -174,7 +174,7 @@ impl Svg {
         }
     }
 
-    /// A circle round a marker.
+    /// A circle around a marker.
     pub fn ring(&mut self, (x, y): (f64, f64), radius: f64) {
         self.put(format_args!(
             "<circle cx=\"{}\" cy=\"{}\" r=\"{}\" fill=\"none\" {} stroke-width=\"1.25\"/>\n",
@@ -213,7 +213,7 @@ impl Svg {
         ));
     }
 
-    /// Draws by `draw`, with a text that shows on hovering.
+    /// Draws with `draw`, with a text shown when the pointer is over it.
     pub fn noted(&mut self, note: &str, draw: impl FnOnce(&mut Self)) {
         if note.is_empty() {
             draw(self);
@@ -235,7 +235,7 @@ impl Svg {
         self.out.push_str("</g>\n");
     }
 
-    /// Draws by `draw`, cut off outside the frame.
+    /// Draws with `draw`, clipped to the frame.
     pub fn clipped(&mut self, frame: Frame, draw: impl FnOnce(&mut Self)) {
         let (x, y, w, h) = (N(frame.left), N(frame.top), N(frame.width), N(frame.height));
         self.put(format_args!(
@@ -246,7 +246,7 @@ impl Svg {
         self.out.push_str("</svg>\n");
     }
 
-    /// Puts a whole picture into this one, with its upper left corner at a place.
+    /// Inserts a whole picture into this one, with its upper left corner at a position.
     pub fn picture(&mut self, (x, y): (f64, f64), picture: &str) {
         self.put(format_args!(
             "<svg x=\"{}\" y=\"{}\" overflow=\"visible\">\n{picture}</svg>\n",
@@ -261,7 +261,7 @@ impl Svg {
     }
 }
 
-/// A coordinate with two decimals at most.
+/// A coordinate with at most two decimals.
 #[derive(Clone, Copy)]
 struct N(f64);
 

@@ -1,10 +1,10 @@
 //! CPU time and memory of building models of a large cube.
 //!
-//! `cargo bench -p sinew-fem` builds models of a structured cube of a million tetrahedra, given as a mesh, of each kind of
-//! material. Time is CPU time of all threads (s); memory is what is in use beyond the mesh at most while a model is
-//! built, and once it is (bytes a tetrahedron). The fingerprint tells whether two programs build the same matrices, to
-//! the bit. Numbers after `--` are the hexahedra along an edge of the cube and the number of times each model is built; a word is a
-//! part of the names of the materials to build.
+//! `cargo bench -p sinew-fem` builds models of a structured cube of a million tetrahedra, given as a mesh, of each kind
+//! of material. Time is CPU time of all threads (s); memory is that in use beyond the mesh: the peak while a model is
+//! built, and the amount after that (bytes per tetrahedron). The fingerprint tells whether two programs build the same
+//! matrices, to the bit. Numbers after `--` are the hexahedra along an edge of the cube and the number of times each
+//! model is built; a word is a part of the names of the materials to build.
 
 #![allow(
     clippy::expect_used,
@@ -148,7 +148,7 @@ fn cpu_time() -> Duration {
     Duration::new(now.tv_sec.unsigned_abs(), now.tv_nsec.unsigned_abs() as u32)
 }
 
-/// Wall time, where the platform has no such clock.
+/// Wall time, for platforms that have no such clock.
 #[cfg(not(unix))]
 fn cpu_time() -> Duration {
     static START: std::sync::OnceLock<Instant> = std::sync::OnceLock::new();

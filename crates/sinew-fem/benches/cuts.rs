@@ -1,9 +1,10 @@
-//! Time of a cut, from the stroke to the model that goes on.
+//! Time of a cut, from the stroke to the updated model.
 //!
-//! `cargo bench -p sinew-fem --bench cuts` cuts structured cubes by a blade that comes down, on a plane of nodes and beside one, in many
-//! short strokes and in one. It prints the median time of the strokes that cut, their faces and new nodes, the rows of the matrix that
-//! they touch, the time for each of these, and beside it what it takes to set up the model that can be cut, and parts of making a model anew: the mesh, the problem
-//! on it, the model, and one sum of energy. Times are by the clock (us), of one thread.
+//! `cargo bench -p sinew-fem --bench cuts` cuts structured cubes by a blade that comes down, on a plane of nodes and
+//! beside one, in many short strokes and in one. It prints the median time of the strokes that cut, their faces and new
+//! nodes, the rows of the matrix that they touch, the time for each of these, and, for comparison, the time to set up
+//! the model that can be cut, and the times of the parts of a rebuild: the mesh, the problem on it, the model, and one
+//! sum of energy. Times are wall times (us) of one thread.
 
 #![allow(
     clippy::expect_used,
@@ -55,7 +56,7 @@ fn problem() -> Problem {
         .with_gravity([0.0, 0.0, -9.81])
 }
 
-/// Prints what parts of making everything anew take.
+/// Prints the times of the parts of a complete rebuild.
 fn anew(mesh: &Arc<TetMesh>) {
     let problem = problem();
     let cut = CutModel::new(Arc::clone(mesh), problem.clone(), 0.0).expect("it can be cut");
@@ -96,18 +97,18 @@ struct Cost {
     faces: usize,
     new_nodes: usize,
     rows: usize,
-    /// Time (us) to cut the same faces where they are given: what the blade takes is left out.
+    /// Time (us) to cut the same faces if they are given: without the time that the blade needs.
     of_faces: Option<f64>,
 }
 
-/// Makes room in a state for a tenth more degrees of freedom.
+/// Reserves space in a state for a tenth more degrees of freedom.
 fn make_room(state: &mut State) {
     for values in [&mut state.u, &mut state.v] {
         values.reserve(values.len() / 8);
     }
 }
 
-/// Time (us) to cut faces of a body that are given.
+/// Time (us) to cut given faces of a body.
 fn given(mesh: &Arc<TetMesh>, faces: &[(u32, u8)]) -> f64 {
     let mut cut = CutModel::new(Arc::clone(mesh), problem(), 0.0).expect("it can be cut");
     let mut state = State::at_rest(cut.model().dofs());
@@ -121,7 +122,7 @@ fn given(mesh: &Arc<TetMesh>, faces: &[(u32, u8)]) -> f64 {
     begin.elapsed().as_secs_f64() * 1e6
 }
 
-/// A slit to half the depth in some strokes, over a share of the cube's width.
+/// A slit to half the depth in several strokes, over a share of the cube's width.
 fn slit(mesh: &Arc<TetMesh>, (name, x, snap): (&str, f64, f64), (strokes, width): (usize, f64)) {
     let mut costs = Vec::new();
     for _ in 0..5 {

@@ -13,7 +13,7 @@ use crate::scales::cell_sizes;
 use crate::smoothing::{Smoothing, nodes_of};
 use crate::{Problem, Region};
 
-/// A mesh under its supports: the common part of models with other materials and loads.
+/// A mesh under its supports: the part that models with different materials and loads have in common.
 #[derive(Clone, Debug)]
 pub(crate) struct Body {
     pub(crate) edges: usize,

@@ -22,8 +22,8 @@ pub(crate) struct Border {
 }
 
 impl Border {
-    /// Sums up the rows of `nodes` (increasing) from the parts of K at them and from `dashpots`; those that end
-    /// at no such node are skipped.
+    /// Sums up the rows of `nodes` (increasing) from the parts of K at them and from `dashpots`; dashpots that end at
+    /// none of these nodes are skipped.
     pub(crate) fn new(parts: Parts<'_>, nodes: &[u32], dashpots: &[Dashpot]) -> Self {
         let (mesh, at_nodes) = (parts.mesh, parts_at(parts, nodes));
         let mut border = Self::zero(parts, nodes, &at_nodes);
@@ -94,8 +94,8 @@ impl Border {
         Some(range.start + offset)
     }
 
-    /// The row of K (u + beta v) + C v (N) at a node, C being the dashpots; zero without such a row.
-    /// `u` and `v` give the displacement (m) and velocity (m/s) of a node.
+    /// The row of K (u + beta v) + C v (N) at a node, C being the dashpots; zero if there is no such row. `u` and `v`
+    /// give the displacement (m) and velocity (m/s) of a node.
     pub(crate) fn internal_force(
         &self,
         node: u32,

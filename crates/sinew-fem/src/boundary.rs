@@ -30,8 +30,8 @@ impl Fixed {
     }
 }
 
-/// A prescribed motion: components of displacement that follow a course. All nodes move alike; the
-/// displacement is the sum of the courses.
+/// A prescribed motion: components of displacement that follow a course. All nodes have the same displacement: the sum
+/// of the courses.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Moving {
     /// The part of the mesh that is moved: all its nodes.

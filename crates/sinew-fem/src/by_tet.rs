@@ -226,7 +226,7 @@ impl<'a> Members<'a> {
         Ok(())
     }
 
-    /// The axes by their first two directions.
+    /// The axes from their first two directions.
     fn axes(self, directions: &[Direction; 2]) -> Result<Axes, DataError> {
         if let [Direction::Everywhere(first), Direction::Everywhere(second)] = directions {
             // Checked before.

@@ -7,7 +7,7 @@ use crate::error::Cause;
 use crate::{LoadKind, LoadSpec, On, Problem};
 
 impl Problem {
-    /// The problem of a body that was cut, of which `uncut` is the mesh that this problem is on.
+    /// The problem of a body that was cut. `uncut` is the mesh of this problem.
     ///
     /// Copies of nodes that are fixed or moved are fixed or moved. Tractions and pressures follow their triangles. A
     /// force on nodes stays with its nodes, so that a cut does no work; the share of removed nodes is dropped, and a
@@ -62,7 +62,7 @@ impl Problem {
     /// The places of the loads that [`Problem::after_cuts`] leaves.
     ///
     /// # Errors
-    /// As there.
+    /// Same as [`Problem::after_cuts`].
     pub fn loads_after_cuts(&self, uncut: &TetMesh, cut: &CutMesh) -> Result<Vec<usize>, Cause> {
         let mut left = Vec::new();
         for (place, load) in self.loads.iter().enumerate() {

@@ -16,14 +16,14 @@ use crate::model::{CutStateError, FieldError, NodesCarried, TetFrequencies};
 use crate::motion::Field;
 use crate::{Fixed, Model, On, Problem};
 
-/// No 4-node tetrahedron has a larger factor between its matrix and its blocks.
+/// Largest factor between the matrix of a 4-node tetrahedron and its blocks.
 const LARGEST_BLOCK_FACTOR: f64 = 4.0;
 
 /// A reason for which a model cannot be cut.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CutModelError {
-    /// The mesh.
+    /// A fault of the mesh.
     #[error(transparent)]
     Mesh(#[from] CutError),
     /// The problem cannot be built, before or after a cut.
@@ -35,10 +35,10 @@ pub enum CutModelError {
     /// A state that cannot be carried over a cut.
     #[error(transparent)]
     State(#[from] CutStateError),
-    /// A saved body that is none of this one.
+    /// A saved body that does not belong to this one.
     #[error(transparent)]
     Saved(#[from] SavedBodyError),
-    /// A body of which nothing that moves is left.
+    /// A body of which no moving node is left.
     #[error("nothing that moves is left of the body")]
     NothingLeft,
 }
@@ -74,7 +74,8 @@ pub struct CutReport {
     pub new_nodes: usize,
     /// Nodes that were moved at rest.
     pub moved_nodes: usize,
-    /// Mass that moved nodes added (kg): rounding, but for nodes of a curved surface and where density varies within a region.
+    /// Mass that moved nodes added (kg): only rounding, except for nodes of a curved surface and for densities that
+    /// vary within a region.
     pub mass_gained: f64,
     /// Tetrahedra that were removed.
     pub removed_tets: usize,
@@ -148,12 +149,12 @@ impl CutReport {
 /// tetrahedra without averages, energy are conserved unless nodes are moved. Frequencies and K's blocks are bounded
 /// by single tetrahedra (if these bounds exist), so that stable steps are the same before and after.
 ///
-/// Linear bodies of plain tetrahedra whose supports rest follow a split in their place, at the cost of the rows that it
-/// touches: with the bits of a model that is rebuilt, [`Model::report`] aside, whose sums of masses, volumes and loads
-/// stay. Memory for a tenth more nodes is reserved; until it is used up nothing is allocated, while no clone of the
-/// model shares its rows. All other models are rebuilt on the mesh of the body that is left: springs, hyperelastic
-/// regions, elements that average strain, supports in motion, and any body from the first piece on that was removed or
-/// frozen.
+/// Linear bodies of plain tetrahedra with resting supports are updated in place after a split, at the cost of the rows
+/// that it touches. The result is the same to the bit as that of a rebuilt model, except [`Model::report`], whose sums
+/// of masses, volumes and loads stay. Memory for a tenth more nodes is reserved; until it is used up nothing is
+/// allocated, as long as no clone of the model shares its rows. All other models are rebuilt on the mesh of the
+/// remaining body: springs, hyperelastic regions, elements that average strain, supports in motion, and any body after
+/// a piece of it was first removed or frozen.
 pub struct CutModel {
     uncut: Arc<TetMesh>,
     problem: Problem,
@@ -190,8 +191,9 @@ impl TetProperties for OfModel {
 }
 
 impl CutModel {
-    /// The model of a problem on a mesh, uncut. Strokes move nodes within the share `snap` of their shortest edge onto the sheet; 0 moves none.
-    /// Nodes of supports and prescribed motions, and between regions, are not moved.
+    /// The model of a problem on an uncut mesh. Strokes move nodes onto the sheet if their distance from it is within
+    /// the share `snap` of their shortest edge; 0 moves none. Nodes of supports and prescribed motions, and between
+    /// regions, are not moved.
     ///
     /// # Errors
     /// [`CutModelError`].
@@ -265,8 +267,8 @@ impl CutModel {
         self.epoch
     }
 
-    /// Number of times that all rows were laid out again to make space for further nodes, plus the times that something
-    /// else shared the model's rows, so that they were copied.
+    /// Number of times that all rows were laid out again to make space for further nodes, plus the number of times that
+    /// the rows were copied because they were shared.
     #[must_use]
     pub fn layouts(&self) -> u64 {
         self.layouts
@@ -276,7 +278,7 @@ impl CutModel {
     /// it changed.
     ///
     /// # Errors
-    /// [`CutModelError`]; the body may be half changed then, and is to be discarded.
+    /// [`CutModelError`]; the body may then be partly changed and must be discarded.
     pub fn stroke(
         &mut self,
         sheet: &Sheet,
@@ -287,8 +289,8 @@ impl CutModel {
     }
 
     /// Cuts the tissue that a blade passes from one pose to the next, each given by its two ends (m), as
-    /// [`CutModel::stroke`] does by a sheet. A blade that rests
-    /// cuts the tissue that has come through it since the last time.
+    /// [`CutModel::stroke`] does by a sheet. A resting blade cuts the tissue that has passed through it since the last
+    /// call.
     ///
     /// # Errors
     /// Same as [`CutModel::stroke`].
@@ -301,7 +303,7 @@ impl CutModel {
         self.follow_telling(poses, state, inputs, |_| ())
     }
 
-    /// Same as [`CutModel::follow`], but calls `tell` with the state before the nodes change, if they do.
+    /// Same as [`CutModel::follow`], but if the nodes change, `tell` is called with the state before the change.
     ///
     /// # Errors
     /// Same as [`CutModel::stroke`].
@@ -451,7 +453,7 @@ impl CutModel {
         is_loose.contains(&true).then(|| of_tet().collect())
     }
 
-    /// Keeps the changes that cuts made.
+    /// Saves the changes that cuts made.
     #[must_use]
     pub fn save(&self) -> SavedCut {
         SavedCut {
@@ -461,7 +463,7 @@ impl CutModel {
         }
     }
 
-    /// Becomes the model that [`CutModel::save`] was called on, which was made of the same mesh and problem.
+    /// Restores the model on which [`CutModel::save`] was called; that model was made of the same mesh and problem.
     ///
     /// # Errors
     /// [`CutModelError`].
@@ -481,7 +483,7 @@ impl CutModel {
         Ok(())
     }
 
-    /// True if a blade (both ends, m) is in the body as it lay at the last stroke.
+    /// True if a blade (both ends, m) is in the body in its configuration at the last stroke.
     #[must_use]
     pub fn holds(&self, blade: [[f64; 3]; 2]) -> bool {
         self.body.holds(blade, &self.positions)
@@ -517,7 +519,7 @@ impl CutModel {
         })
     }
 
-    /// Lets the model follow splits from here on, if it can.
+    /// Prepares the model for updates in place after splits, if it supports them.
     fn follow_from_here(&mut self) {
         let is_whole = self.frozen.is_empty() && !self.body.is_removed().contains(&true);
         let can = is_whole && self.model.can_follow_splits();
@@ -530,7 +532,7 @@ impl CutModel {
         }
     }
 
-    /// Finds where the nodes of the body are, and checks the state before anything is changed.
+    /// Finds the positions of the nodes of the body, and checks the state before anything is changed.
     fn find_positions(&mut self, state: &State, inputs: &Inputs) -> Result<(), CutModelError> {
         self.model.require_state(state)?;
         let when = LoadTime::at(state.t()).under(inputs);
@@ -573,8 +575,8 @@ impl CutModel {
         }
     }
 
-    /// Rebuilds the model after a change of the body, which had `nodes` nodes before: `moved` ones have another rest
-    /// position now, and those after them are copies of `copied` ones.
+    /// Rebuilds the model after a change of the body, which had `nodes` nodes before: the nodes `moved` have another
+    /// rest position now, and the nodes added are copies of the nodes `copied`.
     fn go_on_anew(
         &mut self,
         nodes: usize,

@@ -8,21 +8,21 @@ use crate::number::require;
 /// The element that a region is made of: 4-node tetrahedra, and the neighbours over which they average strain.
 ///
 /// Tetrahedra of constant strain lock: they resist bending, and nearly incompressible ones (Poisson's ratio above some
-/// 0.45) resist nearly every motion. Averages over neighbours take that away without new degrees of freedom.
+/// 0.45) resist nearly every motion. Averages over neighbours remove this locking without new degrees of freedom.
 ///
-/// With V_e the volume of a tetrahedron, `psi` the energy of shear (Lame's mu, all of it: `mu eps:eps`) and lambda the other constant of Lame,
-/// the energy of a region is
+/// With V_e the volume of a tetrahedron, `psi` the energy of Lame's mu (all of it: `mu eps:eps`) and lambda the other
+/// constant of Lame, the energy of a region is
 ///
 /// ```text
 /// b sum_e V_e psi(eps_e) + (1 - b) sum_d V_d psi(eps_d) + sum_p V_p lambda/2 (tr eps_p)^2
 /// ```
 ///
-/// over tetrahedra e, edges d and patches p, `1 - b` being the share of edges. An edge has a sixth of the
-/// volume of each tetrahedron at it and their mean strain, as in the edge-based smoothed finite element method (Nguyen-Thoi,
-/// Liu, Vu-Do and Nguyen-Xuan, Comput. Methods Appl. Mech. Engrg. 198, 2009); a patch is a few tetrahedra
-/// with one mean change of volume, as in the F-bar-patch method (de Souza Neto, Pires and Owen, Int. J. Numer. Methods Engrg. 62,
-/// 2005), here as an energy, so that the stiffness is symmetric. Where tetrahedra have moduli of their own ([`crate::FromMesh`]), edges and
-/// patches have their mean by volume.
+/// over tetrahedra e, edges d and patches p, `1 - b` being the share of edges. An edge has a sixth of the volume of
+/// each tetrahedron at it and their mean strain, as in the edge-based smoothed finite element method (Nguyen-Thoi, Liu,
+/// Vu-Do and Nguyen-Xuan, Comput. Methods Appl. Mech. Engrg. 198, 2009); a patch is a few tetrahedra with one mean
+/// change of volume, as in the F-bar-patch method (de Souza Neto, Pires and Owen, Int. J. Numer. Methods Engrg. 62,
+/// 2005), here as an energy, so that the stiffness is symmetric. If tetrahedra have their own moduli
+/// ([`crate::FromMesh`]), edges and patches have their mean by volume.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Element {
     /// Tetrahedra of constant strain, without averages.

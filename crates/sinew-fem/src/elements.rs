@@ -4,8 +4,8 @@ use sinew_core::ElementStiffness;
 
 use crate::cells::Cells;
 
-/// Writes the rows and columns of those nodes of an element that are cells; fixed components
-/// are zero. `whole` has all its nodes, row-major and node-major.
+/// Writes the rows and columns of the nodes of an element that are cells; fixed components are zero. `whole` has all
+/// its nodes, row-major and node-major.
 pub(crate) fn moving_part(whole: &[f64], nodes: &[u32], cells: &Cells, out: &mut ElementStiffness) {
     let columns = 3 * nodes.len();
     let free_cell = |node: &u32| {

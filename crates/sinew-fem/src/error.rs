@@ -103,7 +103,7 @@ pub enum Cause {
     /// Axes whose first two directions are parallel.
     #[error("the first two axes are parallel: expected directions that are not")]
     ParallelAxes,
-    /// Axes for a law that is alike in all directions.
+    /// Axes for an isotropic law.
     #[error("the law `{law}` is alike in all directions: expected no axes")]
     NeedlessAxes {
         /// The law's id.
@@ -140,7 +140,7 @@ pub enum Cause {
         /// The most there may be.
         most: usize,
     },
-    /// Long-term moduli from which no instantaneous ones follow.
+    /// Long-term moduli that give no valid instantaneous ones.
     #[error(
         "so much of the deviatoric stress relaxes that Poisson's ratio would be {poissons_ratio:.3} at once, and laws of large deformation \
          have none below 0: take smaller shares, or a larger long-term ratio"
@@ -157,7 +157,7 @@ pub enum Cause {
         /// The law's id.
         law: &'static str,
     },
-    /// A law of large deformation that does not exist, or cannot have its parameters.
+    /// A law of large deformation that does not exist, or whose parameters are not allowed.
     #[error(transparent)]
     Law(#[from] crate::hyperelastic::LawError),
     /// A group the mesh does not have.
@@ -278,7 +278,7 @@ pub enum Cause {
         /// Nodes of the mesh.
         nodes: usize,
     },
-    /// Nodes where a load needs triangles.
+    /// Nodes given to a load that needs triangles.
     #[error("a traction or pressure acts on triangles, but {nodes} nodes are given")]
     NoTriangles {
         /// The nodes given.

@@ -7,10 +7,11 @@ use sinew_mesh::vector::{add as plus, cross, sub as minus};
 use crate::cells::Cells;
 use crate::elements::moving_part;
 
-/// Follower pressure on triangles: its forces beyond those on the surface at rest, which are a load like others.
+/// Follower pressure on triangles: the difference of its forces from those on the surface at rest, which are an
+/// ordinary load.
 ///
-/// The force on a triangle with the corners a, b and c is `-p/2 (x_b - x_a) x (x_c - x_a)`, a third of it on each: exactly what a pressure
-/// does on flat triangles, since each corner's shape function has a third of the area.
+/// The force on a triangle with the corners a, b and c is `-p/2 (x_b - x_a) x (x_c - x_a)`, a third of it on each: this
+/// is exact for a pressure on flat triangles, since each corner's shape function has a third of the area.
 #[derive(Clone, Debug)]
 pub(crate) struct FollowingPressure {
     /// Place of the load in the problem, which is its place among the model's loads.
@@ -107,8 +108,9 @@ impl FollowingPressure {
 
     /// Adds `-factor` times the symmetric part of the derivative (N/m) of the forces: their load stiffness.
     ///
-    /// With `w_a = x_b - x_c` and so on around, `df_i/dx_j = p/6 [w_j]_x` at each corner i. What is not symmetric cancels along edges
-    /// between two triangles; it remains at free edges of the loaded surface only (Bufler, ZAMP 35, 1984).
+    /// With `w_a = x_b - x_c` and its cyclic permutations, `df_i/dx_j = p/6 [w_j]_x` at each corner i. The part that is
+    /// not symmetric cancels along edges between two triangles and remains only at free edges of the loaded surface
+    /// (Bufler, ZAMP 35, 1984).
     ///
     /// # Errors
     /// [`EvaluationError`] if the matrix has no block for two corners.

@@ -15,8 +15,8 @@ pub fn are_parallel(first: [f64; 3], second: [f64; 3]) -> bool {
     frame(first, second).is_none()
 }
 
-/// Orthonormal vectors: along the first vector, along the part of the second at right angles to it, and their cross
-/// product; `None` if the two are parallel, zero or not finite.
+/// Orthonormal vectors: along the first vector, along the part of the second that is perpendicular to it, and their
+/// cross product; `None` if the two are parallel, zero or not finite.
 pub(crate) fn frame(first: [f64; 3], second: [f64; 3]) -> Option<Frame> {
     let (first, second) = (unit(first)?, unit(second)?);
     let along: f64 = first.iter().zip(second).map(|(a, b)| a * b).sum();

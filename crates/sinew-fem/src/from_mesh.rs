@@ -23,7 +23,7 @@ impl FromMesh {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum DataError {
-    /// Data that the mesh does not have once.
+    /// Data that the mesh does not have exactly once.
     #[error(transparent)]
     Name(#[from] TetDataError),
     /// Another number of values for each tetrahedron than the property has.

@@ -7,8 +7,8 @@ use sinew_mesh::TetMesh;
 
 use crate::error::{Cause, FemError, Item};
 
-/// The nodes of a mesh that are joined by edges, fixed ones included. Made at the first request, and dropped before
-/// matrices are made: it takes 12 bytes a tetrahedron.
+/// The nodes of a mesh that are joined by edges, fixed ones included. The graph is made at the first request and
+/// dropped before matrices are made: it takes 12 bytes per tetrahedron.
 pub(crate) struct Graph<'a> {
     mesh: &'a TetMesh,
     made: Option<Arc<Pattern>>,

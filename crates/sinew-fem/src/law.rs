@@ -65,7 +65,7 @@ impl Law {
         Self::Hyperelastic { id, parameters }
     }
 
-    /// Young's modulus (Pa) at small strain; NaN for a law that does not exist or cannot have its parameters.
+    /// Young's modulus (Pa) at small strain; NaN for a law that does not exist or whose parameters are not allowed.
     #[must_use]
     pub fn youngs_modulus(&self) -> f64 {
         match self {
@@ -76,8 +76,8 @@ impl Law {
         }
     }
 
-    /// Poisson's ratio at small strain; `None` for springs, NaN for a law that does not exist or cannot have its
-    /// parameters.
+    /// Poisson's ratio at small strain; `None` for springs, NaN for a law that does not exist or whose parameters are
+    /// not allowed.
     #[must_use]
     pub fn poissons_ratio(&self) -> Option<f64> {
         match self {
@@ -87,7 +87,7 @@ impl Law {
         }
     }
 
-    /// Multiplies the stiffness by a factor: Young's modulus, and whatever other moduli the law has.
+    /// Multiplies the stiffness by a factor: Young's modulus and all other moduli of the law.
     pub fn scale_stiffness(&mut self, factor: f64) {
         match self {
             Self::Linear { youngs_modulus, .. } | Self::Springs { youngs_modulus, .. } => {
@@ -100,7 +100,7 @@ impl Law {
         }
     }
 
-    /// Sets Young's modulus (Pa); that of a law with other moduli by scaling all of them, so that Poisson's ratio stays.
+    /// Sets Young's modulus (Pa); if the law has other moduli, all of them are scaled, so that Poisson's ratio stays.
     pub fn set_youngs_modulus(&mut self, to: f64) {
         match self {
             Self::Linear { youngs_modulus, .. } | Self::Springs { youngs_modulus, .. } => {
@@ -135,7 +135,7 @@ impl Law {
         }
     }
 
-    /// Description of the law, with this text for Young's modulus (Pa).
+    /// Description of the law that states this text as Young's modulus (Pa).
     #[must_use]
     pub fn with_modulus(&self, youngs_modulus: &str) -> String {
         match self {
@@ -164,14 +164,14 @@ impl Law {
         }
     }
 
-    /// The constants at small strain in the axes of a material that has some; `None` for other laws.
+    /// The constants at small strain in the axes of the material; `None` for laws without axes.
     #[must_use]
     pub fn orthotropic(&self) -> Option<Orthotropic> {
         let law = self.of_large_deformation()?.ok()?;
         law.has_axes().then(|| Orthotropic::of(&law)).flatten()
     }
 
-    /// The law ready for computation; `None` unless it is of large deformation.
+    /// The law ready for computation; `None` if it is not a law of large deformation.
     pub(crate) fn of_large_deformation(&self) -> Option<Result<Hyperelastic, LawError>> {
         match self {
             Self::Hyperelastic { id, parameters } => Some(Hyperelastic::new(id, parameters)),
@@ -238,8 +238,8 @@ impl fmt::Display for Law {
     }
 }
 
-/// Young's modulus (Pa) and Poisson's ratio of a law at small strain, as they are stated or as they follow; NaN if
-/// there is no such law.
+/// Young's modulus (Pa) and Poisson's ratio of a law at small strain, either stated or derived; NaN if there is no such
+/// law.
 fn constants(id: &str, parameters: &Parameters) -> [f64; 2] {
     let [modulus, ratio] = parameters.stated();
     if let (Some(modulus), Some(ratio)) = (modulus, ratio) {

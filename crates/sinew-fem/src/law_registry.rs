@@ -1,4 +1,5 @@
-//! Registry of the laws that scenes and [`crate::Law`] know by their ids: ours, and those that a program adds.
+//! Registry of the laws that scenes and [`crate::Law`] know by their ids: those of this crate, and those that a program
+//! adds.
 
 use std::fmt;
 use std::sync::{Arc, PoisonError, RwLock};
@@ -26,7 +27,7 @@ use crate::hyperelastic::veronda_westmann::VerondaWestmann;
 use crate::hyperelastic::yeoh::Yeoh;
 use crate::large::{Asked, Compiled, Own};
 
-/// A law by its values, whose type is not known: loops are compiled for it nevertheless, and chosen once for a region.
+/// A law whose type is erased. Its loops are compiled for its own type all the same; they are chosen once per region.
 #[derive(Clone, Debug)]
 pub struct Hyperelastic(Arc<dyn Compiled>);
 
@@ -63,7 +64,7 @@ laws! {
 /// The laws that the program has added.
 static ADDED: RwLock<Vec<&'static KnownLaw>> = RwLock::new(Vec::new());
 
-/// The models that are no laws of large deformation.
+/// The models that are not laws of large deformation.
 const RESERVED: [&str; 2] = ["linear", "springs"];
 
 /// The keys that a region of a scene has itself, whatever its law: no law has a parameter with one of these names.
@@ -89,21 +90,21 @@ pub const KEYS_OF_REGIONS: &[&str] = &[
 ///
 /// # Errors
 ///
-/// [`RegisterError`] for an id that is taken, or a parameter that could be no key of a scene.
+/// [`RegisterError`] for an id that is taken, or a parameter whose name cannot be a key of a scene.
 pub fn register<L: HyperelasticLaw + 'static>() -> Result<(), RegisterError> {
     add(KnownLaw::of::<L>())
 }
 
-/// A recipe that makes a boxed law of its values.
+/// A function that makes a boxed law from the values of its parameters.
 pub type MakeBoxed =
     Box<dyn Fn(&LawValues<'_>) -> Result<Arc<dyn PointLaw>, ParameterError> + Send + Sync>;
 
-/// Adds a law that is known at run time only, as [`register`] adds others; much slower ([`PointLaw`]). `meaning` is
-/// its use in half a sentence.
+/// Adds a law that is known at run time only; otherwise the same as [`register`], but much slower ([`PointLaw`]).
+/// `meaning` is its use in half a sentence.
 ///
 /// # Errors
 ///
-/// [`RegisterError`] for an id that is taken, or a parameter that could be no key of a scene.
+/// [`RegisterError`] for an id that is taken, or a parameter whose name cannot be a key of a scene.
 pub fn register_boxed(
     id: &'static str,
     meaning: &'static str,
@@ -247,7 +248,7 @@ impl KnownLaw {
     /// # Errors
     ///
     /// [`ParameterError`] for a parameter that is missing, outside its range or another law's, or for values that do
-    /// not go together.
+    /// not fit together.
     pub fn make(&self, parameters: &Parameters) -> Result<Hyperelastic, ParameterError> {
         let values = parameters.checked(self.id, self.parameters)?;
         match &self.make {
@@ -256,8 +257,8 @@ impl KnownLaw {
         }
     }
 
-    /// Parameters at their example values, but with this Young's modulus (Pa) and Poisson's ratio at small strain:
-    /// moduli are multiplied by one factor.
+    /// Example values of the parameters, but with this Young's modulus (Pa) and Poisson's ratio at small strain: all
+    /// moduli are multiplied by the same factor.
     ///
     /// # Errors
     ///
@@ -339,7 +340,7 @@ impl Hyperelastic {
         engineering(self.lame())
     }
 
-    /// True if it is defined where an element is inverted.
+    /// True if the law is defined for inverted elements.
     #[must_use]
     pub fn is_defined_when_inverted(&self) -> bool {
         self.0.is_defined_when_inverted()
@@ -369,19 +370,19 @@ impl Hyperelastic {
         self.0.shear_moduli()
     }
 
-    /// The tangent that own blocks of nodes belong to.
+    /// The tangent from which the nodes' own blocks are computed.
     #[must_use]
     pub fn node_block_kind(&self) -> NodeBlock {
         self.0.node_block_kind()
     }
 
-    /// Energy density (J/m^3) of a tetrahedron without averages, by the gradient of the displacement.
+    /// Energy density (J/m^3) of a tetrahedron without averages, from the gradient of the displacement.
     #[must_use]
     pub fn energy(&self, h: Tensor<f64>) -> f64 {
         self.asked().at(h, f64::NAN, |at| at.whole_energy())
     }
 
-    /// First Piola-Kirchhoff stress (Pa) of a tetrahedron without averages, by the gradient of the displacement.
+    /// First Piola-Kirchhoff stress (Pa) of a tetrahedron without averages, from the gradient of the displacement.
     #[must_use]
     pub fn stress(&self, h: Tensor<f64>) -> Tensor<f64> {
         self.asked().at(h, Tensor::zero(), |at| {
@@ -398,7 +399,7 @@ impl Hyperelastic {
         })
     }
 
-    /// A node's own block (Pa/m^2) of a tetrahedron without averages, by the gradient (1/m) of its shape function
+    /// A node's own block (Pa/m^2) of a tetrahedron without averages, from the gradient (1/m) of its shape function
     /// ([`HyperelasticLaw::node_block`]).
     #[must_use]
     pub fn node_block(&self, h: Tensor<f64>, gradient: [f64; 3]) -> Tensor<f64> {
@@ -455,7 +456,7 @@ pub enum RegisterError {
         /// The parameter.
         key: &'static str,
     },
-    /// An id, or the name of a parameter, that could be no word of a scene.
+    /// An id, or the name of a parameter, that cannot be a word of a scene.
     #[error(
         "the law {id:?} has the name {name:?}: expected letters, digits, `-` and `_` in its id and in the names of its parameters"
     )]
@@ -465,7 +466,7 @@ pub enum RegisterError {
         /// The name.
         name: &'static str,
     },
-    /// Two parameters of one name.
+    /// Two parameters with the same name.
     #[error("the law `{id}` has two parameters `{key}`: give one of them another name")]
     TwoOfAName {
         /// The law's id.

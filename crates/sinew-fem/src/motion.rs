@@ -253,8 +253,8 @@ impl Course {
         (0..3).filter(moves).map(along).collect()
     }
 
-    /// The displacement (m) along an axis (0, 1, 2 for x, y, z) at a time (s); `None` if the course
-    /// follows an input that the time does not bring.
+    /// The displacement (m) along an axis (0, 1, 2 for x, y, z) at a time (s); `None` if the course follows an input
+    /// that the time does not contain.
     #[must_use]
     pub fn displacement_at<'a>(&self, when: impl Into<LoadTime<'a>>, axis: usize) -> Option<f64> {
         let when = when.into();

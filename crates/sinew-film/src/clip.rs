@@ -18,7 +18,7 @@ pub struct Frame {
 
 impl Frame {
     /// The surface at the time `t` (s), with the displacement (m) of each of its points and the value that colours it.
-    /// Points beyond the end of a list have none: they are at rest, and their value is 0.
+    /// Points beyond the end of a list are at rest, and their value is 0.
     #[must_use]
     pub fn new(
         t: f64,
@@ -39,7 +39,7 @@ impl Frame {
         }
     }
 
-    /// The place (m) of a point.
+    /// The position (m) of a point.
     pub(crate) fn place(&self, point: usize) -> [f64; 3] {
         let (rest, u) = (self.surface.rest[point], self.displacements[point]);
         [0, 1, 2].map(|axis| rest[axis] + f64::from(u[axis]))
@@ -92,8 +92,8 @@ impl Clip {
         Some([self.frames.first()?.t, self.frames.last()?.t])
     }
 
-    /// The surface at a time (s): on straight lines between frames of the same surface, else as in the frame before.
-    /// `None` without frames.
+    /// The surface at a time (s): on straight lines between frames of the same surface, otherwise that of the frame
+    /// before. `None` without frames.
     pub(crate) fn at(&self, t: f64) -> Option<Frame> {
         let after = self.frames.partition_point(|frame| frame.t <= t);
         let before = self.frames.get(after.saturating_sub(1))?;

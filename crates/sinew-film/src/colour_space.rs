@@ -19,7 +19,8 @@ pub(crate) fn linear(colour: [u8; 3]) -> V3 {
     colour.map(|component| light(f32::from(component) / 255.0))
 }
 
-/// A table from amounts of light to colours. A power for each would cost more than all the rest of a pixel.
+/// A table from amounts of light to colours. Computing a power for each colour would cost more than the rest of a
+/// pixel.
 pub(crate) struct Screen {
     table: Vec<u8>,
 }
@@ -40,7 +41,7 @@ impl Screen {
         }
     }
 
-    /// The colour of light; more than 1 is 1.
+    /// The colour of light; values above 1 count as 1.
     pub(crate) fn colour(&self, light: V3) -> [u8; 3] {
         light.map(|light| {
             let step = light.clamp(0.0, 1.0) * (STEPS - 1) as f32;

@@ -2,7 +2,7 @@
 
 use std::io;
 
-/// A run or a request of which no picture can be made.
+/// A run or a request for which no picture can be made.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum FilmError {
@@ -15,7 +15,7 @@ pub enum FilmError {
         /// The list's name.
         name: &'static str,
     },
-    /// A list of frames that names none.
+    /// A list of frames without entries.
     #[error(
         "no frames to show: {name} names none; `fields = {{ frames = 50 }}` in [output] of the scene lets a run write 50"
     )]
@@ -45,7 +45,7 @@ pub enum FilmError {
         /// The error in the file.
         reason: String,
     },
-    /// A colour that the run has no field for.
+    /// A colour for which the run has no field.
     #[error("--colour {asked}: the run has no such field; it has {known}")]
     Colour {
         /// The requested colour.
@@ -85,7 +85,7 @@ pub enum FilmError {
         /// The unit of the field's values.
         unit: String,
     },
-    /// A range for tissue, which shows no field.
+    /// A range given for tissue, which shows no field.
     #[error("--range goes with the colour of a field; --colour displacement is one")]
     RangeOfTissue,
     /// A rate of pictures that is not valid.

@@ -1,4 +1,4 @@
-//! Fields of a run, and the quantities of them that a colour shows.
+//! Fields of a run, and their quantities that a colour shows.
 
 use crate::FilmError;
 
@@ -11,7 +11,7 @@ const OF_VECTORS: [&str; 3] = ["x", "y", "z"];
 /// Components of symmetric tensors, in the order of a run's arrays.
 const OF_TENSORS: [&str; 6] = ["xx", "yy", "zz", "xy", "yz", "zx"];
 
-/// Arrays that are no quantity. Their content is shown in other ways.
+/// Arrays that are not quantities. Their content is shown in other ways.
 const NO_FIELDS: [&str; 1] = ["region"];
 
 /// Units of arrays, and their names on bars; others are plain numbers with their own names.
@@ -48,7 +48,7 @@ enum Measure {
     LargestPrincipal,
 }
 
-/// A field and the scalar that is shown of it.
+/// A field and the scalar that is shown.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Shown {
     pub(crate) field: Field,
@@ -157,7 +157,7 @@ impl Colouring {
 }
 
 impl Shown {
-    /// The scalar that is shown of a row of components.
+    /// The scalar that is shown for a row of components.
     pub(crate) fn of(&self, row: &[f64]) -> f64 {
         match (self.measure, row) {
             (Measure::Component(index), row) => row.get(index).copied().unwrap_or(0.0),
@@ -188,7 +188,8 @@ fn largest_principal(diagonal: [f64; 3], [xy, yz, zx]: [f64; 3]) -> f64 {
     mean + 2.0 * size * (half.acos() / 3.0).cos()
 }
 
-/// The scalar of a field that its name alone shows, or its name with a component. `None` if the field has none such.
+/// The scalar of a field for its name alone, or for its name with a component. `None` if the field has no such
+/// component.
 fn measure(field: &Field, component: Option<&str>) -> Option<Measure> {
     let place = |names: &[&str], asked: &str| names.iter().position(|name| *name == asked);
     match (field.components, component) {

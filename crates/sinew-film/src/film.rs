@@ -9,7 +9,7 @@ use crate::tool::{Part, Solid, placed, solid};
 use crate::vector::{V3, add, cross, scaled, sub, turned, unit};
 use crate::{Clip, Colouring, FilmError, Frame, Picture, Size, Timing, Tool, View};
 
-/// Number of instants at which the places of a body and its instruments are sampled.
+/// Number of instants at which the positions of a body and its instruments are sampled.
 const LOOKS: usize = 24;
 
 /// Number of pictures from which the colours of a film are chosen.
@@ -33,7 +33,7 @@ pub struct Look {
     pub title: String,
 }
 
-/// A surface in motion with its instruments, as a camera sees them.
+/// A surface in motion with its instruments, seen by a camera.
 pub struct Film {
     clip: Clip,
     tools: Vec<Tool>,
@@ -48,7 +48,7 @@ pub struct Film {
     span: [f64; 2],
 }
 
-/// The map from places (m) to those of the stage. On the stage the body's middle is the origin and its radius 1.
+/// The map from positions (m) to those of the stage. On the stage the body's middle is the origin and its radius 1.
 #[derive(Debug, Clone, Copy)]
 struct Scale {
     middle: [f64; 3],
@@ -56,7 +56,7 @@ struct Scale {
 }
 
 impl Scale {
-    /// The scale of a clip, by the bounding box of all its places.
+    /// The scale of a clip, from the bounding box of all its positions.
     fn of(clip: &Clip) -> Self {
         let (mut low, mut high) = ([f64::MAX; 3], [f64::MIN; 3]);
         for frame in &clip.frames {
@@ -83,7 +83,7 @@ impl Scale {
         [0, 1, 2].map(|axis| ((place[axis] - self.middle[axis]) / self.radius) as f32)
     }
 
-    /// A displacement or a place in a tool's own frame.
+    /// A displacement or a position in a tool's own frame.
     fn length(&self, v: V3) -> V3 {
         scaled(v, (1.0 / self.radius) as f32)
     }
@@ -177,7 +177,8 @@ impl Film {
         }
     }
 
-    /// The picture at a time (s): before the first frame that of the first, after the last that of the last.
+    /// The picture at a time (s): before the first frame that of the first frame, after the last frame that of the
+    /// last.
     #[must_use]
     pub fn picture(&self, t: f64) -> Picture {
         let mut picture = draw(&self.stage, &self.model(t), self.size);
@@ -286,7 +287,7 @@ impl Film {
         }));
     }
 
-    /// Points that are to be in the picture, and the height of the floor.
+    /// Points that must be in the picture, and the height of the floor.
     fn extent(&self) -> (Vec<V3>, f32) {
         let mut points = Vec::new();
         let step = self.clip.frames.len().div_ceil(LOOKS).max(1);

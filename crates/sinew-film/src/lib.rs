@@ -1,9 +1,9 @@
-//! Pictures and films of a run, by a renderer of its own.
+//! Pictures and films of a run, with our own renderer.
 //!
-//! A [`Run`] reads the frames of a run folder, a [`Film`] shows their surface with the instruments about it: as tissue,
-//! or coloured by a field with the bar of its values. Pictures come as PNG ([`Picture::to_png`]), films as animated PNG
-//! ([`Film::animation`]), which browsers play as they show a picture, or picture by picture for other programs. The crate
-//! takes data and returns bytes: nothing here opens a file. The same run gives the same bytes.
+//! A [`Run`] reads the frames of a run folder, a [`Film`] shows their surface and the instruments: as tissue, or
+//! coloured by a field with the bar of its values. Pictures are PNG ([`Picture::to_png`]). Films are animated PNG
+//! ([`Film::animation`]), which browsers play in place of a picture, or single pictures for other programs. The crate
+//! takes data and returns bytes; it opens no files. The same run gives the same bytes.
 //!
 //! ```
 //! use std::sync::Arc;
@@ -28,24 +28,25 @@
 //!
 //! # Rendering of a picture
 //!
-//! Each pixel has four points, at which the nearest triangle is found; it is shaded once for every triangle that is seen
-//! in it. Normals are smooth across edges of less than 40 degrees. The light comes from one lamp with soft shadows
-//! (variance shadow maps), a weak lamp, and from above and below; the floor is dark beneath things that are on it. Threads
-//! share a picture by bands of rows; the bits do not depend on their number.
+//! Each pixel has four points, at which the nearest triangle is found; it is shaded once for every triangle that is
+//! seen in it. Normals are smooth across edges of less than 40 degrees. The light comes from one lamp with soft shadows
+//! (variance shadow maps), a weak lamp, and from above and below; the floor is dark beneath objects that are on it.
+//! Threads share a picture by bands of rows; the bits do not depend on their number.
 //!
 //! # Libraries that are used, and those that are not
 //!
-//! * `png` 0.18 (MIT or Apache-2.0), which `image` is built on, writes PNG and animated PNG; with `flate2`, which is here
-//!   anyway, it brings seven crates. `image` would add readers and writers of formats that nobody needs.
-//! * Animated WebP: `image-webp` 0.2 writes single pictures, and `webp` binds libwebp, which is C to compile. GIF has the
-//!   same 256 colours and packs them by LZW, which is worse than deflate.
-//! * `euc` 0.5 draws triangles by shaders, with one point a pixel, and leaves light, shadows, cameras and clipping to its
-//!   user: these are in this crate, next to a rasteriser of a hundred lines. The state after 0.5, which smooths edges,
-//!   needed a nightly compiler. `wgpu` needs a driver, in software too, which other computers do not have, and does not
-//!   promise the same bits. `tiny-skia` (BSD) fills paths in the plane; only labels are drawn in the plane here.
+//! * `png` 0.18 (MIT or Apache-2.0), on which `image` is built, writes PNG and animated PNG; with `flate2`, which is
+//!   used already, it adds seven crates. `image` would add readers and writers of formats that are not needed.
+//! * Animated WebP: `image-webp` 0.2 writes single pictures, and `webp` binds libwebp, which needs a C compiler. GIF
+//!   has the same 256 colours and packs them by LZW, which is worse than deflate.
+//! * `euc` 0.5 draws triangles by shaders, with one point a pixel, and leaves light, shadows, cameras and clipping to
+//!   its user: these are in this crate, next to a rasteriser of a hundred lines. The state after 0.5, which smooths
+//!   edges, needed a nightly compiler. `wgpu` needs a driver, even for software rendering, which other computers may
+//!   not have, and does not guarantee the same bits. `tiny-skia` (BSD) fills paths in the plane; only labels are drawn
+//!   in the plane here.
 //! * `ab_glyph` and `fontdue` need a font in the crate, with its licence. Labels are short, and strokes of a pen for a
 //!   hundred letters fit in one file.
-//! * mp4 needs an encoder that nobody would write again. Pictures can be piped to `ffmpeg` if it is installed.
+//! * mp4 needs an encoder, which is too large to write again. Pictures can be piped to `ffmpeg` if it is installed.
 
 mod body;
 mod clip;

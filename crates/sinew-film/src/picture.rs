@@ -37,7 +37,7 @@ impl Picture {
         self.pixels.get(place).copied().filter(|_| is_inside)
     }
 
-    /// Lays a colour over the share `cover` of a pixel. Outside the picture nothing happens.
+    /// Lays a colour over the share `cover` of a pixel. It has no effect outside the picture.
     pub(crate) fn lay(&mut self, (x, y): (i64, i64), colour: [u8; 3], cover: f32) {
         let (width, height) = (self.size.width() as i64, self.size.height() as i64);
         if x < 0 || y < 0 || x >= width || y >= height || cover <= 0.0 {

@@ -14,8 +14,8 @@ pub(crate) struct Range {
 }
 
 impl Range {
-    /// The requested range, or one that fits the values of a clip. A fitting range begins at 0 if no value is below 0, and
-    /// leaves out the peaks that single cells have at corners.
+    /// The requested range, or one that fits the values of a clip. A fitting range begins at 0 if no value is below 0,
+    /// and leaves out the peaks of single cells at corners.
     pub(crate) fn of(
         clip: &Clip,
         asked: Option<[f64; 2]>,

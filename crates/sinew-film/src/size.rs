@@ -42,7 +42,7 @@ impl Size {
         self.height
     }
 
-    /// The same without odd rows and columns, which most films as mp4 cannot have.
+    /// The same size rounded down to even numbers of rows and columns, which most mp4 films need.
     #[must_use]
     pub fn even(self) -> Self {
         Self {

@@ -11,7 +11,7 @@ const LENGTHS: [f64; 2] = [4.0, 12.0];
 /// The largest number of pictures of a film.
 const MOST: usize = 5000;
 
-/// Pictures a second, and the length of a film.
+/// Pictures per second, and the length of a film.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Timing {
     fps: f64,
@@ -54,7 +54,7 @@ impl Timing {
         })
     }
 
-    /// Pictures a second.
+    /// Pictures per second.
     #[must_use]
     pub fn fps(&self) -> f64 {
         self.fps
@@ -66,7 +66,7 @@ impl Timing {
         self.pictures
     }
 
-    /// Times (s) of the pictures, the first and the last of the span among them.
+    /// Times (s) of the pictures, including the first and the last of the span.
     #[must_use]
     pub fn instants(&self, [first, last]: [f64; 2]) -> Vec<f64> {
         let ways = self.pictures.saturating_sub(1).max(1);

@@ -7,11 +7,11 @@ use crate::FilmError;
 /// A direction of view. The body's z axis points up in it, y for views from above and below.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct View {
-    /// Turn (degrees) about z: 0 looks along y, 90 against x.
+    /// Rotation (degrees) about z: 0 looks along y, 90 against x.
     pub azimuth: f64,
     /// Height (degrees) above the plane of x and y: 90 looks down.
     pub elevation: f64,
-    /// True if farther things are smaller. Without it a length is the same everywhere.
+    /// True if farther objects look smaller. Otherwise a length is the same everywhere.
     pub is_perspective: bool,
 }
 
@@ -29,7 +29,7 @@ const NAMED: [(&str, f64, f64, bool); 6] = [
 const SIDE: (&str, &str) = ("side", "right");
 
 impl View {
-    /// From the front, the right and above.
+    /// The view from the front, the right and above.
     #[must_use]
     pub fn iso() -> Self {
         Self::named("iso").unwrap_or(Self {

@@ -1,4 +1,4 @@
-//! The virtual coupling between a device and a tool, and the limits that the device sets.
+//! The virtual coupling between a device and a tool, and the limits of the device.
 
 /// A spring and a damper between a device and the tool of a simulation: the only thing that the device feels.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,7 +51,7 @@ pub enum CouplingError {
         device: f64,
         /// A tick (s).
         tick: f64,
-        /// The stiffness (N/m) below which it has to be with that damping; 0: no stiffness will do.
+        /// The stiffness (N/m) below which it must be with that damping; 0 if no stiffness is possible.
         largest: f64,
     },
 }

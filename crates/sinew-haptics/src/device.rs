@@ -7,7 +7,7 @@ pub trait Device {
     /// Capabilities of the device.
     fn limits(&self) -> DeviceLimits;
 
-    /// Position (m) of its handle, as it measures it.
+    /// Measured position (m) of its handle.
     fn position(&mut self) -> [f64; 3];
 
     /// Rotation vector (rad) of its handle.
@@ -15,6 +15,6 @@ pub trait Device {
         [0.0; 3]
     }
 
-    /// Holds this force (N) on its handle until the next.
+    /// Applies this force (N) to its handle until the next call.
     fn render(&mut self, force: [f64; 3]);
 }

@@ -6,7 +6,7 @@ use triple_buffer::{Input, Output, triple_buffer};
 #[derive(Debug)]
 pub(crate) struct Publisher<T: Send>(Input<T>);
 
-/// The reading end, for the latest value: it never waits, and never reads half of one.
+/// The reading end, for the latest value: it never waits, and never reads an incomplete value.
 #[derive(Debug)]
 pub(crate) struct Reader<T: Send>(Output<T>);
 

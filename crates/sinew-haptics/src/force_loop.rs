@@ -9,7 +9,7 @@ use crate::published::Published;
 /// Energy (J) that a device is granted before it has supplied any: without it no first force could ever be rendered.
 const LENT: f64 = 5e-7;
 
-/// Energy (J) that is not spent on a device that yields: from nothing, no force would ever grow again.
+/// Energy (J) that is kept in reserve for a device that yields: without it, no force could ever grow again.
 const KEPT: f64 = 0.5 * LENT;
 
 /// Largest displacement of a device in the next tick, over that in the last one.
@@ -21,13 +21,13 @@ const TISSUE: f64 = 2.0;
 /// The loop that renders forces at the rate of a device, from the data that a slower simulation publishes.
 ///
 /// It never waits and reads no clock: each tick takes the position of the device and returns the force until the next.
-/// Between two steps the tool is where the tissue of the last step, as a spring, and the coupling are in equilibrium.
+/// Between two steps the tool is at the equilibrium of the coupling and the tissue of the last step, taken as a spring.
 /// Changes by a new step are blended in linearly, over the time of one step.
 ///
 /// The device never receives more energy than it has supplied: the coupling is stretched only as far as that energy
-/// allows, whatever the simulation publishes and however late. This is the passive set-position modulation of Lee and
-/// Huang (IEEE Transactions on Robotics 26, 2010) with the work of the held force computed from positions (Hannaford
-/// and Ryu, IEEE Transactions on Robotics and Automation 18, 2002), which is exact at any tick.
+/// allows, for any published data and any delay of the simulation. This is the passive set-position modulation of Lee
+/// and Huang (IEEE Transactions on Robotics 26, 2010) with the work of the held force computed from positions
+/// (Hannaford and Ryu, IEEE Transactions on Robotics and Automation 18, 2002), which is exact at any tick.
 #[derive(Clone, Debug)]
 pub struct ForceLoop {
     coupling: Coupling,
@@ -35,7 +35,7 @@ pub struct ForceLoop {
     model: LocalModel,
     /// Distance vector (m) between the rendered tool and the position that a new step gave it.
     offset: Vector,
-    /// Ticks that the offset takes to vanish, and those since the last step came.
+    /// Ticks that the offset takes to vanish, and those since the last step was received.
     blend: [u32; 2],
     /// Position (m) of the device at the last tick, from the first on.
     last: Option<Vector>,
@@ -74,8 +74,8 @@ impl ForceLoop {
         })
     }
 
-    /// Limits the stored energy (J) beyond that in coupling and tissue, at first to that of a coupling stretched by 1
-    /// mm: the energy that tissue has dissipated must not come back if a simulation is wrong.
+    /// Limits the stored energy (J) in excess of that in coupling and tissue, initially to that of a coupling stretched
+    /// by 1 mm: the energy that tissue has dissipated must not come back if a simulation is wrong.
     #[must_use]
     pub fn with_reserve(self, reserve: f64) -> Self {
         Self { reserve, ..self }
@@ -129,7 +129,7 @@ impl ForceLoop {
 
     /// The largest force (N) until the next tick that the energy allows, if the device moves along it by up to 1.5
     /// times its last displacement (m). A force that resists a motion may be as large as that of the damper, whose
-    /// energy the motion itself supplies: so a debt, as after a late update of the force, is paid back.
+    /// energy the motion itself supplies: so a deficit, for example after a late update of the force, is compensated.
     fn affordable(&self, resists: bool, moved: f64) -> f64 {
         let Self { device, energy, .. } = self;
         let way = MOST_FASTER * moved + device.resolution;
@@ -149,7 +149,7 @@ impl ForceLoop {
         self.force
     }
 
-    /// Position (m) of the tool as the user feels it.
+    /// Position (m) of the tool that the user feels.
     #[must_use]
     pub fn tool(&self) -> [f64; 3] {
         add(self.last.unwrap_or_default(), self.stretched)
@@ -168,7 +168,8 @@ impl ForceLoop {
         self.is_limited
     }
 
-    /// Ticks by which the next step is late: those since the last one came, beyond its own length.
+    /// Ticks by which the next step is late: the number of ticks since the last one was received, beyond its own
+    /// length.
     #[must_use]
     pub fn late(&self) -> u32 {
         let [ticks, since] = self.blend;
@@ -213,7 +214,7 @@ mod tests {
         forces
     }
 
-    /// Goes from a height (m) to another at 75 mm/s.
+    /// Moves from a height (m) to another at 75 mm/s.
     fn go(forces: &mut ForceLoop, from: f64, to: f64) {
         let ticks = ((to - from).abs() / 75e-6).round();
         for tick in 1..=ticks as u32 {

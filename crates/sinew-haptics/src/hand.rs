@@ -4,7 +4,7 @@ use sinew_tools::vector::{scaled, sub};
 
 use crate::published::DeviceMotion;
 
-/// Ticks over which a velocity is the mean: one step of the encoder in one tick of 1 ms would be 25 mm/s.
+/// Number of ticks over which a velocity is averaged: one step of the encoder in one tick of 1 ms would be 25 mm/s.
 const WINDOW: usize = 8;
 
 /// The last positions of a handle.
@@ -17,7 +17,7 @@ pub(crate) struct Hand {
 }
 
 impl Hand {
-    /// A handle that is seen once a tick (s).
+    /// A handle that is read once per tick (s).
     pub(crate) fn new(tick: f64) -> Self {
         Self {
             tick,
@@ -37,7 +37,7 @@ impl Hand {
         self.rotation_vector = rotation_vector;
     }
 
-    /// Its motion now.
+    /// Its current motion.
     pub(crate) fn motion(&self) -> DeviceMotion {
         let now = self.positions[self.seen % WINDOW];
         let first = self.positions[(self.seen + 1) % WINDOW];

@@ -10,7 +10,7 @@ use crate::published::Published;
 ///
 /// It is the gradient of a convex energy. So the position of a massless tool between this spring and that of a coupling
 /// minimises a sum of two convex energies: the tool moves by no more than the device does, and the force on the device,
-/// that of the coupling, is no stiffer than the coupling, however stiff the tissue.
+/// that of the coupling, is no stiffer than the coupling, for any stiffness of the tissue.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct LocalModel {
     position: Vector,

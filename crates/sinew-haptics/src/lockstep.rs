@@ -6,11 +6,11 @@ use crate::force_loop::ForceLoop;
 use crate::hand::Hand;
 use crate::published::{Published, Simulated};
 
-/// A device and a simulation at their own rates, one after the other: like a run with two threads that meets all
-/// deadlines, but without a clock and with the same bits each time.
+/// A device and a simulation at their own rates, one after the other: equivalent to a run with two threads that meets
+/// all deadlines, but without a clock and with the same bits each time.
 ///
-/// A step begins with the current motion of the device, and its result comes one step later, as if the computer had
-/// needed all that time.
+/// A step begins with the current motion of the device, and its result is published one step later, as if the computer
+/// had needed all that time.
 #[derive(Debug)]
 pub struct Lockstep<S> {
     simulation: S,
@@ -18,13 +18,13 @@ pub struct Lockstep<S> {
     hand: Hand,
     /// Result of the current step, not published yet.
     pending: Option<Published>,
-    /// Ticks until it is published.
+    /// Number of ticks until it is published.
     until: u64,
     ticks_per_step: u64,
 }
 
 impl<S: Simulated> Lockstep<S> {
-    /// A simulation whose tool begins where the device is.
+    /// A simulation whose tool begins at the position of the device.
     ///
     /// # Errors
     /// [`CouplingError`] for a coupling that the device cannot render.

@@ -5,7 +5,7 @@
 pub struct Published {
     /// The time (s) of the simulation at which these data are valid.
     pub t: f64,
-    /// The length (s) of the step that ended then.
+    /// The length (s) of the step that ended at this time.
     pub dt: f64,
     /// Number of steps so far.
     pub steps: u64,

@@ -14,7 +14,7 @@ use crate::hand::Hand;
 use crate::jitter::Jitter;
 use crate::published::{DeviceMotion, Published, Simulated};
 
-/// Time before a tick during which the thread waits without sleep: a thread that sleeps is often woken that late.
+/// Time before a tick during which the thread waits without sleep: a sleeping thread is often woken with such a delay.
 const AWAKE: Duration = Duration::from_micros(150);
 
 /// A run that could not begin, or ended early.
@@ -40,15 +40,15 @@ pub struct LoopReport {
     pub steps: u64,
     /// Number of steps that took longer than their own length.
     pub late_steps: u64,
-    /// The most ticks by which a step was late.
+    /// The largest number of ticks by which a step was late.
     pub most_late: u32,
 }
 
 /// Runs a device in this thread and a simulation in another one, until `each`, which is called after each tick, breaks.
 ///
 /// Neither waits for the other. A simulation that is slower than real time loses time: the loop continues with the last
-/// data, and returns no more energy than it received. No force is left on the device at the end, whatever the reason; a
-/// panic of `each`, of the simulation or of the device continues after that.
+/// data, and returns no more energy than it received. At the end, for any reason, the force on the device is set to
+/// zero; a panic of `each`, of the simulation or of the device continues after that.
 ///
 /// # Errors
 /// [`RealTimeError`] for a coupling that the device cannot render, and a step that cannot be taken.
@@ -134,7 +134,7 @@ impl<D: Device> Drop for Held<'_, D> {
     }
 }
 
-/// Tells the other thread that this one has ended, also by a panic.
+/// Signals to the other thread that this one has ended, also by a panic.
 struct Over<'a>(&'a AtomicBool);
 
 impl Over<'_> {
@@ -149,7 +149,7 @@ impl Drop for Over<'_> {
     }
 }
 
-/// Takes steps until it is over; their number, and that of the late ones.
+/// Takes steps until the run ends; returns their number, and that of the late ones.
 fn step_until<S: Simulated>(
     over: Over<'_>,
     simulation: &mut S,

@@ -7,7 +7,7 @@ use sinew_tools::vector::{Vector, add, scaled, sub};
 use crate::coupling::Coupling;
 use crate::published::{DeviceMotion, Published, Simulated};
 
-/// Stiffness (N/m) that the wall publishes: that of steel behind a square millimetre, and beyond that of any coupling.
+/// Stiffness (N/m) that the wall publishes: that of steel under a square millimetre, and above that of any coupling.
 const STIFFNESS: f64 = 1e6;
 
 /// A point mass on a coupling above the rigid and smooth ground z = 0.

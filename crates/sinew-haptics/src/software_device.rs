@@ -1,4 +1,4 @@
-//! A simulated device, for tests in place of real ones.
+//! A simulated device, for tests instead of real ones.
 
 use std::fmt::{self, Debug};
 
@@ -7,7 +7,7 @@ use sinew_tools::vector::{Vector, add, dot, scaled, sub};
 use crate::coupling::DeviceLimits;
 use crate::device::Device;
 
-/// Substeps of a tick in which its motion is computed.
+/// Number of substeps of a tick in which its motion is computed.
 const PARTS: usize = 10;
 
 /// A handle with a mass, pulled by the spring and the damper of a model of the user's hand that follows a path, with an
@@ -24,7 +24,7 @@ pub struct SoftwareDevice {
     ticks: u64,
     position: Vector,
     velocity: Vector,
-    /// The work (J) of rendered forces on the handle, and the largest that it was.
+    /// The work (J) of rendered forces on the handle, and its largest value.
     work: [f64; 2],
 }
 

@@ -28,7 +28,7 @@ impl Cell {
         &mut vector[3 * self.cell as usize..][..3]
     }
 
-    /// The normal of a smooth surface, without the fixed directions of the cell, and the same divided by its
+    /// The normal of a smooth surface, without the fixed directions of the cell, and the same vector divided by its
     /// squared length; `None` for a cell that is carried fully, or that cannot move along the normal.
     fn normal(&self) -> Option<[Vector; 2]> {
         let Carry::Along(normal) = self.carry else {
@@ -87,9 +87,9 @@ fn add(of_cell: &mut [f64], vector: &Vector, factor: f64) {
 /// Constraint by which a tool carries a cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Carry {
-    /// Along this unit normal only, as by a smooth surface.
+    /// Constraint along this unit normal only, as by a smooth surface.
     Along([f64; 3]),
-    /// In all directions, as by a tool that grasps it, or on which it does not slip.
+    /// Constraint in all directions, as by a tool that grasps the cell, or on which the cell does not slip.
     Fully,
 }
 
@@ -98,7 +98,7 @@ impl Carried {
         self.cells.iter().for_each(|cell| cell.leave(vector));
     }
 
-    /// Forgets all cells, and keeps the memory.
+    /// Removes all cells, but keeps the allocated memory.
     pub fn clear(&mut self) {
         self.cells.clear();
     }
@@ -131,7 +131,7 @@ pub struct LocalStiffness {
 }
 
 impl LocalStiffness {
-    /// For a system with this number of degrees of freedom, in cells of three layers.
+    /// The stiffness for a system with this number of degrees of freedom, in cells of three layers.
     #[must_use]
     pub fn new(dofs: usize) -> Self {
         let zeros = || vec![0.0; dofs];

@@ -11,10 +11,10 @@ use crate::local_model::LocalModel;
 use crate::published::{DeviceMotion, Published, Simulated};
 use crate::stiffness::{Carried, Carry, LocalStiffness};
 
-/// A world in which a device moves a tool, with cuts and a log like any other.
+/// A world in which a device moves a tool, with cuts and a log like any other world.
 ///
-/// A tool that is a body of its own is drawn to the device by its coupling; any other is where the device is. Each step
-/// is a command in the log of the world, which repeats the session without the device.
+/// A tool that is a dynamic body is pulled to the device by its coupling; any other tool is at the position of the
+/// device. Each step is a command in the log of the world, which repeats the session without the device.
 pub struct ToolSimulation {
     world: World,
     tool: ToolId,
@@ -31,7 +31,7 @@ pub struct ToolSimulation {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ToolStepError {
-    /// A tool that the world does not have, or a place of the device that is none.
+    /// A tool that the world does not have, or a position of the device that is not valid.
     #[error("the device cannot move the tool: {0}")]
     Device(#[from] CommandError),
     /// A step that cannot be taken.
@@ -62,8 +62,8 @@ impl ToolSimulation {
         })
     }
 
-    /// Takes this many iterations for the local stiffness in each step from now on, 2 at first; with 0 it is that of a
-    /// tissue of which only the touched nodes yield.
+    /// Sets the number of iterations for the local stiffness in each step, initially 2; with 0 it is the stiffness of a
+    /// tissue in which only the touched nodes yield.
     pub fn set_iterations(&mut self, iterations: usize) {
         self.iterations = iterations;
     }
@@ -79,10 +79,10 @@ impl ToolSimulation {
         &mut self.world
     }
 
-    /// The force (N) of the tissue at a place (m) of the tool, as the user feels it: a force that the tissue of the
-    /// last step, as a spring, does not predict comes through the tool's mass, within the time `sqrt(m/k)` of its
-    /// coupling. A node that meets the tool gives up its momentum within one step, a push that is the harder the
-    /// shorter the step; a tool of mass m takes it up before the coupling does.
+    /// The force (N) of the tissue at a position (m) of the tool that the user feels. A force that the tissue of the
+    /// last step, taken as a spring, does not predict is transmitted through the tool's mass, within the time
+    /// `sqrt(m/k)` of its coupling. A node that comes into contact with the tool loses its momentum within one step,
+    /// with a force that is larger for shorter steps; a tool of mass m absorbs it before the coupling does.
     fn felt(&self, tools: &Tools, force: [f64; 3], at: [f64; 3]) -> [f64; 3] {
         let body = tools.tools()[self.tool.index()].body;
         match (&self.last, body) {
@@ -96,7 +96,7 @@ impl ToolSimulation {
         }
     }
 
-    /// Lists the cells that the tool moves along.
+    /// Lists the cells that the tool carries along.
     fn carry(&mut self, tools: &Tools) {
         let own = &tools.tools()[self.tool.index()];
         self.carried.clear();
@@ -122,7 +122,7 @@ impl ToolSimulation {
         }
     }
 
-    /// Fits the buffers to a body that was cut.
+    /// Adjusts the buffers to a body that was cut.
     fn fit(&mut self) {
         let dofs = self.world.state().u.len();
         if dofs != self.at_rest.len() || self.world.change().is_some() {

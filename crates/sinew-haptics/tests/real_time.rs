@@ -121,7 +121,7 @@ fn a_coupling_that_is_too_stiff_does_not_begin() {
     assert!(refused.to_string().contains("below 10000 N/m"), "{refused}");
 }
 
-/// A device in a wall, which keeps the last force that it was given and panics where it is told to.
+/// A device in a wall, which keeps the last force and panics on request.
 struct Fragile {
     held: [f64; 3],
     renders: usize,

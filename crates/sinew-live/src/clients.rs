@@ -13,13 +13,14 @@ use crate::protocol::{APPLIED_AT, Event};
 /// Credits with which a page begins.
 pub(crate) const FIRST_CREDITS: u32 = 2;
 
-/// Most credits of a page, however many it grants.
+/// Largest number of credits of a page, for any number that it grants.
 const MOST_CREDITS: u32 = 4;
 
-/// Messages queued for one page; a page with more unread ones is disconnected. Several for each order that may wait in the inbox.
+/// Messages queued for one page; a page with more unread ones is disconnected. The limit is several messages for each
+/// order that may wait in the inbox.
 const MOST_WAITING: usize = 1024;
 
-/// Most simultaneous pages.
+/// Largest number of simultaneous pages.
 pub(crate) const MOST_CLIENTS: usize = 16;
 
 /// A picture for pages.
@@ -27,7 +28,7 @@ pub(crate) struct Picture<'a> {
     pub(crate) message: Vec<u8>,
     /// Number of visible changes when it was made.
     pub(crate) changes: u64,
-    /// The surfaces that it belongs to, and their number.
+    /// The surfaces to which it belongs, and their number.
     pub(crate) topology: &'a Bytes,
     pub(crate) epoch: u32,
 }
@@ -38,12 +39,12 @@ struct Client {
     credits: u32,
     /// The last command of this client that the simulation has carried out.
     applied: u32,
-    /// The changes that it has been shown.
+    /// Number of changes that it has received.
     shown: u64,
     next_draw: NextDraw,
-    /// Pictures that wait to be sent.
+    /// Number of pictures that wait to be sent.
     waiting: u32,
-    /// The topology that it has.
+    /// The topology that it has received.
     epoch: Option<u32>,
     sender: Sender<Message>,
 }
@@ -54,7 +55,7 @@ struct List {
     last: u32,
 }
 
-/// All pages, with the credits that they gave.
+/// All pages, with their credits.
 #[derive(Debug, Default)]
 pub(crate) struct Clients(Mutex<List>);
 
@@ -81,7 +82,7 @@ impl Clients {
         Some((id, receiver))
     }
 
-    /// Forgets a client.
+    /// Removes a client.
     pub(crate) fn leave(&self, id: u32) {
         self.lock().clients.retain(|client| client.id != id);
     }
@@ -91,12 +92,12 @@ impl Clients {
         self.lock().find(id).is_some()
     }
 
-    /// Forgets all of them, so that their connections end.
+    /// Removes all clients, so that their connections end.
     pub(crate) fn dismiss(&self) {
         self.lock().clients.clear();
     }
 
-    /// Takes a credit of a client, which draws again after a time.
+    /// Adds a credit of a client, which draws again after a time.
     pub(crate) fn grant(&self, id: u32, until_drawn: Duration) {
         if let Some(client) = self.lock().find(id) {
             client.credits = (client.credits + 1).min(MOST_CREDITS);
@@ -168,14 +169,14 @@ impl Clients {
         });
     }
 
-    /// Tells all clients.
+    /// Sends an event to all clients.
     pub(crate) fn tell_all(&self, event: &Event) {
         let text = event.to_text();
         self.lock()
             .keep(|client| client.take(Message::Text(text.clone().into())));
     }
 
-    /// Tells one client.
+    /// Sends an event to one client.
     pub(crate) fn tell(&self, id: u32, event: &Event) {
         let text = event.to_text();
         self.lock()
@@ -203,7 +204,7 @@ impl Client {
         self.credits > 0 && self.waiting < MOST_CREDITS
     }
 
-    /// True if it wants a picture after `changes` changes.
+    /// True if it needs a picture after `changes` changes.
     fn lacks(&self, changes: u64) -> bool {
         self.shown != changes && self.wants_a_frame()
     }
@@ -213,7 +214,7 @@ impl Client {
         self.next_draw.due(self.credits)
     }
 
-    /// Hands a message over without waiting; `false` where too many wait already.
+    /// Queues a message without waiting; returns `false` if too many already wait.
     fn take(&self, message: Message) -> bool {
         self.sender.try_send(message).is_ok()
     }

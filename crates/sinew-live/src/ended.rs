@@ -10,7 +10,7 @@ pub struct Ended {
     pub t: f64,
     /// The scene, with the page's changes of tools.
     pub scene: Scene,
-    /// Values that are set in its file to get it, as `KEY=VALUE`.
+    /// Values that were set in its file to get it, as `KEY=VALUE`.
     pub values: Vec<String>,
     /// Files of [`Live::keep_logs`](crate::Live::keep_logs) with incomplete logs.
     pub unkept: Vec<JournalError>,

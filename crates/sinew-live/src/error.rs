@@ -6,20 +6,20 @@ use sinew_core::OptionError;
 use sinew_scene::SceneError;
 use sinew_world::{CommandError, WorldError};
 
-/// A page that cannot be served, or a scene that cannot be driven.
+/// A page that cannot be served, or a scene that cannot be simulated.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum LiveError {
     /// The scene cannot be used.
     #[error(transparent)]
     Scene(#[from] SceneError),
-    /// The scene cannot be driven.
+    /// The scene cannot be simulated.
     #[error(transparent)]
     World(#[from] WorldError),
     /// An integrator or a step of a pane is refused.
     #[error(transparent)]
     Command(#[from] CommandError),
-    /// An integrator that does not exist, or an option that it does not take.
+    /// An integrator that does not exist, or an option that it does not have.
     #[error(transparent)]
     Option(#[from] OptionError),
     /// A file of the scene that changed while the page was open.
@@ -53,7 +53,7 @@ pub enum LiveError {
         "a request of the page was still in preparation {seconds} s after the end of the session: it was dropped"
     )]
     Busy {
-        /// Time (s) that it was given.
+        /// Time limit (s).
         seconds: u64,
     },
     /// No random numbers for the address of the page.

@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use crate::protocol::Order;
 
-/// Most orders that wait: a user does not give more.
+/// Largest number of orders that wait: a user does not give more.
 const MOST_ORDERS: usize = 256;
 
 /// A request of a client, by the number that the client gave it.
@@ -37,29 +37,29 @@ pub(crate) struct Place {
 }
 
 /// Requests that wait for the simulation: the latest pose of each tool from each client; the last of consecutive
-/// settings of one kind from a client; everything else, all of it in order.
+/// settings of one kind from a client; all other requests, in order.
 #[derive(Debug, Default)]
 pub(crate) struct Waiting {
-    /// The latest pose that each client asks for, of each tool, in the order in which they came.
+    /// The latest pose of each tool from each client, in the order in which they arrived.
     pub(crate) poses: Vec<Request<Place>>,
-    /// Everything else, in the order in which it came.
+    /// All other requests, in the order in which they arrived.
     pub(crate) orders: VecDeque<Request<Order>>,
-    /// Clients that are new and know no settings.
+    /// New clients, which have not received the settings.
     pub(crate) entered: Vec<u32>,
-    /// True if the simulation is to end.
+    /// True if the simulation must end.
     pub(crate) ends: bool,
     woken: bool,
 }
 
 impl Waiting {
-    /// Drops the requests of some clients.
+    /// Discards the requests of some clients.
     pub(crate) fn forget(&mut self, is_gone: impl Fn(u32) -> bool) {
         self.poses.retain(|pose| !is_gone(pose.client));
         self.orders.retain(|order| !is_gone(order.client));
         self.entered.retain(|client| !is_gone(*client));
     }
 
-    /// The place of an order of the same client for the same step or option, behind which nothing but steps and options wait.
+    /// The index of an order of the same client for the same step or option, after which only steps and options wait.
     fn idle_beside(&self, request: &Request<Order>) -> Option<usize> {
         let wanted = setting(&request.what)?;
         let last = self.orders.iter().enumerate().rev();
@@ -88,7 +88,7 @@ pub(crate) struct Inbox {
 }
 
 impl Inbox {
-    /// Takes a pose behind the others, and forgets an earlier one of the same client for the same tool.
+    /// Queues a pose after the others, and discards an earlier one of the same client for the same tool.
     pub(crate) fn pose(&self, request: Request<Place>) {
         let mut waiting = self.lock();
         let is_same = |earlier: &Request<Place>| {
@@ -99,8 +99,8 @@ impl Inbox {
         self.wake(waiting);
     }
 
-    /// Takes an order behind the others; `false` where too many wait. A setting takes the place of one that it makes idle: a slider that is dragged asks for
-    /// hundreds, each of which sets a method up.
+    /// Queues an order after the others; returns `false` if too many wait. A setting replaces one that it makes
+    /// obsolete: a dragged slider requests hundreds, each of which sets up a method.
     pub(crate) fn order(&self, request: Request<Order>) -> bool {
         let mut waiting = self.lock();
         if let Some(place) = waiting.idle_beside(&request) {
@@ -121,13 +121,13 @@ impl Inbox {
         self.wake(waiting);
     }
 
-    /// Drops the requests of a client that has left.
+    /// Discards the requests of a client that has left.
     pub(crate) fn leave(&self, client: u32) {
         let mut waiting = self.lock();
         waiting.forget(|other| other == client);
     }
 
-    /// Wakes the simulation, for a page gave a credit.
+    /// Wakes the simulation after a page gave a credit.
     pub(crate) fn nudge(&self) {
         self.wake(self.lock());
     }
@@ -139,8 +139,8 @@ impl Inbox {
         self.wake(waiting);
     }
 
-    /// Moves waiting requests into `taken`, which keeps its capacity, after waiting for at most `patience`. While
-    /// orders are left there, others and the poses behind them continue to wait here.
+    /// Moves waiting requests into `taken`, which keeps its capacity, after waiting for at most `patience`. As long as
+    /// orders remain in `taken`, further orders and the poses after them continue to wait here.
     pub(crate) fn take(&self, taken: &mut Waiting, patience: Duration) {
         let mut waiting = self.lock();
         if !waiting.woken && !patience.is_zero() {

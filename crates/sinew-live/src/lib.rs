@@ -1,8 +1,8 @@
-//! A page in a browser on which tissue is pressed while it is simulated.
+//! A page in a browser on which the user presses tissue in a running simulation.
 //!
-//! [`Live`] builds one or two [`sinew_world::World`]s of a scene, serves a page on this computer alone, and steps the sessions in real
-//! time under the commands that the page sends. A page gets pictures only as fast as it draws them: it begins with two
-//! credits, each picture takes one, and each drawn picture gives one back.
+//! [`Live`] builds one or two [`sinew_world::World`]s of a scene, serves a page on this computer only, and steps the
+//! sessions in real time under the commands of the page. A page gets pictures only as fast as it draws them: it begins
+//! with two credits, each picture takes one, and each drawn picture gives one back.
 
 mod clients;
 mod ended;

@@ -1,4 +1,4 @@
-//! A scene behind a page.
+//! A scene that a page shows.
 
 use std::future::IntoFuture;
 use std::io::ErrorKind;
@@ -28,17 +28,17 @@ use crate::tool_facts::tools_of;
 /// Time between two checks for a request to end.
 const LOOK: Duration = Duration::from_millis(50);
 
-/// Time that the simulation has to end: it does so between steps and orders, and to set up a method may take minutes.
+/// Time limit for the simulation to end. It ends between steps and orders, and setting up a method may take minutes.
 const PATIENCE: Duration = Duration::from_secs(3);
 
-/// Three loads of a scene, along x, y and z, by which the user pulls at a place.
+/// Three loads of a scene, along x, y and z, with which the user pulls at a point.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hand {
     /// Names of the loads.
     pub loads: [String; 3],
     /// Force (N) of each.
     pub unit: f64,
-    /// The place (m) at rest.
+    /// The position (m) of the point at rest.
     pub at: [f64; 3],
     /// A sentence for the page.
     pub note: String,
@@ -51,11 +51,11 @@ pub struct Settings {
     pub scene: Scene,
     /// Values that were set in its file to get it, as `KEY=VALUE`.
     pub values: Vec<String>,
-    /// The panes to begin with, one or two.
+    /// The initial panes, one or two.
     pub panes: Vec<PaneChoice>,
     /// The second pane, if it is opened later.
     pub second: PaneChoice,
-    /// Loads by which the user pulls; they are 0 at the beginning.
+    /// Loads with which the user pulls; they are 0 at the beginning.
     pub hand: Option<Hand>,
     /// The port of this computer; 0 for a free one.
     pub port: u16,
@@ -76,7 +76,7 @@ impl Live {
     /// Builds the sessions and listens to the port.
     ///
     /// # Errors
-    /// [`LiveError`] for a scene that cannot be driven, or a port that cannot be listened to.
+    /// [`LiveError`] for a scene that cannot be simulated, or a port that cannot be listened to.
     pub fn open(settings: Settings) -> Result<Self, LiveError> {
         let Settings {
             scene,
@@ -166,7 +166,8 @@ impl Live {
         format!("http://{}/{}/", self.address, self.token)
     }
 
-    /// Keeps a file for each pane up to date with its commands, so that a session that is killed can be repeated. Commands reach it within a second.
+    /// Writes the commands of each pane to a file during the session, so that a killed session can be repeated.
+    /// Commands are written within a second.
     ///
     /// # Errors
     /// [`JournalError`] if a file cannot be written.

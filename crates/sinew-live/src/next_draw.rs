@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-/// Time from the making of a picture to a page that can draw it, if both have much to do.
+/// Time from making a picture until a page can draw it, under heavy load.
 const UNDER_WAY: Duration = Duration::from_millis(6);
 
 /// Time between two draws if a page announces none.
@@ -15,7 +15,7 @@ const BETWEEN_DRAWS: Duration = Duration::from_millis(16);
 pub(crate) struct NextDraw {
     /// Time at which the page announced the draw.
     told: Instant,
-    /// Time at which the late picture is to be made.
+    /// Time at which the late picture must be made.
     late: Instant,
     has_early: bool,
     has_late: bool,
@@ -33,7 +33,7 @@ impl NextDraw {
         }
     }
 
-    /// Time at which the next picture is to be made for a page with `takes` credits; a time in the past means
+    /// Time at which the next picture must be made for a page with `takes` credits; a time in the past means
     /// immediately.
     pub(crate) fn due(&self, takes: u32) -> Instant {
         match (self.has_early, self.has_late) {

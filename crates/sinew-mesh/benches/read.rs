@@ -1,7 +1,7 @@
 //! Time and memory for reading a large mesh, in comparison with meshio on the same files.
 //!
 //! `cargo bench -p sinew-mesh` makes a structured mesh of a million tetrahedra, writes it in every version and
-//! encoding, and reads each file several times. The ratio to meshio is printed where `python3` has meshio. A number after
+//! encoding, and reads each file several times. The ratio to meshio is printed if `python3` has meshio. A number after
 //! `--` is the number of cells along an edge of the cube, for smaller or larger meshes.
 
 #![allow(
@@ -84,7 +84,7 @@ fn measure(name: &str, path: &Path, has_meshio: bool) {
     }
 }
 
-/// The size of what the reader returns (bytes).
+/// The size of the reader's result (bytes).
 fn array_bytes(mesh: &Mesh) -> usize {
     let cells = mesh.cells.iter().map(|block| {
         let per_cell = 8 + 4 + 4;

@@ -1,4 +1,4 @@
-//! Pieces of advice on files that are no meshes of tetrahedra: commands, and a page that has more of them.
+//! Advice on files that are not meshes of tetrahedra: commands, and a page with more of them.
 
 use std::path::Path;
 
@@ -23,7 +23,7 @@ pub(crate) fn meshio_command(path: &Path) -> String {
     )
 }
 
-/// A path as a shell takes it.
+/// A path quoted for a shell.
 pub(crate) fn quoted(path: &Path) -> String {
     let path = path.display().to_string();
     let is_plain = |c: char| c.is_alphanumeric() || "/._-+=:@%,".contains(c);

@@ -28,7 +28,7 @@ impl Bounds {
         [0, 1, 2].map(|axis| (self.high[axis] - self.low[axis]).max(0.0))
     }
 
-    /// The largest of them.
+    /// The largest of the widths.
     pub(crate) fn longest_side(&self) -> f64 {
         self.widths().into_iter().fold(0.0, f64::max)
     }

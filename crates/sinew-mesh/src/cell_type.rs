@@ -2,10 +2,10 @@
 
 use std::fmt;
 
-/// Writes the enum and its lookups from one table, so that no kind can be missing from one of them.
+/// Writes the enum and its lookups from one table, so that every kind is in all of them.
 macro_rules! cell_types {
     ($($variant:ident = ($gmsh_id:literal, $name:literal, $dim:literal, $nodes:literal),)*) => {
-        /// The kind of a cell: shape and number of nodes, named as meshio names it.
+        /// The kind of a cell: shape and number of nodes, with meshio's name.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
         #[non_exhaustive]
         pub enum CellType {
@@ -124,7 +124,7 @@ impl CellType {
         self.name().starts_with("tetra")
     }
 
-    /// The kind with the same shape and no nodes but its corners, which are the first nodes of every kind.
+    /// The kind with the same shape and corner nodes only, which are the first nodes of every kind.
     #[must_use]
     pub fn linear(self) -> CellType {
         use CellType::{Hexahedron, Line, Pyramid, Quad, Tetra, Triangle, Vertex, Wedge};

@@ -6,9 +6,9 @@ use std::fmt;
 /// The number and the range of the values of data.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DataRange {
-    /// Numbers that are there.
+    /// Number of values that are present.
     pub values: usize,
-    /// Numbers that are missing.
+    /// Number of values that are missing.
     pub missing: usize,
     /// The least value; infinite without values.
     pub least: f64,
@@ -24,7 +24,7 @@ pub struct DataRange {
 const COUNTED: usize = 4096;
 
 impl DataRange {
-    /// Range of values, among which NaN means that a value is missing.
+    /// Range of values; NaN means that a value is missing.
     #[must_use]
     pub fn of(values: impl IntoIterator<Item = f64>) -> DataRange {
         let mut range = DataRange {

@@ -43,13 +43,13 @@ pub(crate) fn duplicate_cells<'c>(
     pairs
 }
 
-/// A set of keys that may report a key which was not added, but never misses one that was (a Bloom filter).
+/// A set of keys that may report a key which was not added, but never misses a key that was added (a Bloom filter).
 struct Bits {
     words: Vec<u64>,
 }
 
 impl Bits {
-    /// With 8 to 16 bits for each key: few enough to stay in the processor's cache.
+    /// A set with 8 to 16 bits for each key: small enough to stay in the processor's cache.
     fn for_keys(keys: usize) -> Bits {
         Bits {
             words: vec![0; keys.div_ceil(8).next_power_of_two()],

@@ -1,4 +1,4 @@
-//! A summary of a mesh in a few numbers, for people and programs.
+//! A summary of a mesh in a few numbers, for users and programs.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -264,7 +264,7 @@ fn counts(counts: &BTreeMap<&'static str, usize>) -> String {
     format!("{{{}}}", entries.join(","))
 }
 
-/// JSON has neither infinities nor NaN.
+/// A number as JSON, which has neither infinities nor NaN.
 fn number(x: f64) -> String {
     if x.is_finite() {
         format!("{x:?}")

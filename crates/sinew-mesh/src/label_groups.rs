@@ -1,14 +1,14 @@
-//! Groups made of data that are labels.
+//! Groups made from data that are labels.
 
 use std::collections::{BTreeMap, BTreeSet, HashSet};
 
 use crate::mesh::{CellBlock, CellIndex, Mesh};
 use crate::physical_tags::PhysicalTags;
 
-/// The most different values that labels have.
+/// Largest number of different values of labels.
 const MOST: usize = 4096;
 
-/// A group that was made of data.
+/// A group that was made from data.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct LabelGroup {
     /// Its name.
@@ -19,7 +19,7 @@ pub struct LabelGroup {
     pub cells: usize,
 }
 
-/// Data of which no groups can be made.
+/// Data from which no groups can be made.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum LabelError {
@@ -28,10 +28,10 @@ pub enum LabelError {
     Unknown {
         /// The requested name.
         name: String,
-        /// The names that there are.
+        /// The existing names.
         known: Vec<String>,
     },
-    /// Several have it.
+    /// Several data have the name.
     #[error(
         "{count} data of cells are named \"{name}\"; keep one of them, or give each a name of its own"
     )]
@@ -64,7 +64,7 @@ pub enum LabelError {
         /// Tag of the cell.
         element_tag: u64,
     },
-    /// There are more different values than labels have.
+    /// There are more different values than labels may have.
     #[error("the data \"{name}\" are no labels: they have more than {MOST} different values")]
     TooMany {
         /// Name of the data.
@@ -89,14 +89,16 @@ pub enum LabelError {
 }
 
 impl Mesh {
-    /// Adds a group for each value of data that have one whole number for each cell: the cells with the value 2 of `labels` become the
-    /// group `labels_2`, and in each dimension one of its own. Groups that cells have stay theirs, and so do the data.
+    /// Adds a group for each value of data that have one whole number for each cell: the cells with the value 2 of
+    /// `labels` become the group `labels_2`, with a separate group for each dimension. Existing groups of the cells and
+    /// the data stay.
     ///
     /// Cells without a value get no group. The tag of a group is its value, if that is positive and free.
     ///
     /// # Errors
     ///
-    /// If there are no such data, they are no whole numbers or have more than 4096 different values, or a group has the name already.
+    /// If there are no such data, the values are not whole numbers or have more than 4096 different values, or a group
+    /// already has the name.
     ///
     /// ```
     /// use sinew_mesh::structured::{Split, cube};
@@ -211,7 +213,7 @@ impl Mesh {
     }
 }
 
-/// The label itself if it can be a tag, else a free one.
+/// The label itself if it can be a tag, otherwise a free tag.
 fn free_tag(dim: u8, label: i64, taken: &mut HashSet<(u8, i32)>) -> i32 {
     let own = i32::try_from(label).ok().filter(|tag| *tag > 0);
     let candidates = own.into_iter().chain(1..i32::MAX);

@@ -1,10 +1,10 @@
 //! Tetrahedral meshes with named groups: .msh, .vtu, .vtk, .mesh and .inp in, .msh and .vtu out, checks and repairs, structured
 //! generators.
 //!
-//! A file is read into a [`Mesh`]: all its cells, tags, groups and warnings, arranged as meshio arranges them.
+//! A file is read into a [`Mesh`]: all its cells, tags, groups and warnings, in the arrangement of meshio.
 //! [`Mesh::check`] finds defects that make a simulation fail, [`info::MeshInfo`] sums a mesh up, [`write_msh`] and
 //! [`vtu::write_vtu`] write it. [`Mesh::to_tet_mesh`] turns it into the [`TetMesh`] that a simulation needs. This crate
-//! knows no mechanics.
+//! contains no mechanics.
 //!
 //! ```
 //! use sinew_mesh::{GroupMembers, read_msh, structured, write_msh41_ascii};

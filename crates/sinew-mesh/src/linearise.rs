@@ -1,4 +1,4 @@
-//! Cells of second and higher order taken by their corners.
+//! Conversion of cells of second and higher order to linear cells with the same corners.
 
 use std::collections::BTreeMap;
 
@@ -13,9 +13,9 @@ const EDGES: [[usize; 2]; 6] = [[0, 1], [1, 2], [2, 0], [0, 3], [1, 3], [2, 3]];
 #[derive(Debug, Clone, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Linearised {
-    /// The number of changed cells of each kind that they had.
+    /// The number of changed cells, by their former kind.
     pub cells: BTreeMap<CellType, usize>,
-    /// Nodes that only these cells had, away from their corners; they are dropped.
+    /// Number of nodes that only these cells had, away from their corners; they are dropped.
     pub dropped_nodes: usize,
     /// The greatest distance of a mid-edge node of a second-order line, triangle or tetrahedron from the middle of the straight
     /// edge, in the mesh's unit: about the error of a curved boundary.
@@ -23,8 +23,8 @@ pub struct Linearised {
 }
 
 impl Mesh {
-    /// Makes every cell a linear one with the same corners, and drops the other nodes of the cells unless they are corners
-    /// elsewhere. Groups and element tags stay; values at the nodes of cells stay at the corners.
+    /// Replaces every cell by a linear one with the same corners, and drops the other nodes of the cells unless they
+    /// are corners elsewhere. Groups and element tags stay; values at the nodes of cells stay at the corners.
     ///
     /// A mesh of linear cells is unchanged.
     pub fn linearise(&mut self) -> Linearised {
@@ -87,7 +87,8 @@ impl Mesh {
     }
 }
 
-/// The nodes in the middle of edges of a second-order line, triangle or tetrahedron, as places in a row of nodes, each with the two corners of its edge; none of other kinds.
+/// The nodes in the middle of edges of a second-order line, triangle or tetrahedron, as places in a row of nodes, each
+/// with the two corners of its edge; none for other kinds.
 pub(crate) fn middle_nodes(kind: CellType) -> impl Iterator<Item = (usize, [usize; 2])> + Clone {
     let edges = match kind {
         CellType::Line3 => &EDGES[..1],

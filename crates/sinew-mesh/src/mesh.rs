@@ -13,7 +13,7 @@ use crate::warning::Warning;
 /// connectivity. Node and element tags, every physical group of a cell and a name table keyed by dimension *and* tag, which
 /// meshio drops, are kept as well.
 ///
-/// To build one in a program, start from [`Mesh::default`] and fill the fields in.
+/// To build a mesh in a program, start from [`Mesh::default`] and fill in the fields.
 #[derive(Debug, Clone, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Mesh {
@@ -37,11 +37,11 @@ pub struct Mesh {
     pub periodic: Vec<PeriodicLink>,
     /// The sections of the file that were skipped, in file order.
     pub skipped_sections: Vec<String>,
-    /// Remarks of the reader about contents that it accepted but a user should know of.
+    /// Remarks of the reader about contents that it accepted but that the user should know.
     pub warnings: Vec<Warning>,
 }
 
-/// A geometrical entity of the model that a mesh was made from.
+/// A geometrical entity of the model from which a mesh was made.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Entity {
     /// 0 point, 1 curve, 2 surface, 3 volume.
@@ -184,7 +184,7 @@ pub struct PeriodicLink {
     pub dim: u8,
     /// Tag of the dependent entity.
     pub entity: i32,
-    /// Tag of the entity it is a copy of.
+    /// Tag of the original entity.
     pub master: i32,
     /// The 4 x 4 transformation, in row-major order, that takes the master onto the dependent entity; empty if the file
     /// has none.
@@ -193,7 +193,7 @@ pub struct PeriodicLink {
     pub node_tags: Vec<[u64; 2]>,
 }
 
-/// The cells of one named physical group, as meshio's `cell_sets` gives them.
+/// The cells of one named physical group, as in meshio's `cell_sets`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct CellSet {
     /// Name of the group.

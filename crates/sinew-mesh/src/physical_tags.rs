@@ -1,9 +1,9 @@
-//! The physical groups that each cell of a block belongs to.
+//! The physical groups of each cell of a block.
 
 /// The physical tags of each cell of a block: none, one or several per cell.
 ///
-/// A list that many cells share is stored once. Tags keep the sign they have in the file (gmsh writes `-3` for
-/// "group 3, reversed"); membership goes by the absolute value, and 0 never occurs.
+/// A list that many cells share is stored once. Tags keep their sign in the file (gmsh writes `-3` for "group 3,
+/// reversed"); membership depends on the absolute value, and 0 never occurs.
 #[derive(Debug, Clone, Default)]
 pub struct PhysicalTags {
     lists: Vec<Vec<i32>>,

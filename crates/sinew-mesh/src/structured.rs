@@ -15,11 +15,12 @@ use crate::tet_mesh::{Group, GroupMembers, OUTWARD_FACES, TetMesh};
 /// Way of cutting the hexahedra of a grid into tetrahedra.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Split {
-    /// Every hexahedron around its diagonal from the lowest to the highest corner (Kuhn 1960). All diagonals point one
-    /// way, which makes the mesh stiffer in some directions than in others: a beam of plain tetrahedra bends sideways, too.
+    /// Every hexahedron around its diagonal from the lowest to the highest corner (Kuhn 1960). All diagonals have the
+    /// same direction, which makes the mesh stiffer in some directions than in others: a beam of plain tetrahedra bends
+    /// sideways, too.
     Kuhn,
-    /// [`Split::Kuhn`] with hexahedron (i, j, k) reflected in x, y, z where i, j, k is odd. No direction is
-    /// preferred over its mirror image.
+    /// [`Split::Kuhn`] with hexahedron (i, j, k) reflected in x, y, z if i, j, k is odd. No direction is preferred over
+    /// its mirror image.
     Mirrored,
 }
 
@@ -251,8 +252,8 @@ impl Grid {
         tets
     }
 
-    /// The faces, turned outwards, whose nodes lie on one plane of the box: `on_face` is given the least and the
-    /// greatest grid position of a face.
+    /// The faces, turned outwards, whose nodes lie on one plane of the box: `on_face` receives the least and the
+    /// largest grid position of a face.
     fn surface(
         &self,
         tets: &[[u32; 4]],

@@ -20,7 +20,7 @@ impl fmt::Display for Position {
     }
 }
 
-/// Something in a file that was accepted, but that its user should know of.
+/// Content of a file that was accepted, but that its user should know.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Warning {
     /// Place in the file, if the warning is about one.

@@ -1,4 +1,4 @@
-//! The balance of energy of a run.
+//! The energy balance of a run.
 
 use std::sync::Arc;
 
@@ -36,16 +36,16 @@ pub(crate) struct Energies {
     pub(crate) damped: f64,
     /// Energy that the method dissipated since the beginning, if its closed form is known.
     pub(crate) method: Option<f64>,
-    /// Change of energy that the entries above do not explain: energy stored and dissipated by memory (negative then),
-    /// energy that the method takes, if unknown, and errors from the distance between rows.
+    /// Change of energy that the entries above do not explain: energy stored and dissipated by memory (negative),
+    /// energy that the method dissipates, if unknown, and errors from the distance between rows.
     pub(crate) remainder: f64,
-    /// Energy supplied up to then: the energy at the start and the work since.
+    /// Energy supplied up to this instant: the energy at the start and the work since then.
     pub(crate) given: f64,
     /// Energy dissipated since the beginning by the method, if it is a dissipative one, or by its clamp.
     pub(crate) taken: Option<f64>,
 }
 
-/// Sums of a balance: all that a checkpoint stores of it in addition to the last motion.
+/// Sums of a balance: the data that a checkpoint stores in addition to the last motion.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Sums {
     first: f64,
@@ -53,7 +53,7 @@ pub(crate) struct Sums {
     supports: f64,
     damped: f64,
     method: f64,
-    /// Work of tools' forces on the nodes: that of tools less the dissipation of friction.
+    /// Work of tools' forces on the nodes: that of tools minus the dissipation by friction.
     at_contacts: f64,
     pub(crate) cuts: f64,
     /// Energy (J) that damping added, which is always an error.
@@ -75,7 +75,7 @@ impl Sums {
 }
 
 /// Motion at the last row: time (s), displacement (m) and velocity (m/s) of the degrees of freedom, and the
-/// acceleration (m/s^2) if the energy that the method takes is known.
+/// acceleration (m/s^2) if the energy that the method dissipates is known.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct LastRow {
     pub(crate) t: f64,
@@ -93,8 +93,8 @@ pub(crate) struct LastRow {
 /// Between two rows forces are taken as the mean of both ends and velocities as `du/dt`, so that for the mean
 /// acceleration method (Newmark with gamma 1/2 and beta 1/4), with a row for every step, only rounding remains, jumps
 /// and kinks of loads included. Work of a support against the inertia and the damping of its own nodes is computed from
-/// their kinetic energy and their dissipation, so jumps of its speed do not matter. Loads that jump or bend together
-/// with moved supports remain in part.
+/// their kinetic energy and their dissipation, so jumps of its velocity do not matter. Part of the error remains for
+/// loads that jump or have kinks together with moved supports.
 pub(crate) struct Balance {
     body: Arc<SceneBody>,
     may_be_cut: bool,
@@ -102,17 +102,17 @@ pub(crate) struct Balance {
     pub(crate) last: Option<LastRow>,
     /// All nodes at the last row, if some are moved.
     nodes: Option<Nodes>,
-    /// Closed form of the energy that the method takes, if known.
+    /// Closed form of the energy that the method dissipates, if known.
     form: Option<NumericalDissipation>,
     /// True if the method itself dissipates energy.
     takes_energy: bool,
-    /// True if each step is checked to measure how much.
+    /// True if each step is checked to measure the dissipated energy.
     is_watched: bool,
     /// True if each step has a row.
     has_rows_of_steps: bool,
 }
 
-/// A row, with all nodes then if some are moved.
+/// A row, with all nodes at its time if some are moved.
 type End<'a> = (&'a LastRow, Option<&'a Nodes>);
 
 /// Work (J) of loads and of supports, without the work against the inertia of the supports' own nodes, and energy (J)
@@ -146,7 +146,7 @@ impl Work {
     }
 }
 
-/// The motion half way between two rows, by the cubic curve that has their displacements and velocities.
+/// The motion halfway between two rows, from the cubic curve through their displacements and velocities.
 fn half_way([last, here]: [&LastRow; 2]) -> LastRow {
     let span = here.t - last.t;
     let mean = |[a, b]: [&[f64]; 2]| -> Vec<f64> {
@@ -182,7 +182,7 @@ struct Nodes {
 }
 
 impl Balance {
-    /// Begins with rows at these steps of the method; of several methods, or steps of several lengths, with `None`.
+    /// Begins with rows at these steps of the method; `None` for several methods, or steps of several lengths.
     pub(crate) fn new(
         scene: &Simulation,
         body: &Arc<SceneBody>,
@@ -236,7 +236,7 @@ impl Balance {
         self.body.model().tools().map(|tools| &**tools)
     }
 
-    /// True if the energy that the method takes is known in closed form.
+    /// True if the energy that the method dissipates is known in closed form.
     pub(crate) fn knows_method(&self) -> bool {
         self.form.is_some()
     }
@@ -251,7 +251,7 @@ impl Balance {
     }
 
     /// True if missing energy can be attributed to the method or its clamp: the body has no memory, and friction at
-    /// tools is known, since every step is seen.
+    /// tools is known, since every step is checked.
     fn tells_taken(&self, moment: &Moment<'_>) -> bool {
         (self.takes_energy || moment.work.saturated > 0)
             && !self.has_memory()
@@ -266,7 +266,7 @@ impl Balance {
         Ok(self)
     }
 
-    /// Continues with loads that follow inputs, which changes no force yet.
+    /// Continues with loads that follow inputs, which does not change forces yet.
     pub(crate) fn change_loads(&mut self, body: &Arc<SceneBody>) {
         self.body = Arc::clone(body);
     }
@@ -310,7 +310,7 @@ impl Balance {
         (!body.problem.moves.is_empty()).then_some(&body.model)
     }
 
-    /// The next row, with the velocity `v` (m/s) at its time.
+    /// Adds the next row, with the velocity `v` (m/s) at its time.
     pub(crate) fn row(
         &mut self,
         moment: &Moment<'_>,
@@ -387,7 +387,7 @@ impl Balance {
     /// Work of loads, supports and damping between two rows.
     ///
     /// If the rows are one step apart and that step was divided into substeps, the work over both halves is computed
-    /// too, with the motion half way, and the leading error of the means, which falls by a factor of four, is removed.
+    /// too, with the motion halfway, and the leading error of the means, which falls by a factor of four, is removed.
     fn work_between(
         &self,
         ends: [End<'_>; 2],
@@ -442,7 +442,7 @@ impl Balance {
         })
     }
 
-    /// True if a load or a support changed between the last two rows, or may have.
+    /// True if a load or a support changed, or may have changed, between the last two rows.
     pub(crate) fn has_changed(&self) -> bool {
         let (Some(body), Some(last)) = (self.body.model().body(), &self.last) else {
             return true;
@@ -460,7 +460,7 @@ impl Balance {
         law.is_none_or(ElasticLaw::loads_follow) || !ramps.all(rests)
     }
 
-    /// The acceleration that the method keeps, if it matters; before the first step the consistent one.
+    /// The acceleration that the method stores, if it is needed; before the first step the consistent one.
     fn acceleration(&self, moment: &Moment<'_>, v: &[f64]) -> Result<Vec<f64>, RecordRunError> {
         if self.form.is_none() {
             return Ok(Vec::new());
@@ -473,7 +473,7 @@ impl Balance {
         Ok(a)
     }
 
-    /// The energy (J) that the method takes in a step between two rows, 0 if that is not known.
+    /// The energy (J) that the method dissipates in a step between two rows; 0 if that is unknown.
     fn taken_by_method(&self, last: &LastRow, here: &LastRow, inputs: &Inputs) -> f64 {
         let (Some(form), Some(operators)) = (self.form, self.operators()) else {
             return 0.0;
@@ -518,8 +518,8 @@ impl Balance {
         work([&forces, &forces], [&last.u, &here.u])
     }
 
-    /// Loads (N) on the degrees of freedom at two rows. Their mean has the impulse of the loads between the rows, jumps
-    /// included.
+    /// Loads (N) on the degrees of freedom at two rows. Their mean gives the impulse of the loads between the rows,
+    /// jumps included.
     fn loads_at_ends(
         &self,
         last: &LastRow,
@@ -627,8 +627,8 @@ impl Balance {
                 .sum::<f64>())
     }
 
-    /// Energy (J) that damping takes between two rows: `w' D w dt` with `w = du/dt`, and D half way between them. For a
-    /// body with moved parts all nodes count, with these displacements (m).
+    /// Energy (J) that damping dissipates between two rows: `w' D w dt` with `w = du/dt`, and D halfway between them.
+    /// For a body with moved parts all nodes count, with these displacements (m).
     fn damped(
         &self,
         [last, here]: [&LastRow; 2],

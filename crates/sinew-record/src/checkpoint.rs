@@ -20,7 +20,7 @@ const HEAD: &str = "sinew checkpoint 11\n";
 /// Bytes of the checksum at its end.
 const CHECKSUM: usize = 32;
 
-/// Data, besides the world, from which a run continues.
+/// Data, in addition to the world, from which a run continues.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub(crate) struct Checkpoint {
     pub(crate) progress: Progress,
@@ -75,7 +75,7 @@ impl Checkpoint {
     }
 }
 
-/// The checksum of a checkpoint together with the files of the run, so that that of another run does not fit.
+/// The checksum of a checkpoint together with the files of the run, so that the checkpoint of another run is refused.
 fn checksum(folder: &OwnedFolder, bytes: &[u8]) -> Result<[u8; CHECKSUM], RecordRunError> {
     let mut hash = Sha256::new();
     hash.update(bytes);

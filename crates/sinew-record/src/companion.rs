@@ -1,8 +1,8 @@
-//! The one who watches a run.
+//! The observer of a run.
 
-/// Watches a run: shows how far it is, and may end it.
+/// An observer of a run: shows its progress, and may end it.
 pub trait Companion {
-    /// True if the run shall stop, with a checkpoint if it writes any; called several times a second.
+    /// True if the run must stop, with a checkpoint if it writes any; called several times a second.
     fn is_interrupted(&self) -> bool {
         false
     }
@@ -11,5 +11,5 @@ pub trait Companion {
     fn progress(&mut self, _steps: usize, _t: f64) {}
 }
 
-/// Watches nothing.
+/// An observer that does nothing.
 impl Companion for () {}

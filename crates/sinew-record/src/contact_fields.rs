@@ -26,7 +26,7 @@ impl ContactFields {
         }
     }
 
-    /// Takes forces (N) on the degrees of freedom, with the displacements (m) of all nodes.
+    /// Computes the fields from forces (N) on the degrees of freedom, with the displacements (m) of all nodes.
     pub(crate) fn take(
         &mut self,
         model: &Model,

@@ -1,6 +1,6 @@
 //! Tables of numbers over time, read back.
 
-/// Share of a time by which two may differ and still be the same.
+/// Share of a time within which two times count as the same.
 pub(crate) const SAME_TIME: f64 = 1e-9;
 
 /// A table of numbers: names of columns, of which the first is the time, and rows of equal length.
@@ -11,8 +11,8 @@ pub(crate) struct Table {
 }
 
 impl Table {
-    /// Reads a table as a run writes it, or returns a message of the expected content. Lines that begin with # are
-    /// comments.
+    /// Reads a table in the format of runs, or returns a message about the expected content. Lines that begin with #
+    /// are comments.
     pub(crate) fn parse(text: &str) -> Result<Self, String> {
         let mut lines = text.lines().filter(|line| !line.starts_with('#'));
         let head = lines.next().ok_or("expected a line of column names")?;
@@ -28,7 +28,7 @@ impl Table {
         Ok(Self { names, rows })
     }
 
-    /// A column by its place.
+    /// A column by its index.
     pub(crate) fn column(&self, place: usize) -> impl Iterator<Item = f64> + '_ {
         self.rows
             .iter()

@@ -13,17 +13,17 @@ use crate::error::RecordRunError;
 use crate::recorder::Schedules;
 use crate::taken_energy::Taken;
 
-/// Steps of a method that a clamp may brake per check: a check costs up to three of its steps.
+/// Steps between two checks of a method with a clamp: a check costs up to three of its steps.
 const STEPS_FOR_A_LOOK: usize = 20;
 
-/// Checks in a run of such a method, if it has as many steps.
+/// Number of checks in a run of such a method, if it has at least as many steps.
 const LOOKS: usize = 100;
 
-/// A recorder that measures the energy taken by a dissipative method at each step, or by a clamp now and then, and
+/// A recorder that measures the energy taken by a dissipative method at each step, or by a clamp at some steps, and
 /// reports it.
 pub struct EnergyLoss {
     body: Arc<SceneBody>,
-    /// `None` if nothing is checked.
+    /// The balance and its schedule; `None` if nothing is checked.
     looks: Option<(Balance, Schedule)>,
     saturates: bool,
     v: Vec<f64>,
@@ -56,7 +56,7 @@ impl EnergyLoss {
         }
     }
 
-    /// A sentence about the energy, if the method dissipated much of it.
+    /// A sentence about the energy, if the method dissipated a large part of it.
     #[must_use]
     pub fn in_words(&self) -> Option<String> {
         let method = format!("`{}`", self.body.scene().settings().integrator);

@@ -16,7 +16,7 @@ pub enum RecordRunError {
     /// A folder or file that cannot be written or read.
     #[error(transparent)]
     Output(#[from] OutputError),
-    /// The scene that an earlier run left cannot be used.
+    /// The scene of an earlier run that cannot be used.
     #[error(transparent)]
     Scene(#[from] SceneError),
     /// An option that the integrator refuses.
@@ -61,7 +61,7 @@ pub enum RecordRunError {
         /// The reason.
         reason: String,
     },
-    /// A file of the folder that is not as the run left it.
+    /// A file of the folder that was changed after the run wrote it.
     #[error("{} is not as the run wrote it: {reason}; run the scene again, with --again into this folder", path.display())]
     Altered {
         /// The file.
@@ -69,7 +69,7 @@ pub enum RecordRunError {
         /// The difference.
         reason: String,
     },
-    /// A run that was not completed and can be gone on with.
+    /// A run that was not completed and can be continued.
     #[error("{} holds a run that was not completed: `sinew resume {}` continues it; to discard it, use `sinew run --again`", folder.display(), folder.display())]
     Resumable {
         /// The folder.
@@ -82,11 +82,11 @@ pub enum RecordRunError {
     TooMuch {
         /// Their number.
         asked: usize,
-        /// The kind of results asked for.
+        /// The kind of requested results.
         what: &'static str,
-        /// The most that a folder may contain.
+        /// The largest number that a folder may contain.
         most: usize,
-        /// The key of the scene that asks for them.
+        /// The key of the scene that requests them.
         key: &'static str,
     },
     /// An input that changed since the run began.
@@ -98,7 +98,7 @@ pub enum RecordRunError {
     /// An input that cannot be read.
     #[error("{0}; the run reads it")]
     NoInput(#[from] InputFileError),
-    /// A session that is repeated, whose folder a run is to continue.
+    /// The folder of a repeated session, which a run cannot continue.
     #[error("{} holds a session that was repeated by its log, with which no run can go on: repeat it again, by `sinew run --replay`", folder.display())]
     Replay {
         /// The folder.

@@ -1,13 +1,13 @@
-//! Loads and motions that vary faster than energies are checked.
+//! Loads and motions that vary too fast for the checks of energy.
 
 use sinew_core::Ramp;
 use sinew_scene::SceneBody;
 
-/// Checks within half a wave of a sine from which on its work is known to 10 %.
+/// Least number of checks within half a wave of a sine for which its work is known to 10 %.
 const LOOKS: f64 = 5.0;
 
-/// A sentence which says that checks of energy every `span` (s) are too rare to show the effect of the method, since a
-/// load or a motion varies faster; `None` otherwise.
+/// A sentence if checks of energy every `span` (s) are too rare to show the effect of the method, since a load or a
+/// motion varies faster; `None` otherwise.
 pub(crate) fn unseen(body: &SceneBody, span: f64) -> Option<String> {
     let problem = &body.model().body()?.problem;
     let loads = problem.loads.iter().map(|load| &load.ramp);

@@ -15,7 +15,7 @@ use crate::frames::{self, frame_name};
 use crate::progress::Seen;
 use crate::seal::Seal;
 
-/// The motion of the degrees of freedom at an instant, as a frame shows it.
+/// The motion of the degrees of freedom at an instant, for a frame.
 #[derive(Debug, Default)]
 pub(crate) struct Snapshot {
     /// Number of the frame, from 0.
@@ -91,14 +91,14 @@ pub(crate) struct Fields {
     v: Vec<[f64; 3]>,
     /// Accelerations; empty if none are requested.
     a: Vec<[f64; 3]>,
-    /// None if nothing touches the body.
+    /// The fields of contact; `None` if nothing touches the body.
     contact: Option<ContactFields>,
     tets: Tets,
     /// Region of each tetrahedron, counted from 1.
     regions: Vec<u8>,
-    /// True if all regions have stress, which springs have not.
+    /// True if all regions have stress; springs have none.
     stressed: bool,
-    /// The largest stable step (s) of each tetrahedron alone; empty if not asked for.
+    /// The largest stable step (s) of each tetrahedron alone; empty if not requested.
     step_limits: Vec<f32>,
 }
 
@@ -193,7 +193,7 @@ impl Fields {
         frames::write(folder, &frame_name(*frame), &grid, encoding)
     }
 
-    /// The fields at points, each with its number of components as `of` picks and rounds it.
+    /// The fields at points, each with its number of components; `of` selects and rounds the values.
     fn point_data(&self, of: &dyn Fn(&[f64], usize) -> Vec<f32>) -> Vec<Array<'_>> {
         let vector =
             |name, field: &[[f64; 3]]| Array::of_singles(name, 3, of(field.as_flattened(), 3));
@@ -247,9 +247,9 @@ impl Fields {
     }
 }
 
-/// The largest step (s) at which each tetrahedron alone, or with those over which its strain is averaged, with the
-/// masses of its nodes, is stable under central difference: 2/omega with its largest frequency. The largest frequency
-/// of the body is below all of them (Rayleigh's principle); at small strain.
+/// The largest step (s) at which each tetrahedron alone, or together with those over which its strain is averaged, with
+/// the masses of its nodes, is stable under central difference: 2/omega with its largest frequency, at small strain. No
+/// frequency of a tetrahedron alone is above the largest frequency of the body (Rayleigh's principle).
 fn step_limits(model: &Model) -> Vec<f32> {
     let omegas = model.tet_omegas_squared();
     let limits = omegas

@@ -5,22 +5,22 @@ use sinew_scene::{ProbeRows, Simulation};
 use crate::recorder::Schedules;
 use crate::tool_rows::ToolRows;
 
-/// Bytes of a frame's text.
+/// Number of bytes of a frame's text.
 const TEXT: usize = 2000;
 
-/// Bytes of a number in a table, on average.
+/// Average number of bytes of a number in a table.
 const NUMBER: usize = 21;
 
-/// Files that a run in a folder of its own will write, apart from a page, a summary and a checkpoint.
+/// Predicted sizes of the files that a run writes into its folder, without the page, the summary and the checkpoint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct FolderSize {
     /// Frames of fields; none for an oscillator.
     pub frames: usize,
-    /// Bytes of a frame before compression, but for its text.
+    /// Bytes of a frame before compression, without its text.
     pub frame_bytes: usize,
     /// True if frames are compressed, to a size that depends on the motion.
     pub is_compressed: bool,
-    /// Bytes of the tables, roughly: numbers are as long as they need to be.
+    /// Approximate bytes of the tables: the length of numbers varies.
     pub table_bytes: usize,
 }
 

@@ -1,4 +1,4 @@
-//! Checks at the instants of frames, in runs that write none.
+//! Checks at the instants of frames, in runs without frames.
 
 use std::sync::Arc;
 
@@ -11,26 +11,25 @@ use crate::progress::Seen;
 use crate::recorder::Schedules;
 use crate::summary;
 
-/// Extremes of a motion at the instants of frames: warnings are those of a run with a folder.
+/// Extremes of a motion at the instants of frames: warnings are the same as in a run with a folder.
 #[derive(Debug, Clone, Default)]
 pub struct Looked {
     seen: Seen,
 }
 
 impl Looked {
-    /// Warnings of deformations beyond small-strain theory, of tetrahedra inside out, and of parts or surfaces in each
-    /// other.
+    /// Warnings of deformations beyond small-strain theory, inverted tetrahedra, and overlapping parts or surfaces.
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
         summary::warnings(&self.seen)
     }
 }
 
-/// A recorder that checks the deformation of a body, and its parts and surfaces for overlap, at the instants at which a
-/// folder has frames.
+/// A recorder that checks the deformation of a body, and its parts and surfaces for overlap, at the instants of the
+/// frames of a folder.
 #[derive(Debug)]
 pub struct FrameLooks {
-    /// `None` for an oscillator.
+    /// The checks; `None` for an oscillator.
     watch: Option<Watch>,
     looked: Looked,
 }
@@ -76,7 +75,7 @@ impl FrameLooks {
         }
     }
 
-    /// The extremes seen by the checks.
+    /// The extremes found by the checks.
     #[must_use]
     pub fn into_looked(self) -> Looked {
         self.looked

@@ -13,10 +13,10 @@ use crate::fields::{Fields, Snapshot};
 use crate::progress::Seen;
 use crate::seal::Seal;
 
-/// Snapshots in use: one that is written, and one that is taken meanwhile.
+/// Snapshots in use: one that is written, and one that is taken at the same time.
 const SNAPSHOTS: usize = 2;
 
-/// Extremes seen in the written frames, and their seals.
+/// Extremes of the written frames, and their seals.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct SeenInFrames {
     pub(crate) seen: Seen,
@@ -24,7 +24,7 @@ pub(crate) struct SeenInFrames {
     pub(crate) seals: Vec<Seal>,
 }
 
-/// Makes fields of snapshots and writes them on a thread of its own, so that the run need not wait for them. Frames are
+/// Makes fields of snapshots and writes them on a separate thread, so that the run need not wait for them. Frames are
 /// written in order, so the extremes do not depend on timing.
 pub(crate) struct FrameWriter<'a> {
     to_write: SyncSender<Work>,
@@ -37,11 +37,11 @@ pub(crate) struct FrameWriter<'a> {
 /// Work of the writing thread.
 enum Work {
     Frame(Snapshot),
-    /// Frames are of this body from now on.
+    /// A change of the body: frames are of this body from now on.
     Body(Arc<BodyModel>),
 }
 
-/// All that the writing thread needs.
+/// All data that the writing thread needs.
 pub(crate) struct FrameJob<'a> {
     folder: &'a OwnedFolder,
     body: Arc<BodyModel>,
@@ -130,7 +130,7 @@ impl<'a> FrameWriter<'a> {
         }
     }
 
-    /// Has a frame written of a moment with the velocity (m/s) at its time. Waits if the one before the last is not
+    /// Requests a frame of a moment with the velocity (m/s) at its time. Waits if the frame before the last one is not
     /// written yet.
     ///
     /// # Errors

@@ -9,16 +9,16 @@ use sinew_world::Recorder;
 
 use crate::made_energy::{THERMAL, has_stored_energy, remedy};
 
-/// Most checks in a run.
+/// Largest number of checks in a run.
 const MOST_LOOKS: usize = 16;
 
 /// Steps per check: a check costs about two evaluations of forces.
 const STEPS_FOR_A_LOOK: usize = 100;
 
-/// Energy, as a multiple of that of the start and the work of loads, above which a motion is wrong.
+/// Energy, as a multiple of that of the start and the work of loads, above which a motion counts as wrong.
 const FAR_BEYOND: f64 = 2.0;
 
-/// A recorder that checks the energy of a body in large deformation some times in a run, and reports it if it is far
+/// A recorder that checks the energy of a body in large deformation several times in a run, and reports it if it is far
 /// beyond the energy of the start plus the work of loads and tools.
 ///
 /// Work of loads is summed by component, as absolute values, and damping is left out: an excess that is reported is
@@ -26,7 +26,7 @@ const FAR_BEYOND: f64 = 2.0;
 /// between two checks, or energy that memory stored in a deformed start.
 #[derive(Debug)]
 pub struct EnergyGrowth {
-    /// `None` if nothing is checked.
+    /// Steps between two checks; `None` if nothing is checked.
     spacing: Option<usize>,
     /// The last step.
     end: usize,
@@ -69,7 +69,7 @@ impl EnergyGrowth {
         }
     }
 
-    /// A sentence about the energy, if there is too much of it.
+    /// A sentence about the energy, if it is too large.
     #[must_use]
     pub fn in_words(&self) -> Option<&str> {
         self.grown.as_deref()

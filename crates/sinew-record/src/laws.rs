@@ -1,4 +1,4 @@
-//! Curves of the laws of a scene's regions, before anything is run.
+//! Curves of the laws of a scene's regions, without a run.
 
 mod curves;
 mod error;

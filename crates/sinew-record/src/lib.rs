@@ -1,8 +1,8 @@
 //! Results of a run of a scene: fields, tables, summary, report, and a checkpoint from which it can be continued.
 //!
-//! A run writes into a folder of its own ([`RunFolder`]). Everything in it is a function of the scene and the number of
+//! A run writes into its own folder ([`RunFolder`]). Everything in it is a function of the scene and the number of
 //! steps taken, except for one object in `summary.json` about the computer; so a run that was killed and continued
-//! leaves the same bytes as one that was not.
+//! leaves the same bytes as an uninterrupted one.
 //!
 //! | file | content |
 //! | --- | --- |

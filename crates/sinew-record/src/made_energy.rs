@@ -1,17 +1,17 @@
-//! Energy that a motion gains from nothing: limits and remedies.
+//! Energy that a motion gains without a source: limits and remedies.
 
 use sinew_scene::{SceneBody, Simulation, TimeStep};
 
 /// Energy (J) of a degree of freedom in a body at room temperature: less energy counts as no motion.
 pub(crate) const THERMAL: f64 = 4e-21;
 
-/// True if the start of a body with memory is deformed: the energy that its memory stored then is not known.
+/// True if the start of a body with memory is deformed: the energy that its memory stores at the start is unknown.
 pub(crate) fn has_stored_energy(simulation: &Simulation) -> bool {
     let is_deformed = || simulation.initial_state().u.iter().any(|u| *u != 0.0);
     simulation.system().internal_variables() > 0 && is_deformed()
 }
 
-/// A remedy for a motion that has gained energy from nothing.
+/// A remedy for a motion that has gained energy without a source.
 pub(crate) fn remedy(body: &SceneBody, saturates: bool) -> String {
     let settings = body.scene().settings();
     let entry = sinew_integrators::entry(&settings.integrator);
@@ -24,7 +24,7 @@ pub(crate) fn remedy(body: &SceneBody, saturates: bool) -> String {
     }
 }
 
-/// A method that keeps energy in a scene, as its keys.
+/// A method that conserves energy in a scene, as its keys.
 pub(crate) fn keeper(body: &SceneBody, saturates: bool) -> &'static str {
     const NEWMARK: &str = "newmark";
     let system = body.system();

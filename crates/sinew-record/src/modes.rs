@@ -31,7 +31,7 @@ pub struct NaturalMode {
     /// Angular frequency (rad/s); 0 for a rigid motion.
     pub omega: f64,
     /// Share of the moving mass that takes part in motions along x, y and z: `(phi' M e)^2 / (e' M e)` with the shape
-    /// phi of modal mass 1 and e moving all as one (Bathe, Finite Element Procedures, section 9.3).
+    /// phi of modal mass 1 and e the translation of all nodes (Bathe, Finite Element Procedures, section 9.3).
     pub effective_mass: [f64; 3],
     /// Share of the elastic energy under all loads at their full value, at rest: `(phi' F)^2 / omega^2` over the sum of
     /// all modes found; NaN if the scene has no loads or the motion is rigid.
@@ -48,8 +48,8 @@ impl NaturalMode {
     }
 }
 
-/// The modes of the lowest frequencies of a simulation, multiple ones and those that no load excites included. For a
-/// body in large deformation they are those of small motions about rest, so fast that no stress relaxes.
+/// The modes of the lowest frequencies of a simulation, including multiple ones and those that no load excites. For a
+/// body in large deformation they are the modes of small motions about rest, so fast that no stress relaxes.
 ///
 /// # Errors
 /// [`ModesError`] for a system without matrices, a matrix without a factor and an iteration that does not converge.
@@ -158,7 +158,7 @@ pub fn write_modes(
     Ok(())
 }
 
-/// Writes the shape of a mode with a displacement that can be seen.
+/// Writes the shape of a mode with a visible displacement.
 fn write_shape(
     folder: &OwnedFolder,
     number: usize,
@@ -205,7 +205,7 @@ mod tests {
         scene.build().unwrap()
     }
 
-    /// A bar that is fixed at one end and moves along itself alone: omega_k = (2k - 1) pi/2 sqrt(E/rho)/L for nu = 0
+    /// A bar that is fixed at one end and moves along its axis only: omega_k = (2k - 1) pi/2 sqrt(E/rho)/L for nu = 0
     /// (Rao, Vibration of Continuous Systems, section 9.2).
     #[test]
     fn a_bar_has_the_frequencies_of_the_wave_equation() {
@@ -234,7 +234,7 @@ mod tests {
     }
 
     /// A cube with equal x and y directions has pairs of bending modes, and a free body six rigid-body modes: its loads
-    /// alone excite neither.
+    /// excite neither.
     #[test]
     fn multiple_modes_and_rigid_motions_are_found() {
         let cube = |support: &str| {

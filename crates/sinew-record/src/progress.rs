@@ -1,4 +1,4 @@
-//! Progress of a run, and the extremes that it has seen.
+//! Progress of a run and its extremes so far.
 
 use serde::{Deserialize, Serialize};
 use sinew_core::StepReport;
@@ -10,7 +10,7 @@ use crate::seal::Seal;
 use crate::taken_energy::Taken;
 use crate::tool_rows::Received;
 
-/// Progress of a run, and the extremes that it has seen: all that cannot be computed from later steps.
+/// Progress of a run and its extremes so far: all data that cannot be computed from later steps.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Progress {
     /// Steps taken.
@@ -35,7 +35,7 @@ pub(crate) struct Progress {
 }
 
 /// Energy (J) that accumulates slowly, measured by the remainder of the balance while loads and supports stay constant:
-/// the work of changing ones is a mean of two rows, and wrong by some per cent if these are far apart.
+/// the work of changing loads is computed from the mean of two rows, and wrong by some per cent if these are far apart.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Crept {
     /// Rows since a load or a support changed.
@@ -49,13 +49,13 @@ pub(crate) struct Crept {
 }
 
 impl Crept {
-    /// Rows that count as the first.
+    /// Number of rows that count as the first.
     const FIRST: u32 = 4;
 
-    /// Rows that the mean is taken over.
+    /// Number of rows of the mean.
     const MEAN: f64 = 8.0;
 
-    /// Takes up a row, before which loads or supports changed or did not.
+    /// Adds a row; `has_changed` is true if loads or supports changed before it.
     pub(crate) fn see(&mut self, remainder: f64, has_changed: bool) {
         if has_changed || self.rows == 0 {
             (self.rows, self.first, self.mean) = (1, remainder, remainder);
@@ -81,25 +81,25 @@ pub(crate) struct Seals {
     pub(crate) frames: Vec<Seal>,
 }
 
-/// Extremes of the motion, seen at the instants of the fields.
+/// Extremes of the motion at the instants of the fields.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Seen {
     pub(crate) displacement: Largest,
     pub(crate) strain: Largest,
-    /// In rad.
+    /// The rotation (rad).
     pub(crate) rotation: Largest,
-    /// The strain in linear regions, whose theory has limits.
+    /// The strain in linear regions, where it must be small.
     pub(crate) linear_strain: Largest,
     /// The rotation (rad) in linear regions.
     pub(crate) linear_rotation: Largest,
-    /// Tetrahedra with a volume of 0 or below, the most at an instant.
+    /// Largest number of tetrahedra with a volume of 0 or below at an instant.
     pub(crate) inverted: usize,
     /// Deepest overlap of the body with itself.
     #[serde(default)]
     pub(crate) overlap: Option<SeenOverlap>,
 }
 
-/// An [`Overlap`], as a checkpoint keeps it.
+/// An [`Overlap`] in the format of a checkpoint.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct SeenOverlap {
     depth: f64,
@@ -127,7 +127,7 @@ impl Seen {
         }
     }
 
-    /// Takes an overlap if it is deeper than that so far.
+    /// Stores an overlap if it is deeper than the deepest so far.
     pub(crate) fn see_overlap(&mut self, overlap: Option<&Overlap>) {
         let known = self.overlap.as_ref().map_or(0.0, |known| known.depth);
         if let Some(overlap) = overlap.filter(|overlap| overlap.depth > known) {
@@ -167,7 +167,7 @@ impl Seen {
     }
 }
 
-/// A largest value with its time (s) and the tag of the node or the tetrahedron that it is at.
+/// A largest value with its time (s) and the tag of its node or tetrahedron.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Largest {
     pub(crate) value: f64,
@@ -176,7 +176,7 @@ pub(crate) struct Largest {
 }
 
 impl Largest {
-    /// Takes a value if it is larger than that so far.
+    /// Stores a value if it is larger than the largest so far.
     pub(crate) fn see(&mut self, value: f64, t: f64, at: impl FnOnce() -> u64) {
         if value > self.value {
             *self = Self { value, t, at: at() };
@@ -231,7 +231,7 @@ impl Work {
 mod tests {
     use super::*;
 
-    /// The most that crept in over rows of remainders, of which the first ones are under supports that move.
+    /// The largest energy that accumulated over rows of remainders; in the first `moved` rows supports move.
     fn most(moved: usize, remainders: impl IntoIterator<Item = f64>) -> f64 {
         let mut crept = Crept::default();
         for (row, remainder) in remainders.into_iter().enumerate() {

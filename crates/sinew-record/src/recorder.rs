@@ -19,10 +19,10 @@ use crate::seal::SealedTable;
 use crate::tables;
 use crate::tool_rows::{self, ToolRows};
 
-/// Most rows of a table, if the scene does not ask for more.
+/// Largest number of rows of a table, if the scene does not request more.
 const MOST_ROWS: usize = 10_000;
 
-/// Degrees of freedom up to which energies and reactions of every step cost next to nothing.
+/// Number of degrees of freedom up to which energies and reactions of every step are cheap.
 const SMALL: usize = 30_000;
 
 /// Schedules of all outputs of a run.
@@ -32,7 +32,7 @@ pub(crate) struct Schedules {
     pub(crate) steps: usize,
     pub(crate) probes: Schedule,
     pub(crate) energy: Schedule,
-    /// None for an oscillator.
+    /// Schedule of the fields; `None` for an oscillator.
     pub(crate) fields: Option<Schedule>,
 }
 
@@ -108,7 +108,7 @@ impl Tables {
         })
     }
 
-    /// Makes sure that the disk has them, and seals them.
+    /// Makes sure that they are on the disk, and seals them.
     pub(crate) fn secure(
         &mut self,
         folder: &OwnedFolder,
@@ -138,22 +138,22 @@ pub(crate) struct RunRecorder<'a> {
     pub(crate) balance: Balance,
     pub(crate) reactions: Option<HeldParts>,
     pub(crate) tools: Option<ToolRows>,
-    /// `None` for an oscillator.
+    /// Writer of the frames; `None` for an oscillator.
     pub(crate) frames: Option<FrameWriter<'a>>,
     pub(crate) progress: Progress,
     /// Times (s) of the frames written since it began.
     pub(crate) frame_times: Vec<f64>,
-    /// True if it leaves checkpoints.
+    /// True if it writes checkpoints.
     pub(crate) saves: bool,
     /// The reason for which it stopped the run.
     pub(crate) stop: Option<Stop>,
-    /// Steps whose rows of probes have come.
+    /// Number of steps whose rows of probes were received.
     pub(crate) watched: usize,
     pub(crate) pace: Pace,
     /// Instant of the last checkpoint, or of the beginning.
     pub(crate) saved: Instant,
     pub(crate) line: String,
-    /// Velocity (m/s) of the moment that is being written.
+    /// Velocity (m/s) at the moment that is being written.
     pub(crate) v: Vec<f64>,
 }
 
@@ -249,7 +249,7 @@ impl RunRecorder<'_> {
         Ok(())
     }
 
-    /// Brings the balance up to a moment, of which no row needs to be due: the last one of this body.
+    /// Updates the balance to the last moment of this body, for which no row needs to be due.
     pub(crate) fn close_balance(&mut self, moment: &Moment<'_>) -> Result<(), RecordRunError> {
         let t = moment.state.t();
         if self.balance.last.as_ref().is_some_and(|last| last.t >= t) {
@@ -274,7 +274,7 @@ impl RunRecorder<'_> {
         Ok(self.progress.clone())
     }
 
-    /// Leaves a checkpoint of a world that it stopped, after this work.
+    /// Writes a checkpoint of a world that it stopped, after this work.
     pub(crate) fn save(&mut self, world: &World, work: StepReport) -> Result<(), RecordRunError> {
         let mut progress = self.settle()?;
         let row = self.balance.last.clone().unwrap_or_default();

@@ -1,4 +1,4 @@
-//! Sessions that are repeated by their logs, into a folder like that of a run.
+//! Sessions that are repeated from their logs, with results in a folder like that of a run.
 
 use std::path::Path;
 use std::time::Instant;
@@ -17,7 +17,7 @@ use crate::run_folder::{Beginning, End, RunFolder, cause, cut_record};
 use crate::stepping::Stepping;
 
 impl RunFolder {
-    /// Replays a session by its log and writes into a folder at `path` the files of a run: the motion since the last
+    /// Replays a session from its log and writes the files of a run into a folder at `path`: the motion since the last
     /// reset, with steps counted from there on. If the length of steps changes, the spacing of rows and frames in steps
     /// follows from the mean length.
     ///

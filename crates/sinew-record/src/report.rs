@@ -20,10 +20,10 @@ use curves::plot;
 
 pub(crate) const NAME: &str = "report.html";
 
-/// Most probes whose curves are drawn.
+/// Largest number of probes whose curves are drawn.
 const MOST_DRAWN: usize = 24;
 
-/// The page. It contains no facts about the computer, so that it is the same on all of them.
+/// The page. It contains no facts about the computer, so that it is the same on all computers.
 pub(crate) fn page(
     summary: &Summary<'_>,
     surface: Option<&BoundarySurface>,

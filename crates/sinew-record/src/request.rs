@@ -24,17 +24,17 @@ const VERSION: u32 = 1;
 /// Settings of a run that are not part of its scene.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Request {
-    /// Largest number of threads, or "auto", in the place of the scene's.
+    /// Largest number of threads, or "auto", instead of the scene's.
     pub threads: Option<String>,
-    /// Warnings given before the run: they are kept in the summary.
+    /// Warnings before the run, which are also written into the summary.
     pub warnings: Vec<String>,
-    /// Values that were set in the scene, which contains them already: they are kept for the reader.
+    /// Values that were set in the scene. The scene already contains them; they are recorded for the user.
     pub values: Vec<String>,
     /// True if a run in the folder that could be continued is discarded.
     pub again: bool,
 }
 
-/// A request with the scene and its inputs, as a folder keeps it.
+/// A request with the scene and its inputs, in the format of a folder.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct Record {
     /// Version of the files.

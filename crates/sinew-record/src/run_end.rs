@@ -15,21 +15,21 @@ pub struct RunEnd {
     pub steps: usize,
     /// Methods and lengths of the steps.
     pub stepping: Stepping,
-    /// Steps that this process took, and the wall time (s) of all that it did.
+    /// Number of steps that this process took, and its total wall time (s).
     pub own: (usize, f64),
     /// Frames of fields written.
     pub frames: usize,
-    /// Evaluations over all cells, and solutions with a factor.
+    /// Number of evaluations over all cells, and of solutions with a factor.
     pub work: (u64, u64),
     /// Share of velocities that were saturated.
     pub saturated: f64,
-    /// Steps that were taken again in shorter parts.
+    /// Number of steps that were repeated with shorter substeps.
     pub retaken: u64,
     /// The largest displacement (m), its time (s) and the tag of its node, among the fields; 0 for an oscillator.
     pub largest: (f64, f64, u64),
     /// Totals of the cuts, and the number of pieces at the end, if the body may be cut.
     pub cuts: Option<(CutTotals, usize)>,
-    /// Remarks of the integrator at the end, one sentence each: of a continued run, since the checkpoint.
+    /// Remarks of the integrator at the end, one sentence each: for a continued run, those since the checkpoint.
     pub remarks: Vec<String>,
     /// Warnings about the motion, one sentence each.
     pub warnings: Vec<String>,
@@ -40,13 +40,13 @@ pub struct RunEnd {
 /// End of a run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Ended {
-    /// All steps taken.
+    /// All steps were taken.
     Finished,
     /// A displacement was not finite or passed [`sinew_scene::Simulation::divergence_limit`].
     Diverged {
         /// Time (s).
         t: f64,
-        /// The degree of freedom that went farthest, in the system's words.
+        /// The degree of freedom with the largest displacement, in the terms of the system.
         place: String,
     },
     /// A law refused a state, or a step found no equilibrium.
@@ -56,7 +56,7 @@ pub enum Ended {
         /// The element and the reason.
         reason: String,
     },
-    /// Stopped before its end; if a run leaves checkpoints, with one.
+    /// A run that was stopped before its end, with a checkpoint if it writes checkpoints.
     Interrupted {
         /// Time (s).
         t: f64,

@@ -31,10 +31,10 @@ use crate::tool_rows::{self, ToolRows};
 /// The kind of result, in manifests and messages.
 const KIND: &str = "run";
 
-/// Most frames of a folder: more are a mistake, and their list alone would be long.
+/// Largest number of frames of a folder: more are a mistake, and their list alone would be long.
 const MOST_FRAMES: usize = 100_000;
 
-/// Most numbers of a table, about two gigabytes.
+/// Largest number of entries of a table, about two gigabytes.
 pub const MOST_NUMBERS: usize = 100_000_000;
 
 /// The folder of a run, locked against other writers.
@@ -44,7 +44,7 @@ pub struct RunFolder {
     record: Record,
 }
 
-/// The present place of a motion that is to be recorded.
+/// The state at the beginning of a recording.
 pub(crate) struct Beginning {
     pub(crate) schedules: Schedules,
     pub(crate) balance: Balance,
@@ -83,13 +83,13 @@ pub(crate) struct End<'a> {
 }
 
 impl RunFolder {
-    /// Checks, before long work, that a run of this scene, or a replay of its session by a file with the log, may write
-    /// into a folder at `path`. Changes nothing except that it completes a finished run, see [`RunFolder::settle`].
+    /// Checks, before long work, that a run of this scene, or a replay of its session from a file with the log, may
+    /// write into a folder at `path`. Changes nothing except that it completes a finished run, see
+    /// [`RunFolder::settle`].
     ///
     /// # Errors
-    /// [`RecordRunError::Output`] for a folder with other content, the inputs included, or that cannot be written,
-    /// and
-    /// [`RecordRunError::Resumable`] for one whose run can be continued, unless it is to be run `again`.
+    /// [`RecordRunError::Output`] for a folder with other content, the inputs included, or that cannot be written, and
+    /// [`RecordRunError::Resumable`] for one whose run can be continued, unless `again` is set.
     pub fn check(
         path: &Path,
         scene: &Scene,
@@ -112,7 +112,7 @@ impl RunFolder {
         }
     }
 
-    /// Completes a folder whose run was killed between its end and its completion; returns true if it was one.
+    /// Completes a folder whose run was killed between its end and its completion; returns true in this case.
     ///
     /// # Errors
     /// [`RecordRunError::Output`].
@@ -140,7 +140,7 @@ impl RunFolder {
     ///
     /// # Errors
     /// [`RecordRunError`] for a folder that may not be used, see [`RunFolder::check`], for more frames than a folder
-    /// may contain, and for inputs that cannot be read any more.
+    /// may contain, and for inputs that can no longer be read.
     pub fn create(
         path: &Path,
         simulation: &Simulation,
@@ -240,7 +240,7 @@ impl RunFolder {
     /// Runs a world that follows its scene, or continues from the last checkpoint, and completes the folder.
     ///
     /// # Errors
-    /// [`RecordRunError`]. What was written until then stays, with the last checkpoint.
+    /// [`RecordRunError`]. The files written until then remain, with the last checkpoint.
     pub fn run(
         &self,
         world: &mut World,
@@ -513,7 +513,7 @@ pub(crate) fn cut_record(world: &World, mass: Option<f64>) -> Option<CutRecord> 
     cuts.map(|(cutter, mass)| CutRecord::of(cutter, mass))
 }
 
-/// End of a motion by a refusal, of a law or of a method that found no equilibrium.
+/// End of a motion by an error: a law refused a state, or a method found no equilibrium.
 ///
 /// # Errors
 /// Any other error, unchanged.

@@ -11,7 +11,7 @@ use crate::error::RecordRunError;
 /// Length and hash of the content of a file.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct Seal {
-    /// In bytes.
+    /// Length in bytes.
     pub(crate) length: u64,
     /// SHA-256 in hexadecimal digits.
     sha256: String,
@@ -107,7 +107,7 @@ impl Seal {
         Ok(())
     }
 
-    /// Checks, without reading it, that a file is there with its length.
+    /// Checks, without reading it, that a file exists and has its length.
     ///
     /// # Errors
     /// [`RecordRunError::Altered`].
@@ -172,7 +172,7 @@ impl SealedTable {
         Ok(table)
     }
 
-    /// Adds a row.
+    /// Appends a row.
     ///
     /// # Errors
     /// [`RecordRunError::Output`].
@@ -182,7 +182,7 @@ impl SealedTable {
         Ok(())
     }
 
-    /// Makes sure that the disk has all of it, under its name, and seals it.
+    /// Makes sure that all of it is on the disk under its name, and seals it.
     ///
     /// # Errors
     /// [`RecordRunError`], also if its file was removed or replaced.

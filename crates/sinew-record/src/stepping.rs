@@ -6,7 +6,7 @@ use sinew_core::Options;
 use sinew_scene::{Simulation, options_json};
 use sinew_world::Course;
 
-/// Text written in place of the name of a method if there were several.
+/// Text instead of the name of a method if there were several.
 const SEVERAL: &str = "several";
 
 /// Methods and lengths of the steps of a run: both may change in a session that is replayed.
@@ -19,7 +19,7 @@ pub struct Stepping {
 }
 
 impl Stepping {
-    /// Stepping of a run, which keeps to its scene.
+    /// Stepping of a run, which follows its scene.
     pub(crate) fn of_scene(simulation: &Simulation) -> Self {
         Self {
             methods: vec![(
@@ -48,7 +48,7 @@ impl Stepping {
         self.dt
     }
 
-    /// The length of the steps, as "0.001 s".
+    /// The length of the steps, such as "0.001 s".
     #[must_use]
     pub fn length_in_words(&self) -> String {
         match self.has_one_length {
@@ -57,7 +57,7 @@ impl Stepping {
         }
     }
 
-    /// Names of the methods, as "`newmark`".
+    /// Names of the methods, such as "`newmark`".
     #[must_use]
     pub fn methods_in_words(&self) -> String {
         let ids = self.ids();
@@ -68,7 +68,7 @@ impl Stepping {
         }
     }
 
-    /// The name of the method, or that there were several.
+    /// The name of the method, or [`SEVERAL`].
     pub(crate) fn method(&self) -> &str {
         match self.ids()[..] {
             [id] => id,
@@ -76,7 +76,7 @@ impl Stepping {
         }
     }
 
-    /// The options of the method, null if they were not the same in all steps.
+    /// The options of the method; null if they were not the same in all steps.
     pub(crate) fn options(&self) -> Value {
         match &self.methods[..] {
             [(_, options)] => options_json(options).into_iter().collect(),

@@ -1,4 +1,4 @@
-//! `summary.json`: facts about a run that need no reference.
+//! `summary.json`: facts about a run that are known without a reference solution.
 
 use serde_json::{Value, json};
 use sinew_integrators::Stepper;
@@ -24,7 +24,7 @@ const LARGEST_ROTATION: f64 = 15.0;
 /// Share of its largest kinetic energy below which a body counts as at rest.
 const AT_REST: f64 = 1e-6;
 
-/// All data that a summary is made from.
+/// All data of a summary.
 pub(crate) struct Summary<'a> {
     pub(crate) scene: &'a Simulation,
     pub(crate) body: &'a SceneBody,
@@ -53,18 +53,18 @@ pub(crate) struct Summary<'a> {
 #[derive(Debug, Clone)]
 pub(crate) struct CutRecord {
     pub(crate) totals: CutTotals,
-    /// Defects that strokes left and that their sheets do not show.
+    /// Defects that strokes left and that are not visible in their sheets.
     rough: RoughStrokes,
     /// Description of these defects, in sentences.
     pub(crate) left: Vec<String>,
-    /// Mass (kg) of the body in the beginning and in the end.
+    /// Mass (kg) of the body at the beginning and at the end.
     mass: [f64; 2],
-    /// Pieces of the body in the end.
+    /// Number of pieces of the body at the end.
     pub(crate) pieces: usize,
 }
 
 impl CutRecord {
-    /// Record of a cutter's work on a body that had this mass (kg).
+    /// Record of the cuts on a body that had this mass (kg).
     pub(crate) fn of(cutter: &Cutter, mass: f64) -> Self {
         Self {
             totals: *cutter.totals(),
@@ -146,8 +146,8 @@ pub(crate) fn warnings(seen: &Seen) -> Vec<String> {
 const MADE_ENERGY: f64 = 0.1;
 const CREPT_ENERGY: f64 = 0.01;
 
-/// A warning if a motion in large deformation, or a saturated one, has more energy than was supplied. Energy taken by a
-/// method is no such sign.
+/// A warning if a motion in large deformation, or a saturated one, has more energy than was supplied. Energy dissipated
+/// by a method is not a sign of this.
 pub(crate) fn made_energy(
     scene: &Simulation,
     body: &SceneBody,
@@ -172,7 +172,8 @@ pub(crate) fn made_energy(
     })
 }
 
-/// A warning where damping gave energy to the motion, which no law of damping here does: the results are wrong.
+/// A warning if damping added energy to the motion, which is impossible for all damping laws here: the results are
+/// wrong.
 pub(crate) fn driven_by_damping(progress: &Progress) -> Option<String> {
     let driven = progress.energy.driven;
     (driven > THERMAL).then(|| {

@@ -13,7 +13,7 @@ pub(crate) const PROBES: &str = "probes.csv";
 pub(crate) const ENERGY: &str = "energy.csv";
 pub(crate) const REACTIONS: &str = "reactions.csv";
 
-/// A line with the place of each probe, and the line of column names.
+/// A line with the position of each probe, and the line of column names.
 pub(crate) fn probes_head(body: &SceneBody) -> String {
     let mut text = String::new();
     for probe in body.probes().iter() {
@@ -36,7 +36,8 @@ pub(crate) fn probes_head(body: &SceneBody) -> String {
 }
 
 /// The line of column names. The work of tools has a column if there are tools, the energy of cuts if there may be
-/// cuts, and the energy that the method takes if it is known; the energy that memory takes is part of the remainder.
+/// cuts, and the energy that the method dissipates if it is known; the energy that memory dissipates is part of the
+/// remainder.
 pub(crate) fn energy_head(balance: &Balance) -> String {
     let column = |is_there: bool, name: &'static str| if is_there { name } else { "" };
     let tools = column(balance.has_tools(), "work_of_tools_J,");
@@ -61,7 +62,7 @@ pub(crate) fn energy_row(out: &mut String, row: &Energies) {
     out.push('\n');
 }
 
-/// A number that reads back with the same bits.
+/// Appends a number in a form that is read back with the same bits.
 pub(crate) fn push(out: &mut String, value: f64) {
     // Writing to a string does not fail.
     let _ = write!(out, "{value:?}");
@@ -85,8 +86,8 @@ pub(crate) fn reactions_head(held: &HeldParts) -> String {
     text
 }
 
-/// A row of that table, with the times (s) between it and its two neighbours. If the speed of a moved part jumps, each
-/// row includes its share, so that all rows together have the whole impulse.
+/// A row of that table, with the times (s) between it and its two neighbours. If the velocity of a moved part jumps,
+/// each row includes its share, so that all rows together contain the whole impulse.
 pub(crate) fn reactions_row(
     out: &mut String,
     held: &mut HeldParts,

@@ -10,7 +10,7 @@ use crate::made_energy::{THERMAL, keeper};
 /// Share of the supplied energy above which it is reported.
 const MUCH: f64 = 0.1;
 
-/// The most that was taken (J), and the most that was put in, over all checks.
+/// The largest dissipated energy (J), and the largest supplied energy, over all checks.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Taken {
     taken: f64,
@@ -28,8 +28,8 @@ impl Taken {
         self.span = self.span.max(row.span);
     }
 
-    /// A warning if the method took much energy, with a method that conserves it. `methods` names the methods of the
-    /// steps.
+    /// A warning if the method dissipated a large part of the energy, with a method that conserves it. `methods` names
+    /// the methods of the steps.
     pub(crate) fn in_words(
         self,
         body: &SceneBody,

@@ -1,4 +1,4 @@
-//! Rows of tools: positions, and the forces that resist them.
+//! Rows of tools: positions and contact forces.
 
 use std::fmt::Write;
 use std::sync::Arc;
@@ -52,7 +52,7 @@ pub(crate) struct ToolRows {
 }
 
 impl ToolRows {
-    /// `None` if there is no tool.
+    /// The rows of the tools of a body; `None` if there are none.
     pub(crate) fn of(body: &SceneBody) -> Option<Self> {
         let tools = Arc::clone(body.model().tools()?);
         Some(Self { tools })

@@ -1,8 +1,8 @@
-//! Numbers that depend on the place.
+//! Numbers that depend on the position.
 
 use std::fmt;
 
-/// A number as a formula of the place x, y, z (m), such as `75 * sin(pi * z / 0.24) * (y - 0.01)`.
+/// A number as a formula of the position x, y, z (m), such as `75 * sin(pi * z / 0.24) * (y - 0.01)`.
 ///
 /// It may contain numbers, `x`, `y`, `z`, `pi`, `+ - * / ^` with their usual order, round brackets, and `sin`, `cos`,
 /// `exp`, `sqrt` and `abs`.
@@ -43,10 +43,10 @@ const FUNCTIONS: [(&str, Function); 5] = [
     ("abs", Function::Abs),
 ];
 
-/// Most characters of a formula, which also bounds the depth of its brackets.
+/// Largest number of characters of a formula, which also bounds the depth of its brackets.
 const LONGEST: usize = 1000;
 
-/// A text that is no formula.
+/// A text that is not a formula.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{found} at character {at} of the formula: expected {expected}")]
 pub struct FormulaError {
@@ -92,7 +92,7 @@ impl Formula {
         }
     }
 
-    /// Its value at a place (m), which may be no finite number.
+    /// Its value at a position (m), which may be infinite or NaN.
     #[must_use]
     pub fn at(&self, place: [f64; 3]) -> f64 {
         let mut stack: Vec<f64> = Vec::new();
@@ -148,7 +148,7 @@ impl Function {
     }
 }
 
-/// Reads by descent: sums of products of powers.
+/// A recursive-descent parser: sums of products of powers.
 struct Parser<'a> {
     rest: &'a str,
     /// Characters of the whole text.
@@ -214,7 +214,7 @@ impl Parser<'_> {
         }
     }
 
-    /// A power with signs before it, which are weaker: -x^2 is -(x^2).
+    /// Reads a power with signs before it, which have lower precedence: -x^2 is -(x^2).
     fn signed(&mut self) -> Result<(), FormulaError> {
         let mut is_negative = false;
         loop {

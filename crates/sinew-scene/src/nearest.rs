@@ -1,4 +1,4 @@
-//! The name that a misspelt one was meant to be.
+//! The known name nearest to a misspelt one.
 
 /// The most similar name in `known`, if one is similar enough.
 pub(crate) fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {

@@ -1,4 +1,4 @@
-//! Numbers for people.
+//! Formatting of numbers for messages.
 
 /// Four significant digits without trailing zeros.
 pub(crate) fn short(value: f64) -> String {

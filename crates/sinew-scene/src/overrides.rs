@@ -10,8 +10,9 @@ use crate::source::SceneSource;
 
 impl SceneSource {
     /// The scene with other values: `KEY=VALUE` each, the parts of a key separated by dots, tables of a list by their
-    /// numbers from 1 on. A value is TOML, or else a string. A key that its table does not have is added to it, and so
-    /// is a missing table, at the end of its list if it is one of a list; the rest of the text is unchanged.
+    /// numbers from 1 on. A value is TOML; a text that is not TOML is a string. A key that its table does not have is
+    /// added to it, and so is a missing table, at the end of its list if it is one of a list; the rest of the text is
+    /// unchanged.
     ///
     /// ```
     /// use sinew_scene::SceneSource;
@@ -26,7 +27,7 @@ impl SceneSource {
     /// ```
     ///
     /// # Errors
-    /// [`OverrideError`] for the first that cannot be set. Whether a value is valid is checked when the scene is read.
+    /// [`OverrideError`] for the first that cannot be set. The validity of a value is checked when the scene is read.
     pub fn with_values<T: AsRef<str>>(&self, values: &[T]) -> Result<Self, OverrideError> {
         if values.is_empty() {
             return Ok(self.clone());
@@ -59,7 +60,7 @@ impl SceneSource {
     }
 }
 
-/// Sets the value at the remaining parts of a path, within this table, as far as it is described.
+/// Sets the value at the remaining parts of a path within this table, whose description may be known.
 fn set(
     (table, description): (&mut dyn TableLike, Option<&'static TableDescription>),
     path: &str,

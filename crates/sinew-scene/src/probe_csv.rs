@@ -12,16 +12,15 @@ use crate::schedule::Schedule;
 use crate::simulation::SceneBody;
 
 /// Writes the values of probes after the steps of a [`Schedule`], in the columns of [`ProbeRows`]. Numbers are written
-/// so that reading them gives the same bits.
+/// so that they are read back with the same bits.
 ///
-/// A file has a temporary name until [`ProbeCsv::finish`], so that a file under its final name is
-/// always complete; dropped before that, it leaves nothing behind. Where the output is a pipe and its
-/// reader closes it, the run is stopped.
+/// A file has a temporary name until [`ProbeCsv::finish`], so that a file under its final name is always complete;
+/// dropped before that, it leaves nothing behind. If the output is a pipe and its reader closes it, the run is stopped.
 #[derive(Debug)]
 pub struct ProbeCsv {
     rows: ProbeRows,
     schedule: Schedule,
-    /// Steps whose watched displacements have come, the initial state among them.
+    /// Steps whose watched displacements were received, including the initial state.
     watched: usize,
     output: Output,
 }
@@ -47,7 +46,7 @@ impl ProbeCsv {
         }
     }
 
-    /// True if a file is such a table, or that of a run's folder, and nothing else.
+    /// True if a file is only such a table, or the table of a run's folder.
     ///
     /// # Errors
     /// The system's reason for which it cannot be read.

@@ -40,7 +40,7 @@ pub enum ProbeRowError {
     /// A state that the system refuses.
     #[error(transparent)]
     State(#[from] EvaluationError),
-    /// A field that the body does not have then.
+    /// A field that the body does not have in this state.
     #[error(transparent)]
     Field(#[from] FieldError),
 }
@@ -53,7 +53,7 @@ pub struct ProbeRows {
     /// The body; `None` for an oscillator.
     body: Option<Arc<BodyModel>>,
     row: String,
-    /// Velocity (m/s) of the moment that is written.
+    /// Velocity (m/s) at the moment that is written.
     v: Vec<f64>,
 }
 
@@ -109,7 +109,7 @@ impl ProbeRows {
         self.probes.iter().any(others)
     }
 
-    /// Degrees of freedom whose displacements a row takes, at least one; none if rows [need
+    /// Degrees of freedom whose displacements a row needs, at least one; none if rows [need
     /// moments](ProbeRows::need_moments).
     #[must_use]
     pub fn watched(&self) -> Vec<u32> {
@@ -123,8 +123,8 @@ impl ProbeRows {
         if dofs.is_empty() { vec![0] } else { dofs }
     }
 
-    /// A row with the end of its line; `moving` has the displacements (m) of the watched degrees of freedom at time
-    /// `t` (s). Numbers are written so that reading them gives the same bits.
+    /// A row with the end of its line; `moving` has the displacements (m) of the watched degrees of freedom at time `t`
+    /// (s). Numbers are written so that they are read back with the same bits.
     pub fn of_watched(&mut self, t: f64, moving: &[f64]) -> &str {
         self.begin(t);
         let mut rest = moving;
@@ -153,7 +153,7 @@ impl ProbeRows {
         self.end()
     }
 
-    /// A row of a moment, as [`ProbeRows::of_watched`].
+    /// A row of a moment, in the format of [`ProbeRows::of_watched`].
     ///
     /// # Errors
     /// [`ProbeRowError`] if the system refuses the state.

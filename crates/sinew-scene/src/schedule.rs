@@ -2,13 +2,13 @@
 
 use crate::scene::Instants;
 
-/// Most numbers of a table, if the scene does not ask for more.
+/// Largest number of entries of a table, if the scene does not request more.
 const MOST_NUMBERS: usize = 5_000_000;
 
-/// Rows that a table of very many columns has.
+/// Least number of rows of a table with very many columns.
 const FEWEST_ROWS: usize = 16;
 
-/// Evenly spaced steps of a run, the first and the last among them.
+/// Evenly spaced steps of a run, including the first and the last.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Schedule {
     /// Steps of the run.
@@ -40,8 +40,8 @@ impl Schedule {
         }
     }
 
-    /// The steps of rows of probes: at the instants that the scene asks for, else every step, up to `most` rows or the
-    /// number of rows of a table of readable length.
+    /// The steps of rows of probes: at the instants that the scene requests, otherwise at every step, up to `most` rows
+    /// or the number of rows of a table of readable length.
     #[must_use]
     pub fn of_probes(
         asked: Option<Instants>,
@@ -58,7 +58,7 @@ impl Schedule {
         }
     }
 
-    /// The first of them from a step on.
+    /// The first of them at or after a step.
     #[must_use]
     pub fn next(&self, from: usize) -> Option<usize> {
         if from > self.steps {

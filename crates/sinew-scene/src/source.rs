@@ -15,7 +15,7 @@ use sinew_mesh::TetMesh;
 pub struct SceneSource {
     path: PathBuf,
     text: String,
-    /// True if the text was made of values of a program: the user has no lines.
+    /// True if the text was made from values of a program: the user has no lines.
     is_of_values: bool,
     /// Files by their resolved paths.
     given: BTreeMap<PathBuf, Given>,
@@ -51,7 +51,7 @@ impl SceneSource {
         }
     }
 
-    /// A text that was made of values of a program, of which messages name keys in the place of lines.
+    /// A text that was made from values of a program. Messages name its keys instead of lines.
     #[must_use]
     pub fn of_values(path: impl Into<PathBuf>, text: impl Into<String>) -> Self {
         Self {
@@ -68,7 +68,7 @@ impl SceneSource {
         }
     }
 
-    /// Gives a file that the scene reads: this content replaces that at the path, which is a resolved one.
+    /// Adds a file that the scene reads: this content replaces that of the file at the path, which is a resolved one.
     ///
     /// ```
     /// use sinew_mesh::structured::{Split, cube};
@@ -93,8 +93,8 @@ impl SceneSource {
         self
     }
 
-    /// Gives the mesh of a scene, with the order of its nodes and tetrahedra, in the place of the file at a resolved path. By
-    /// the content, bytes of the caller's own, the mesh is known again.
+    /// Adds the mesh of a scene, with the order of its nodes and tetrahedra, instead of the file at a resolved path.
+    /// The content, bytes that the caller chooses, identifies the mesh.
     #[must_use]
     pub fn with_mesh(
         mut self,
@@ -124,7 +124,7 @@ impl SceneSource {
     /// The content of a file that the scene reads, by its resolved path.
     ///
     /// # Errors
-    /// Those of the file system, for a file that was not given.
+    /// Errors of the file system, for a file that was not given.
     pub fn read(&self, path: &Path) -> io::Result<Cow<'_, [u8]>> {
         match self.given_file(path) {
             Some(content) => Ok(content.into()),
@@ -132,7 +132,7 @@ impl SceneSource {
         }
     }
 
-    /// True if messages name keys in the place of lines.
+    /// True if messages name keys instead of lines.
     #[must_use]
     pub fn is_of_values(&self) -> bool {
         self.is_of_values
@@ -179,10 +179,10 @@ impl SceneSource {
     }
 }
 
-/// Size of a file beyond which it is no scene that someone wrote (bytes).
+/// Largest size of a scene file (bytes).
 const LARGEST: u64 = 16 << 20;
 
-/// The text of a scene file. Pipes, devices and files without end are not waited for.
+/// The text of a scene file. Pipes, devices and files without end are refused.
 pub(crate) fn text_of(path: &Path) -> io::Result<String> {
     let refused = |reason: String| io::Error::new(ErrorKind::InvalidInput, reason);
     // Checked before it is opened, which would wait for the writer of a pipe.

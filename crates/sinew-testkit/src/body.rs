@@ -1,5 +1,5 @@
-//! Bodies at random: blocks of tetrahedra that were jittered, renumbered, made of one or two
-//! materials and given supports somewhere.
+//! Random bodies: blocks of tetrahedra that were jittered and renumbered, with one or two materials and random
+//! supports.
 
 use proptest::array::uniform3;
 use proptest::collection::vec;
@@ -24,7 +24,7 @@ pub struct Body {
     pub motion: Vec<[[f64; 3]; 2]>,
 }
 
-/// Without the mesh's many numbers.
+/// Prints the body without the numbers of its mesh.
 impl std::fmt::Debug for Body {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Body")
@@ -41,8 +41,7 @@ impl Body {
         Model::build(&self.mesh, &self.problem).unwrap()
     }
 
-    /// The first state: displacements up to `u` and velocities up to `v`, none if a component
-    /// is fixed.
+    /// The first state: displacements up to `u` and velocities up to `v`, zero in fixed components.
     pub fn state(&self, model: &Model, u: f64, v: f64) -> State {
         let of = |which: usize, size: f64| {
             let nodes = model.nodes().iter().map(|node| *node as usize);
@@ -66,7 +65,7 @@ impl Body {
         self.without_what_cannot_be()
     }
 
-    /// The same body with nothing that takes energy out or puts it in.
+    /// The same body without anything that dissipates or supplies energy.
     pub fn conservative(mut self) -> Self {
         self.problem.damping = Rayleigh::default();
         self.problem.loads.clear();
@@ -84,7 +83,7 @@ impl Body {
         self
     }
 
-    /// The same body, node `order[i]` being node i.
+    /// The same body, with node `order[i]` as node i.
     pub fn renumbered(mut self, order: &[u32]) -> Self {
         self.mesh = renumbered(&self.mesh, order);
         self.motion = picked(&self.motion, order);
@@ -181,8 +180,8 @@ pub fn turned(mut mesh: TetMesh, turns: &[usize]) -> TetMesh {
     mesh
 }
 
-/// A block whose nodes, those on the surface too, were moved by up to three tenths of the grid's
-/// spacing or as far as volumes stay positive, and whose tetrahedra come in another order, turned.
+/// A block whose nodes, including those on the surface, were moved by up to three tenths of the grid's spacing or as
+/// far as volumes stay positive, and whose tetrahedra are in another order and permuted.
 fn distorted(block: TetMesh, spacing: [f64; 3]) -> impl Strategy<Value = TetMesh> {
     let (nodes, tets) = (block.points.len(), block.tets.len());
     let jitter = (0.0..0.3, vec(direction(), nodes));
@@ -213,7 +212,7 @@ fn distorted(block: TetMesh, spacing: [f64; 3]) -> impl Strategy<Value = TetMesh
     )
 }
 
-/// The items at the places `order` names.
+/// The items at the indices in `order`.
 fn picked<T: Clone>(items: &[T], order: &[u32]) -> Vec<T> {
     let item = |place: &u32| items[*place as usize].clone();
     order.iter().map(item).collect()

@@ -8,7 +8,7 @@ pub const ROUNDING: f64 = 1e-13;
 /// A square matrix, row by row.
 pub type Dense = Vec<Vec<f64>>;
 
-/// Every entry, zeros between cells that are not neighbours included.
+/// Every entry, including zeros between cells that are not neighbours.
 pub fn dense(matrix: &BlockMatrix) -> Dense {
     let layers = matrix.layers().count();
     let entry = |i: usize, j: usize| {

@@ -1,6 +1,6 @@
 //! Scenes.
 
-/// A strip that begins rolled up, so that its ends are in each other, and opens slowly.
+/// A strip that begins rolled up, so that its ends overlap, and opens slowly.
 pub const ROLLED: &str = r#"
 [mesh]
 block = { cells = [24, 1, 1], size = [0.24, 0.01, 0.01] }

@@ -1,8 +1,8 @@
 //! Time that contact adds to a step.
 //!
-//! `cargo bench -p sinew-tools --bench meeting` takes steps of central difference on structured cubes without a tool, with one that is far away and
-//! with a ball that presses, in turn, and prints the least time of a step (us) on one thread and what contact adds to it. A number after `--` is the
-//! time for each figure (ms).
+//! `cargo bench -p sinew-tools --bench meeting` takes steps of central difference on structured cubes without a tool,
+//! with one that is far away and with a ball that presses, in turn, and prints the least time of a step (us) on one
+//! thread and the time that contact adds to it. A number after `--` is the time for each figure (ms).
 
 #![allow(
     clippy::expect_used,
@@ -69,7 +69,7 @@ struct Lap {
 }
 
 impl Lap {
-    /// A cube, and a ball of 12 mm whose centre is so high above its bottom.
+    /// A cube, and a ball of 12 mm whose centre is at this height above its bottom.
     fn new(cells: usize, law: Law, height: Option<f64>) -> Self {
         let mesh = cube(cells, EDGE, Split::Kuhn).expect("the mesh is small enough");
         let problem = Problem::of([Region::new(law, 1060.0)]).with_fixed(Fixed::at("bottom"));

@@ -1,13 +1,13 @@
 //! Rigid surgical tools on tissue: contact, grasping and forces in a step, with their motion and shape.
 //!
 //! [`Tools`] are the contact of a step of a body: each [`Tool`] presses on the cells that it touches, with friction,
-//! may grasp them, and may be a body of its own ([`ToolBody`]) on a coupling; the faces of cuts ([`CutFace`]) push
-//! each other. [`ToolReport`] reports the results of a step.
+//! may grasp them, and may be a body of its own ([`ToolBody`]) on a coupling; cut faces ([`CutFace`]) push each other.
+//! [`ToolReport`] reports the results of a step.
 //!
 //! A [`Shape`] is a union of [`Convex`] shapes, each with a [`Pose`] in the tool's own frame. A [`Motion`] gives the
-//! pose of that frame at any time, unless a [`Steering`] does while the simulation runs. A [`Stroke`] is the motion
-//! of one part over a step: it finds the first contact of a node at any speed of both, so that nothing passes through
-//! anything. [`swept_box`] finds the nodes that need to be checked.
+//! pose of that frame at any time, unless a [`Steering`] does while the simulation runs. A [`Stroke`] is the motion of
+//! one part over a step: it finds the first contact with a node at any speed of both, so that neither passes through
+//! the other. [`swept_box`] finds the nodes that need to be checked.
 //!
 //! ```
 //! use sinew_core::Inputs;

@@ -12,7 +12,7 @@ use crate::vector::scaled;
 pub enum Motion {
     /// A tool at rest.
     Held(Pose),
-    /// A tool that moves at constant velocity and does not turn.
+    /// A tool that moves at constant velocity without rotation.
     Steady {
         /// Its pose at t = 0.
         start: Pose,
@@ -61,7 +61,7 @@ mod tests {
     use crate::table::Row;
     use crate::vector::{length, sub};
 
-    /// Against differences of poses, across a turn about a changing axis.
+    /// Comparison with differences of poses, during a rotation about a changing axis.
     #[test]
     fn a_velocity_is_the_rate_of_the_pose() {
         let rows = [

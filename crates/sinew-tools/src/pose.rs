@@ -5,7 +5,7 @@ use crate::vector::{add, between, length, scaled, sub};
 
 /// Pose of a tool's own frame in the world: `world = position + rotation own`.
 ///
-/// With the feature `serde` it is written as its position and its rotation vector, as [`Pose::new`] takes them.
+/// With the feature `serde` it is written as its position and its rotation vector, in the form for [`Pose::new`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(from = "Written", into = "Written"))]
@@ -49,14 +49,14 @@ impl Pose {
         }
     }
 
-    /// True if the angle of a rotation vector (rad) is well defined: the vector is finite and at most 1e6 long. Beyond
-    /// that, rounding of the vector costs more than the digits of a path.
+    /// True if the angle of a rotation vector (rad) is well defined: the vector is finite and at most 1e6 long. For
+    /// larger vectors, rounding of the vector is larger than the precision of a path.
     #[must_use]
     pub fn knows(rotation_vector: [f64; 3]) -> bool {
         rotation_vector.iter().all(|angle| angle.is_finite()) && length(rotation_vector) <= 1e6
     }
 
-    /// The pose in which the own frame is that of the world.
+    /// The pose whose own frame is that of the world.
     #[must_use]
     pub fn identity() -> Self {
         Self {
@@ -83,13 +83,13 @@ impl Pose {
         rotation::vector(&self.rotation)
     }
 
-    /// The place in the world (m) of a point of the own frame.
+    /// The position in the world (m) of a point of the own frame.
     #[must_use]
     pub fn to_world(&self, point: [f64; 3]) -> [f64; 3] {
         add(self.position, self.turned(point))
     }
 
-    /// The place in the own frame (m) of a point of the world.
+    /// The position in the own frame (m) of a point of the world.
     #[must_use]
     pub fn to_own(&self, point: [f64; 3]) -> [f64; 3] {
         self.turned_back(sub(point, self.position))

@@ -8,7 +8,7 @@ pub(crate) const IDENTITY: Matrix = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0
 
 /// The matrix of a rotation vector, by Rodrigues' formula `I + sin(a)/a W + (1 - cos a)/a^2 W^2`.
 ///
-/// 1 - cos a is formed as 2 sin^2(a/2), so that no angle is too small for it.
+/// 1 - cos a is computed as 2 sin^2(a/2), which is accurate for small angles.
 pub(crate) fn matrix(vector: Vector) -> Matrix {
     if vector == [0.0; 3] {
         return IDENTITY;
@@ -39,8 +39,8 @@ pub(crate) fn matrix(vector: Vector) -> Matrix {
 
 /// The rotation vector of a matrix, with an angle of at most pi.
 ///
-/// It is found from a quaternion, largest component first (Shepperd 1978): that keeps all digits at angles near 0 and
-/// near pi.
+/// It is found from a quaternion, largest component first (Shepperd 1978): this is accurate at angles near 0 and near
+/// pi.
 pub(crate) fn vector(matrix: &Matrix) -> Vector {
     let m = matrix;
     let trace = m[0][0] + m[1][1] + m[2][2];

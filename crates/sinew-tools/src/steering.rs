@@ -1,13 +1,14 @@
-//! Poses that are given from outside while a simulation runs.
+//! Steering of tools from outside while a simulation runs.
 
 use sinew_core::{Between, Channel, Clock, InputError, Inputs};
 
 use crate::pose::Pose;
 use crate::vector::{scaled, sub};
 
-/// The channels of [`Inputs`] by which a tool is steered: its position (m), rotation vector (rad) and jaws.
+/// The channels of [`Inputs`] that steer a tool: its position (m), rotation vector (rad) and jaws.
 ///
-/// Between two given poses a tool moves straight and turns by the shortest rotation; after the last it is at rest.
+/// Between two given poses a tool moves along a straight line and turns by the shortest rotation; after the last it is
+/// at rest.
 ///
 /// ```
 /// use sinew_core::Inputs;
@@ -31,7 +32,7 @@ pub struct Steering {
 }
 
 impl Steering {
-    /// Channels of their own among inputs, without a pose so far.
+    /// Adds channels to inputs, without a pose so far.
     pub fn new(inputs: &mut Inputs) -> Self {
         Self {
             pose: [(); 6].map(|()| inputs.add_open_line()),
@@ -39,7 +40,7 @@ impl Steering {
         }
     }
 
-    /// Gives the pose at `t` (s): before the step that ends then is taken.
+    /// Sets the pose at `t` (s). To be called before the step that ends at `t` is taken.
     ///
     /// # Errors
     /// [`InputError`] for numbers that are not finite, times that do not rise and inputs without these channels; nothing is recorded then.
@@ -59,7 +60,7 @@ impl Steering {
         )
     }
 
-    /// Forgets poses before the one, or the segment, that applies at `t` (s).
+    /// Discards poses before the one, or the segment, that applies at `t` (s).
     pub fn forget_before(&self, inputs: &mut Inputs, t: f64) {
         inputs.forget_channels_before(&self.pose, t);
     }
@@ -81,8 +82,7 @@ impl Steering {
 
     /// The pose at `t` (s); `None` before the first that is given.
     ///
-    /// The end of a step is computed by two formulas that differ by rounding; both count as the instant of a given
-    /// pose.
+    /// The end of a step is computed by two formulas that differ by rounding; both count as the time of a given pose.
     pub(crate) fn at(&self, t: f64, inputs: &Inputs) -> Option<Pose> {
         let slack = Clock::ROUNDING * t.abs();
         let (times, _) = inputs.course(self.pose[0]);
@@ -117,7 +117,7 @@ impl Steering {
         Some([scaled(way, rate), scaled(before.turn_to(&after), rate)])
     }
 
-    /// The pose at a place of the record.
+    /// The pose with an index in the record.
     fn given(&self, place: usize, inputs: &Inputs) -> Option<Pose> {
         let mut numbers = [0.0; 6];
         for (number, channel) in numbers.iter_mut().zip(self.pose) {

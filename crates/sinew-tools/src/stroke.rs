@@ -4,7 +4,8 @@ use crate::pose::Pose;
 use crate::shape::{Convex, Hull, Part, Touch, Triangle, TriangleTouch};
 use crate::vector::{between, length, sub};
 
-/// The largest turn (rad) of a tool in one pass: the chord of a path then leaves it by at most turn^2/8 of its distance.
+/// The largest turn (rad) of a tool in one pass: the chord of a path then deviates from it by at most turn^2/8 of its
+/// distance.
 const LARGEST_TURN: f64 = 0.1;
 
 /// The longest path of a round tool in one pass, in radii: normals of the first contact still fit the contact at the
@@ -13,14 +14,14 @@ const LONGEST_WAY: f64 = 0.5;
 
 const MOST_PASSES: f64 = 1000.0;
 
-/// The motion of one part of a tool over a step: straight for the tool's origin, with a steady shortest rotation
-/// about it.
+/// The motion of one part of a tool over a step: a straight line for the tool's origin, with the shortest rotation
+/// about it at constant rate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stroke {
     part: Part,
     /// The tool's poses before and after.
     tool: [Pose; 2],
-    /// The part's own poses then.
+    /// The part's own poses before and after.
     ends: [Pose; 2],
     /// The turn of the tool over the step (rad, in the world).
     turn: [f64; 3],
@@ -46,8 +47,8 @@ impl Stroke {
         stroke
     }
 
-    /// The equal passes in which this stroke should be taken: of at most .1 rad each, and of at most half a radius for any point
-    /// of a round part; at least 1, at most 1000.
+    /// Number of equal passes in which this stroke should be taken: at most .1 rad each, and at most half a radius for
+    /// any point of a round part; from 1 to 1000.
     #[must_use]
     pub fn passes(&self) -> u32 {
         self.passes
@@ -100,7 +101,8 @@ impl Stroke {
         None
     }
 
-    /// The first contact of a triangle whose corners move straight (m, in the world) over the step; point and normal are in the part's own frame. None for a plane.
+    /// The first contact of a triangle whose corners move straight (m, in the world) over the step; point and normal
+    /// are in the part's own frame. `None` for a plane.
     pub(crate) fn first_triangle(&self, from: &Triangle, to: &Triangle) -> Option<TriangleTouch> {
         let hull = Hull::of(&self.part.convex)?;
         let pieces = self.pieces();
@@ -168,7 +170,7 @@ impl Stroke {
         self.turn != [0.0; 3]
     }
 
-    /// Upper bound of the arc (m) over which the turn about the tool's origin carries any point of a bounded part.
+    /// Upper bound of the arc (m) of any point of a bounded part in the rotation about the tool's origin.
     fn largest_arc(&self) -> Option<f64> {
         let reach = self.part.convex.reach()?;
         Some(length(self.turn) * (length(self.part.pose.position()) + reach))

@@ -5,17 +5,17 @@ use crate::vector::{Vector, cross, dot, sub};
 /// Finds the pressures of contact at the points of a surface.
 #[derive(Clone, Debug, Default)]
 pub struct SurfacePressures {
-    /// The area (m2) at each point that faces against its force.
+    /// The area (m2) at each point that faces opposite to its force.
     areas: Vec<f64>,
 }
 
 impl SurfacePressures {
-    /// Takes the position (m) of each point and the force (N) on it, with outward triangles between points; writes the
-    /// pressure (Pa) of each.
+    /// Writes the pressure (Pa) at each point, from its position (m) and the force (N) on it, with outward triangles
+    /// between points.
     ///
-    /// The pressure at a point is its force over its share of the surface as seen along the force: a third of each
-    /// triangle that faces against it. So a plate that presses evenly on a cube has one pressure up to the edges, whose
-    /// other sides it does not see.
+    /// The pressure at a point is its force over its share of the surface, projected along the force: a third of each
+    /// triangle that faces opposite to it. So a plate that presses evenly on a cube has a uniform pressure up to the
+    /// edges; the other sides at the edges do not count.
     pub fn take(
         &mut self,
         triangles: &[[u32; 3]],
@@ -50,7 +50,7 @@ impl SurfacePressures {
     }
 }
 
-/// The length of a force that is no smaller than rounding.
+/// The length of a force, without protection against underflow.
 fn size(force: Vector) -> f64 {
     dot(force, force).sqrt()
 }
@@ -61,7 +61,7 @@ mod tests {
 
     use super::*;
 
-    /// Pressure p, as forces of p A/3 of each triangle on its corners.
+    /// Checks with a pressure p, given as forces of p A/3 of each triangle on its corners.
     #[test]
     fn an_even_pressure_is_found_at_faces_edges_and_corners() {
         let mesh = cube(2, 0.2, Split::Kuhn).unwrap();

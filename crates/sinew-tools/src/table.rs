@@ -11,8 +11,8 @@ pub struct Row {
     pub t: f64,
     /// The position of the own origin (m).
     pub position: [f64; 3],
-    /// The rotation vector (rad). Between rows it follows a straight line, so that its length may exceed pi: a tool turns
-    /// several times about an axis.
+    /// The rotation vector (rad). It is linear between rows, and its length may exceed pi: a tool can turn several
+    /// times about an axis.
     pub rotation_vector: [f64; 3],
 }
 
@@ -43,7 +43,7 @@ pub enum TableError {
         /// The number.
         value: f64,
     },
-    /// A row with a rotation that is too large to be known.
+    /// A row with a rotation that is too large for its precision.
     #[error("row {row}: a rotation of {angle} rad: expected at most 1e6")]
     Rotation {
         /// Number of the row (1-based).

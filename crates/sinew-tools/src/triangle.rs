@@ -2,7 +2,8 @@
 
 use crate::vector::{Vector, dot, sub};
 
-/// Weights of the corners of the point of a triangle that is nearest to a point (Ericson, Real-Time Collision Detection, 2005, 5.1.5).
+/// Weights of the corners for the point of a triangle that is nearest to a given point (Ericson, Real-Time Collision
+/// Detection, 2005, 5.1.5).
 #[must_use]
 pub fn nearest_of_triangle([a, b, c]: &[Vector; 3], point: Vector) -> Vector {
     let (ab, ac) = (sub(*b, *a), sub(*c, *a));

@@ -1,4 +1,4 @@
-//! Time that a blade in motion adds to a run: what remains of it where nothing is cut, and what a cut costs.
+//! Time that a moving blade adds to a run: the cost of steps without a cut, and the cost of a cut.
 
 #![allow(
     clippy::unwrap_used,
@@ -58,12 +58,12 @@ fn main() {
 /// Times of a run (us).
 #[derive(Default)]
 struct Lap {
-    /// A step.
+    /// Time of a step.
     all: f64,
-    /// A step that cut nothing, and a step that cut: the median, and their number.
+    /// Median time of steps that cut nothing and of steps that cut, and their number.
     idle: (f64, usize),
     busy: (f64, usize),
-    /// A step after the blade has come out.
+    /// Time of a step after the blade has left the body.
     after: f64,
 }
 

@@ -9,14 +9,14 @@ use sinew_scene::{CuttingError, DrivenLoadError};
 
 use crate::scene_identity::SceneKey;
 
-/// A tool of a scene, by its place there. It is known in all worlds of the scene, and in no others.
+/// A tool of a scene, by its index there. It is valid in all worlds of the scene, and in no others.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct ToolId {
     pub(crate) scene: SceneKey,
     pub(crate) place: usize,
 }
 
-/// A load of a scene, by its place there. It is known in all worlds of the scene, and in no others.
+/// A load of a scene, by its index there. It is valid in all worlds of the scene, and in no others.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct LoadId {
     pub(crate) scene: SceneKey,
@@ -24,7 +24,7 @@ pub struct LoadId {
 }
 
 impl ToolId {
-    /// Its place (0-based) among the tools of the scene.
+    /// Its index (0-based) among the tools of the scene.
     #[must_use]
     pub fn index(self) -> usize {
         self.place
@@ -32,7 +32,7 @@ impl ToolId {
 }
 
 impl LoadId {
-    /// Its place (0-based) among the loads of the scene.
+    /// Its index (0-based) among the loads of the scene.
     #[must_use]
     pub fn index(self) -> usize {
         self.place
@@ -45,7 +45,7 @@ impl LoadId {
 #[non_exhaustive]
 pub enum Command {
     /// The pose of a tool at the end of the next step: it moves there in a straight line within that step, and stays
-    /// until another pose comes. Until the first one it follows the scene.
+    /// until another pose is given. Until the first one it follows the scene.
     Pose {
         /// Name of the tool.
         tool: Arc<str>,
@@ -73,8 +73,8 @@ pub enum Command {
         tool: Arc<str>,
     },
     /// Forces (N) on nodes (0-based) of the current body, in addition to all loads; they replace those of the last such
-    /// command. They stay with their nodes when the body is cut; a part on fixed components goes into the supports and is
-    /// in no reaction.
+    /// command. They stay with their nodes when the body is cut; a part on fixed components is carried by the supports
+    /// and is not included in any reaction.
     Forces(Vec<(u32, [f64; 3])>),
     /// Another integrator, which continues from the state.
     Integrator {
@@ -85,7 +85,7 @@ pub enum Command {
     },
     /// Another step (s).
     Dt(f64),
-    /// The initial state, integrator and step again, with tools and loads as the scene has them. The count of steps
+    /// The initial state, integrator and step again, with the tools and loads of the scene. The count of steps
     /// continues.
     Reset,
     /// A cut by the sheet that a blade sweeps from one position to another (its two ends, m, before and after), in the
@@ -99,7 +99,7 @@ pub enum Command {
     },
 }
 
-/// Reasons for which a command is refused; the session continues as if it had not come.
+/// Reasons for which a command is refused; the session continues as if it had not been given.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum CommandError {
@@ -122,7 +122,7 @@ pub enum CommandError {
     /// The id of a tool or a load of another scene.
     #[error("this id is that of a tool or a load of another scene: ask this world by the name")]
     ForeignId,
-    /// A pose that is no place.
+    /// A pose that is not valid.
     #[error(
         "pose of \"{tool}\": {value}: expected finite numbers, at most {most:e} m or rad in size"
     )]
@@ -150,7 +150,7 @@ pub enum CommandError {
         /// The largest size.
         most: f64,
     },
-    /// A step that is not positive and finite, or by which the time of the session does not advance.
+    /// A step that is not positive and finite, or too short to advance the time of the session.
     #[error("dt = {dt} s: expected a finite step above 0 that advances the time, {t} s")]
     Dt {
         /// The step (s).
@@ -161,7 +161,7 @@ pub enum CommandError {
     /// Another integrator, or an option, that does not exist.
     #[error(transparent)]
     Option(#[from] OptionError),
-    /// Loads that cannot be driven.
+    /// Loads that cannot be steered.
     #[error(transparent)]
     Driven(#[from] DrivenLoadError),
     /// A method that cannot take a step from here.
@@ -176,7 +176,7 @@ pub enum CommandError {
     /// A cut in a scene whose body stays whole.
     #[error("the scene has no table [cutting], so its body cannot be cut: add one")]
     Whole,
-    /// A place of a blade that is none.
+    /// A position of a blade that is not valid.
     #[error("cut: {value}: expected finite numbers, at most {most:e} m in size")]
     Cut {
         /// The number at fault.

@@ -6,12 +6,12 @@ use sinew_scene::Simulation;
 use crate::command::Command;
 use crate::log::{Entry, Log};
 
-/// The motion of a session since its last reset, in which time rises.
+/// The motion of a session since its last reset. Time rises in it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Course {
-    /// Steps before it.
+    /// Number of steps before it.
     pub first: usize,
-    /// Its steps.
+    /// Number of its steps.
     pub steps: usize,
     /// The mean length (s) of its steps.
     pub dt: f64,
@@ -31,7 +31,7 @@ struct Leg {
 }
 
 impl Course {
-    /// The motion up to the point where a session has taken this many steps.
+    /// The motion of a session up to this number of steps.
     pub(crate) fn of(log: &Log, simulation: &Simulation, steps: usize) -> Self {
         let before = log.up_to_last_reset();
         let first = before.last().map_or(0, |reset| reset.step);
@@ -69,8 +69,8 @@ impl Course {
     }
 }
 
-/// The legs of `steps` steps after the `first` ones, with these commands since. If there are no steps, the one leg has
-/// none.
+/// The legs of `steps` steps after the `first` ones, with the commands after them. If there are no steps, the result is
+/// one leg without steps.
 fn legs(since: &[Entry], simulation: &Simulation, first: usize, steps: usize) -> Vec<Leg> {
     let settings = simulation.settings();
     let mut method = (settings.integrator.clone(), settings.options.clone());

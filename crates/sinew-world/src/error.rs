@@ -11,20 +11,20 @@ use sinew_tools::ToolsError;
 use crate::command::CommandError;
 use crate::input_file::InputFileError;
 
-/// Reasons for which a scene cannot be driven.
+/// Reasons for which a scene cannot be set in motion.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum WorldError {
     /// A scene that cannot be built.
     #[error(transparent)]
     Scene(#[from] SceneError),
-    /// A load that the scene's integrator does not take.
+    /// A load that the scene's integrator does not support.
     #[error(transparent)]
     Load(#[from] RefusedLoad),
-    /// Loads that cannot be driven.
+    /// Loads that cannot be steered.
     #[error(transparent)]
     Driven(#[from] DrivenLoadError),
-    /// An option that the scene's integrator does not take.
+    /// An option that the scene's integrator does not have.
     #[error(transparent)]
     Option(#[from] OptionError),
     /// A first step that cannot be taken.
@@ -51,7 +51,7 @@ pub enum WorldStepError {
     Diverged {
         /// Time (s).
         t: f64,
-        /// The degree of freedom that went farthest, in the system's words.
+        /// The degree of freedom with the largest displacement, in the terms of the system.
         place: String,
     },
     /// A method that could not take the step, or a law that refused a state.
@@ -60,7 +60,7 @@ pub enum WorldStepError {
     /// A cut after which the motion cannot continue.
     #[error(transparent)]
     Cutting(#[from] CuttingError),
-    /// Loads that cannot be driven on the body after a cut.
+    /// Loads that cannot be steered on the body after a cut.
     #[error("after a cut: {0}")]
     Driven(String),
     /// A pose that could not be recorded.
@@ -72,7 +72,7 @@ pub enum WorldStepError {
     /// Message of a failure before the motion was saved and restored.
     #[error("{0}")]
     Earlier(String),
-    /// A step by which the time does not advance any more.
+    /// A step that is too short to advance the time.
     #[error("t = {t} s: a step of {dt} s does not advance it: expected a longer step, or a reset")]
     Time {
         /// Time (s).
@@ -96,7 +96,7 @@ pub enum AdvanceError {
 /// Reasons for which [`crate::World::advance_to`] ends before its time.
 #[derive(Debug, thiserror::Error)]
 pub enum AdvanceToError {
-    /// A time that no steps lead to.
+    /// A time that steps cannot reach.
     #[error("t = {t} s: expected a finite time from {now} s on")]
     Time {
         /// The time (s).
@@ -143,7 +143,7 @@ pub enum RestoreError {
         "this motion was kept by the world of another scene: its text, or a file that it reads, is not that of this one"
     )]
     OtherScene,
-    /// A part that no motion has: the value was altered.
+    /// A part that is not possible in any motion: the value was altered.
     #[error("the saved motion was altered: its {part} cannot be")]
     Impossible {
         /// The part.
@@ -158,7 +158,7 @@ pub enum RestoreError {
     /// Inputs that cannot be decoded.
     #[error(transparent)]
     Inputs(#[from] InputBytesError),
-    /// Loads that cannot be driven.
+    /// Loads that cannot be steered.
     #[error(transparent)]
     Driven(#[from] DrivenLoadError),
     /// A method that this program does not have.

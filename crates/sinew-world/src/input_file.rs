@@ -1,4 +1,4 @@
-//! Files that a scene reads, and the hashes by which they are known again.
+//! Files that a scene reads, and the hashes that identify them.
 
 use std::io;
 use std::path::PathBuf;

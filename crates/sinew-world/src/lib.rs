@@ -1,8 +1,8 @@
 //! Scenes in motion.
 //!
-//! A [`World`] is the only thing that takes the steps of a scene: alone, or observed by a [`Recorder`]. [`Command`]s
-//! between its steps steer tools, scale loads, cut, and switch methods. Every command is kept in its [`Log`], which
-//! repeats the motion bit for bit: states depend on the scene and the log, and on nothing else.
+//! Only a [`World`] takes the steps of a scene: alone, or observed by a [`Recorder`]. [`Command`]s between its steps
+//! steer tools, scale loads, cut, and switch methods. Every command is kept in its [`Log`], which repeats the motion
+//! bit for bit: states depend on the scene and the log, and on nothing else.
 
 mod command;
 mod course;

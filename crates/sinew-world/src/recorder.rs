@@ -1,4 +1,4 @@
-//! Recorders, which see a world in motion.
+//! Recorders, which observe a world in motion.
 
 use std::sync::Arc;
 
@@ -17,10 +17,10 @@ pub trait Recorder: sinew_core::Recorder {
     }
 }
 
-/// Wants nothing.
+/// A recorder that requests no states.
 impl Recorder for () {}
 
-/// Wants every state.
+/// A recorder that requests every state.
 impl<F> Recorder for F where F: FnMut(&Moment<'_>) -> Result<Verdict, RecordError> {}
 
 impl Recorder for ProbeCsv {
@@ -37,7 +37,7 @@ pub struct BodyChange<'a> {
     pub body: &'a Arc<SceneBody>,
     /// Inputs from outside.
     pub inputs: &'a Inputs,
-    /// The cut; `None` if only the loads follow inputs from now on, which changes no force yet.
+    /// The cut; `None` if the only change is that loads follow inputs from now on, which does not change forces yet.
     pub cut: Option<&'a BodyCut>,
     /// Steps taken before it, as the recorder counts them.
     pub steps: usize,
@@ -56,14 +56,14 @@ pub struct BodyCut {
     pub energy: f64,
 }
 
-/// A recorder and the steps it has received: it receives one motion, however many calls take the steps.
+/// A recorder and the steps it has received: it receives one motion, for any number of calls that take the steps.
 pub struct Shown<'r, R: Recorder + ?Sized> {
     pub(crate) steps: RecordedSteps<'r, R>,
     pub(crate) body: Arc<SceneBody>,
 }
 
 impl<R: Recorder + ?Sized> Shown<'_, R> {
-    /// Steps that it has seen.
+    /// Number of steps that it has received.
     #[must_use]
     pub fn steps(&self) -> usize {
         self.steps.steps()
@@ -104,7 +104,7 @@ impl<R: Recorder + ?Sized> Shown<'_, R> {
     }
 }
 
-/// Several recorders as one: each sees the states it wants; one that stops stops all.
+/// Several recorders as one: each receives the states that it requests; if one stops, all stop.
 #[derive(Default)]
 pub struct Recorders<'a> {
     list: Vec<Member<'a>>,
@@ -112,7 +112,7 @@ pub struct Recorders<'a> {
 
 struct Member<'a> {
     recorder: &'a mut dyn Recorder,
-    /// The step that it wants next.
+    /// The next step that it requests.
     next: Option<usize>,
     /// Number of degrees of freedom that it watches.
     watched: usize,

@@ -1,4 +1,4 @@
-//! Sessions repeated by their logs.
+//! Sessions repeated from their logs.
 
 use sinew_core::{RecordError, StepReport};
 use sinew_scene::Scene;
@@ -10,7 +10,7 @@ use crate::log::{Header, Log};
 use crate::recorder::{Recorder, Shown};
 use crate::world::{Ended, World};
 
-/// A session that is repeated by its log, step by step and bit for bit, from its last reset on: earlier motion has no
+/// A session that is repeated from its log, step by step and bit for bit, from its last reset on: earlier motion has no
 /// effect except for its number of steps.
 ///
 /// ```
@@ -33,7 +33,7 @@ use crate::world::{Ended, World};
 pub struct Replay {
     world: World,
     log: Log,
-    /// Commands given so far, or left out since a reset came after them.
+    /// Number of commands given so far, or skipped because a reset follows them.
     given: usize,
 }
 
@@ -41,7 +41,7 @@ pub struct Replay {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ReplayError {
-    /// A scene that cannot be driven.
+    /// A scene that cannot be set in motion.
     #[error(transparent)]
     World(#[from] WorldError),
     /// A log of another scene.
@@ -52,7 +52,7 @@ pub enum ReplayError {
         /// Description of the difference.
         what: String,
     },
-    /// A command that is refused, which it was not in the session.
+    /// A command that is refused, but was not refused in the session.
     #[error("command {number} of the log, after step {step}: {source}")]
     Command {
         /// Its number, counted from 1.
@@ -62,7 +62,7 @@ pub enum ReplayError {
         /// The reason.
         source: Box<CommandError>,
     },
-    /// A step that fails, which it did not in the session.
+    /// A step that fails, but did not fail in the session.
     #[error(
         "step {step}: {source}; it did not fail in the session: another version of the program or another processor computes it"
     )]
@@ -72,7 +72,7 @@ pub enum ReplayError {
         /// The reason.
         source: WorldStepError,
     },
-    /// A session that takes another course.
+    /// A session whose motion differs from the log.
     #[error(
         "after step {step} the time is {found} s, and {expected} s in the log: it was changed, or another version of the program wrote it"
     )]
@@ -98,10 +98,10 @@ pub enum FollowError {
 }
 
 impl Replay {
-    /// Begins to repeat the session of a scene: it stands where the last reset left it, or at its beginning.
+    /// Prepares the repetition of the session of a scene, starting after its last reset, or at its beginning.
     ///
     /// # Errors
-    /// [`ReplayError`] for the log of another scene, or a scene that cannot be driven.
+    /// [`ReplayError`] for the log of another scene, or a scene that cannot be set in motion.
     pub fn new(scene: Scene, log: Log) -> Result<Self, ReplayError> {
         let header = Header::of(&scene).map_err(WorldError::from)?;
         log.header().check(&header)?;
@@ -139,7 +139,7 @@ impl Replay {
     /// Takes the next step, and gives the commands that came after it; `None` at the end.
     ///
     /// # Errors
-    /// [`ReplayError`] if the session did not fail. A step that diverged then is repeated, and counts.
+    /// [`ReplayError`] if the session did not fail. A step that diverged in the session is repeated, and counts.
     pub fn step(&mut self) -> Result<Option<StepReport>, ReplayError> {
         let step = self.world.steps();
         if step >= self.log.steps() {
@@ -191,7 +191,7 @@ impl Replay {
         Ok(())
     }
 
-    /// The motion that [`Replay::advance`] shows.
+    /// The motion that [`Replay::advance`] passes to the recorder.
     #[must_use]
     pub fn course(&self) -> Course {
         Course::of(&self.log, self.world.scene(), self.log.steps())
@@ -203,10 +203,10 @@ impl Replay {
         Course::of(&self.log, self.world.scene(), self.world.steps())
     }
 
-    /// Repeats the rest, and shows it to a recorder. Time rises in it.
+    /// Repeats the rest, and passes it to a recorder. Time rises in it.
     ///
     /// # Errors
-    /// [`FollowError`] for a motion that takes another course than its log, and for a recorder that fails.
+    /// [`FollowError`] for a motion that differs from its log, and for a recorder that fails.
     pub fn advance<R: Recorder + ?Sized>(
         &mut self,
         shown: &mut Shown<'_, R>,

@@ -1,6 +1,6 @@
 //! Identities of scenes.
 
-/// Identity of a scene, by its text and the files that it reads.
+/// Identity of a scene, from its text and the files that it reads.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct SceneIdentity {
     /// SHA-256 in hexadecimal digits.
@@ -8,7 +8,7 @@ pub(crate) struct SceneIdentity {
     pub(crate) key: SceneKey,
 }
 
-/// A few digits of the identity of a scene.
+/// Some digits of the identity of a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub(crate) struct SceneKey(u64);
 

@@ -27,15 +27,15 @@ use crate::scene_identity::SceneIdentity;
 
 pub use saved::Saved;
 
-/// A scene in motion: the only thing that takes its steps.
+/// A scene in motion; only a world takes the steps of a scene.
 ///
 /// It owns the scene, which is constant, and the body, state, integrator, tools and inputs, which change. A
 /// [`Recorder`](crate::Recorder) observes the motion of [`World::advance`]; [`Command`](crate::Command)s between
 /// steps steer tools, scale loads, cut, and switch methods.
 ///
 /// A world of [`World::new`] takes commands, and its [`Log`] repeats it bit for bit. Without commands it takes the
-/// steps of [`World::following`], with the same bits, unless a tool is smaller than the surface triangles somewhere off
-/// its path: it may be steered there, and meets triangles from the beginning.
+/// steps of [`World::following`], with the same bits, unless a tool is smaller than surface triangles away from its
+/// path: it may be steered there, and has contact with triangles from the beginning.
 ///
 /// ```
 /// use sinew_scene::{Scene, SceneSource};
@@ -56,8 +56,8 @@ pub struct World {
     /// The scene, unchanged since it was built.
     scene: Arc<Simulation>,
     identity: SceneIdentity,
-    /// The body as it moves: its loads follow inputs from the first load factor on. Until then they are known in
-    /// advance, which some methods need, and every sum has the bits of a run.
+    /// The current body: its loads follow inputs from the first load factor on. Until then they are known in advance,
+    /// which some methods need, and every sum has the same bits as in a run.
     body: Arc<SceneBody>,
     /// The same body with the loads of the scene.
     undriven: Arc<SceneBody>,
@@ -68,12 +68,12 @@ pub struct World {
     blade: Option<[[f64; 3]; 2]>,
     /// The cut at the beginning of the last step.
     change: Option<BodyCut>,
-    /// Number of bodies so far: it grows with each change of the mesh.
+    /// Number of meshes so far; it grows with each change of the mesh.
     topology_epoch: u64,
     /// Buffer for a field over the degrees of freedom.
     field: Vec<f64>,
     method: Method,
-    /// The method before the last change of the step, which is often changed back.
+    /// The method before the last change of the step, which is often reversed.
     parked: Option<Method>,
     /// Channels without values.
     fresh: Inputs,
@@ -82,16 +82,16 @@ pub struct World {
     loads: Vec<Knob>,
     forces: Forces,
     state: State,
-    /// Buffer for a step that is tried, and for the state before a cut.
+    /// Buffer for a trial step, and for the state before a cut.
     trial: State,
     steps: usize,
-    /// Time (s) after the last step that was taken whole; a step that fails may leave a part of it behind.
+    /// Time (s) after the last complete step; a step that fails may leave the state in the middle of the step.
     reached: f64,
     failure: Option<WorldStepError>,
     /// Displacement (m) beyond which the motion counts as diverged.
     limit: f64,
     log: Log,
-    /// True if tools and loads have their courses alone.
+    /// True if tools and loads follow their own courses only.
     follows: bool,
 }
 
@@ -106,7 +106,7 @@ pub enum Ended {
     Diverged {
         /// Time (s).
         t: f64,
-        /// The degree of freedom that went farthest, in the system's words.
+        /// The degree of freedom with the largest displacement, in the terms of the system.
         place: String,
     },
 }
@@ -178,7 +178,7 @@ impl Method {
         })
     }
 
-    /// The method that the scene asks for.
+    /// The method that the scene states.
     fn of_scene(simulation: &Simulation) -> Result<Self, OptionError> {
         let settings = simulation.settings();
         Self::new(
@@ -191,7 +191,7 @@ impl Method {
 }
 
 impl World {
-    /// Builds a scene that takes commands, and checks that a step can be taken.
+    /// Builds a world of a scene that takes commands, and checks that a step can be taken.
     ///
     /// # Errors
     /// [`WorldError`] for a scene that `sinew run` refuses as well, and for files of it that cannot be read again.
@@ -200,7 +200,7 @@ impl World {
         Self::with_header(scene, header)
     }
 
-    /// Like [`World::new`], with a header that is known already.
+    /// Same as [`World::new`], with a header that is already known.
     pub(crate) fn with_header(scene: Scene, header: Header) -> Result<Self, WorldError> {
         let identity = header.scene_identity();
         let mut simulation = scene.build()?;
@@ -249,8 +249,8 @@ impl World {
         Ok(world)
     }
 
-    /// A world that follows its scene, by an integrator that is set up for it: tools and loads have their courses, and
-    /// commands are refused.
+    /// A world that follows its scene, with an integrator that is set up for it: tools and loads have their courses,
+    /// and commands are refused.
     ///
     /// # Errors
     /// [`WorldError`] for a file of the scene that cannot be read again, and for a body that cannot be cut, which building
@@ -322,7 +322,7 @@ impl World {
         &self.scene
     }
 
-    /// The body as it moves: mesh, matrices, tools, probes. It is replaced at the first factor of a load, with the same
+    /// The current body: mesh, matrices, tools, probes. It is replaced at the first factor of a load, with the same
     /// mesh and tools, and by each cut.
     #[must_use]
     pub fn body(&self) -> &Arc<SceneBody> {
@@ -356,7 +356,7 @@ impl World {
         &self.state
     }
 
-    /// Steps taken since the session began; a reset counts on.
+    /// Number of steps since the session began; a reset does not reset this count.
     #[must_use]
     pub fn steps(&self) -> usize {
         self.steps
@@ -392,7 +392,7 @@ impl World {
         })
     }
 
-    /// Time (s) after the last step that was taken whole.
+    /// Time (s) after the last complete step.
     pub(crate) fn reached(&self) -> f64 {
         self.reached
     }
@@ -440,7 +440,7 @@ impl AsRef<World> for World {
     }
 }
 
-/// Takes a step on a copy of a state, which sets the method up and shows whether it can continue from there.
+/// Takes a step on a copy of a state. This sets up the method and checks that it can continue from this state.
 fn try_step(
     system: &dyn System,
     inputs: &Inputs,

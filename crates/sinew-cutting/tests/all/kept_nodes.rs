@@ -1,21 +1,21 @@
-//! What a body keeps from sheet to sheet of the nodes near its blade changes nothing.
+//! The data that a body keeps from sheet to sheet about the nodes near its blade does not change results.
 
 use crate::common::body;
 use proptest::prelude::*;
 use sinew_mesh::structured::{self, Split};
 
-/// A way of the blade and of the tissue, in steps.
+/// A motion of the blade and of the tissue, in steps.
 #[derive(Clone, Debug)]
 struct Way {
     pose: [[f64; 3]; 2],
-    /// Way of both ends in a step (m).
+    /// Displacement of both ends in a step (m).
     ends: [[f64; 3]; 2],
-    /// Gradient of the way of the tissue in a step, and its sway (m).
+    /// Gradient of the displacement of the tissue in a step, and the amplitude of its oscillation (m).
     gradient: [[f64; 3]; 3],
     sway: f64,
     steps: usize,
     snap: f64,
-    /// Steps after which the blade is lifted, and begins from where it was.
+    /// Number of steps after which the blade is lifted, and applied again at the same position.
     lift: usize,
 }
 
@@ -46,7 +46,7 @@ fn way() -> impl Strategy<Value = Way> {
         )
 }
 
-/// Where a point of the body is after so many steps of a way.
+/// Position of a point of the body after this number of steps of a motion.
 fn place(way: &Way, place: [f64; 3], step: usize) -> [f64; 3] {
     let phase = 40.0 * place[0] + 30.0 * place[2] + 1.3 * step as f64;
     std::array::from_fn(|axis| {

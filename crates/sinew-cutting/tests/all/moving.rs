@@ -31,7 +31,7 @@ fn unit(a: [f64; 3]) -> [f64; 3] {
     a.map(|x| x / length)
 }
 
-/// A motion of a cube of 0.1 m: how far it goes in the whole stroke (m), per strain, and by waves.
+/// A motion of a cube of 0.1 m: the displacement in the whole stroke (m), the strain, and the waves.
 struct Motion {
     drift: [f64; 3],
     gradient: [[f64; 3]; 3],
@@ -71,7 +71,7 @@ impl Way {
     }
 }
 
-/// Cuts a moving body through; the number of pieces.
+/// Cuts through a moving body; returns the number of pieces.
 fn cut_through(
     mesh: &TetMesh,
     way: &Way,
@@ -114,7 +114,8 @@ fn cut_through(
     (body.pieces().count, body)
 }
 
-/// A stroke through a cube that moves, by its number: along planes of nodes, near them and anywhere, in few steps and many.
+/// A stroke through a moving cube, by its number: along planes of nodes, near them and anywhere, in few steps and in
+/// many.
 fn case(number: u32, random: &mut Random) -> (TetMesh, Way, Motion, u32, f64) {
     let split = [Split::Kuhn, Split::Mirrored][number as usize % 2];
     let mesh = structured::cube(4, 0.1, split).unwrap();

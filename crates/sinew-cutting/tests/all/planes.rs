@@ -7,7 +7,7 @@ use sinew_mesh::TetMesh;
 
 const EDGE: f64 = 0.01;
 
-/// Planes through the cube's middle or so, at angles that no direction of the mesh has.
+/// Planes through or near the cube's middle, at angles different from all directions of the mesh.
 fn planes() -> impl Iterator<Item = Sheet> {
     (0..17).map(|k| {
         let k = f64::from(k);
@@ -21,7 +21,8 @@ fn planes() -> impl Iterator<Item = Sheet> {
     })
 }
 
-/// Distances of the nodes of the cut faces from the plane, by the edge of the grid: largest and root mean square.
+/// Distances of the nodes of the cut faces from the plane, relative to the edge of the grid: largest and root mean
+/// square.
 fn roughness(
     body: &CuttableBody,
     faces: &[(u32, u8)],
@@ -98,7 +99,7 @@ fn a_plane_near_a_layer_of_nodes_becomes_smooth() {
 /// A linear map of space, by rows.
 type Linear = [[f64; 3]; 3];
 
-/// A fifth larger, and turned about two axes.
+/// A map that enlarges by a fifth and rotates about two axes.
 const TURNED: Linear = [
     [0.96, -0.576, 0.432],
     [0.72, 0.768, -0.576],
@@ -111,18 +112,18 @@ fn mapped(linear: &Linear, place: [f64; 3]) -> [f64; 3] {
     linear.map(|row| (0..3).map(|axis| row[axis] * place[axis]).sum())
 }
 
-/// A body in another shape, and the body at rest, each cut in one stroke: what the strokes did.
+/// A deformed body, and the body at rest, each cut in one stroke, with the results of the strokes.
 struct CutThereAndAtRest {
     there: (CuttableBody, Stroke),
     at_rest: (CuttableBody, Stroke),
-    /// Places of the nodes at rest after moves, and the sheet that goes through them.
+    /// Positions of the nodes at rest after moves, and the sheet through them.
     places: Vec<[f64; 3]>,
     sheet: Sheet,
 }
 
 impl CutThereAndAtRest {
-    /// Cuts a mapped body by a plane, and the body at rest by the plane mapped back. Nodes within a share `snap` of their edge from the
-    /// plane, as both lie at rest, are moved.
+    /// Cuts a mapped body by a plane, and the body at rest by the plane mapped back. Nodes whose distance from the
+    /// plane at rest is within a share `snap` of their edge are moved.
     fn new(mesh: &TetMesh, linear: &Linear, there: &Sheet, snap: f64) -> Self {
         let normal = there.normal();
         let back: [f64; 3] =
@@ -177,7 +178,8 @@ fn a_turned_and_enlarged_body_is_cut_as_it_is_at_rest_by_the_plane_turned_back()
     }
 }
 
-/// Checks that a plane has parted a body in two, and that every tetrahedron that it does not divide is in the piece of its side.
+/// Checks that a plane has separated a body into two pieces, and that every tetrahedron that it does not divide is in
+/// the piece of its side.
 fn assert_parted(body: &CuttableBody, sheet: &Sheet, places: &[[f64; 3]]) {
     let pieces = body.pieces();
     assert_eq!(pieces.count, 2);
@@ -195,7 +197,8 @@ fn assert_parted(body: &CuttableBody, sheet: &Sheet, places: &[[f64; 3]]) {
     assert_ne!(below, above);
 }
 
-/// Tetrahedra that the plane divides may take the other side than at rest, since what is smooth is judged by the shape that they have now.
+/// Tetrahedra that the plane divides may belong to another side than at rest, since smoothness is judged in the current
+/// shape.
 #[test]
 fn a_sheared_body_is_parted_as_at_rest_but_for_tetrahedra_that_the_plane_divides() {
     let mesh = kuhn_cube();
@@ -216,7 +219,7 @@ fn a_sheared_body_is_parted_as_at_rest_but_for_tetrahedra_that_the_plane_divides
     }
 }
 
-/// The side of a divided tetrahedron may be settled before its neighbours are known.
+/// The side of a divided tetrahedron may be determined before its neighbours are known.
 #[test]
 fn a_cut_in_many_strokes_parts_what_one_stroke_parts_and_is_as_large_to_a_sixteenth() {
     let mesh = kuhn_cube();

@@ -4,17 +4,17 @@ use proptest::prelude::*;
 use sinew_cutting::Sheet;
 use sinew_mesh::structured::{self, Split};
 
-/// One thing done to the body.
+/// One action on the body.
 #[derive(Clone, Debug)]
 enum Deed {
-    /// A sheet between two poses, and how far nodes are moved onto it.
+    /// A sheet between two poses, and the share of an edge within which nodes are moved onto it.
     Stroke([[[f64; 3]; 2]; 2], f64),
-    /// The blade goes on from its last pose to this one.
+    /// Continued motion of the blade from its last pose to this one.
     GoOn([[f64; 3]; 2], f64),
     Lift,
     /// Removal within a ball.
     Remove([f64; 3], f64),
-    /// The body takes another shape.
+    /// A deformation of the body.
     Deform([[f64; 3]; 3]),
 }
 

@@ -11,7 +11,7 @@ fn blade(z: f64) -> [[f64; 3]; 2] {
     [[0.05, -0.01, z], [0.05, 0.11, z]]
 }
 
-/// Cuts down to a height in some strokes of equal depth; the faces cut.
+/// Cuts down to a height in several strokes of equal depth; returns the cut faces.
 fn slit(body: &mut CuttableBody, positions: &mut Vec<[f64; 3]>, to: f64, strokes: u32) -> usize {
     let height = |n: u32| 0.101 + (to - 0.101) * f64::from(n) / f64::from(strokes);
     let faces = (0..strokes).map(|n| {
@@ -21,7 +21,7 @@ fn slit(body: &mut CuttableBody, positions: &mut Vec<[f64; 3]>, to: f64, strokes
     faces.sum()
 }
 
-/// Number of faces with a tetrahedron on one side only: the body's surface and both lips of its cuts.
+/// Number of faces with a tetrahedron on one side only: the body's surface and both faces of its cuts.
 fn open_faces(body: &CuttableBody, mesh: &TetMesh) -> usize {
     body.mesh(mesh).mesh.boundary(None).len()
 }
@@ -43,7 +43,8 @@ fn a_slit_of_seven_rows_has_140_faces_and_77_new_nodes_in_one_stroke_or_in_many(
     }
 }
 
-/// Tissue rises by more than the blade comes down, and shivers across it, where the blade goes along a layer of nodes.
+/// Tissue rises by more than the blade comes down, and vibrates across it, while the blade moves along a layer of
+/// nodes.
 #[test]
 fn tissue_that_comes_towards_the_blade_is_cut_as_tissue_at_rest() {
     let mesh = kuhn_cube();
@@ -212,7 +213,8 @@ fn a_blade_that_enters_in_part_cuts_nothing_until_it_comes_through() {
     assert_eq!(cut(&mut lifted, &mut positions, 1.6, 4.0), 0);
 }
 
-/// The faces that strokes cut when the blade comes down beside a plane of nodes, and the blade's edge then.
+/// The faces that strokes cut when the blade comes down next to a plane of nodes, and the edge of the blade at that
+/// time.
 fn cut_beside_a_plane(mesh: &TetMesh) -> Vec<((u32, u32), f64)> {
     let (mut body, mut positions) = (body(mesh, 0.25), mesh.points.clone());
     let whole = crate::common::body(mesh, 0.25);

@@ -4,7 +4,7 @@ use std::fmt::{self, Display};
 
 use crate::markup::{escape, prose};
 
-/// Fewest sections that are worth a list.
+/// Least number of sections for a list.
 const FEWEST: usize = 3;
 
 /// Anchors and headings of a page's sections; a list of links if there are several.

@@ -19,7 +19,7 @@ pub struct Page {
 }
 
 impl Page {
-    /// A page of that title, which is also its first heading.
+    /// A page with that title, which is also its first heading.
     #[must_use]
     pub fn new(title: impl Into<String>) -> Self {
         Self {
@@ -59,7 +59,7 @@ impl Page {
         self.put(format_args!("<p>{}</p>\n", prose(text)));
     }
 
-    /// A warning: prose that is seen first.
+    /// A warning: prose that is highlighted.
     pub fn warning(&mut self, text: &str) {
         self.put(format_args!("<p class=\"warning\">{}</p>\n", prose(text)));
     }
@@ -112,7 +112,7 @@ impl Page {
         self.markup("</details>\n");
     }
 
-    /// HTML as given, for content without a method of its own.
+    /// HTML as given, for content without its own method.
     pub fn markup(&mut self, html: &str) {
         if self.contents.is_empty() {
             self.lead.push_str(html);

@@ -57,7 +57,7 @@ impl Column {
         }
     }
 
-    /// The column with a text that shows on hovering over its head.
+    /// The column with a text shown when the pointer is over its head.
     #[must_use]
     pub fn explained(self, explained: impl Into<String>) -> Self {
         Self {
@@ -136,7 +136,7 @@ impl Cell {
         }
     }
 
-    /// The cell with a text that shows on hovering.
+    /// The cell with a text shown when the pointer is over it.
     #[must_use]
     pub fn titled(self, title: impl Into<String>) -> Self {
         Self {
@@ -154,7 +154,7 @@ impl Cell {
         }
     }
 
-    /// The cell on a light colour, which bears black text.
+    /// The cell on a light colour, on which black text is readable.
     #[must_use]
     pub fn tinted(self, tint: Colour) -> Self {
         Self {

@@ -1,19 +1,19 @@
-//! Points and lines that later ones lie upon.
+//! Points and lines that are covered by later ones.
 
-/// Points nearer than this (px) look like one.
+/// Distance (px) below which two points look like one.
 const NEAR: f64 = 4.0;
-/// The most rims that are drawn round one another.
+/// Largest number of rims around one another.
 const MOST: usize = 3;
 
-/// A place in the picture (px); none if a point is not shown.
+/// A position in the picture (px); `None` if a point is not shown.
 pub(super) type Place = Option<(f64, f64)>;
 
-/// The places of all series, in the order in which they are drawn.
+/// The positions of all series, in the order in which they are drawn.
 pub(super) struct Places(pub(super) Vec<Vec<Place>>);
 
 impl Places {
-    /// The number of later series that have a point upon this one, 3 at most: drawn that much larger, it
-    /// shows as a rim round theirs.
+    /// The number of later series with a point on this one, at most 3: the point is drawn larger by this number, so
+    /// that it is visible as a rim around theirs.
     pub(super) fn above_point(&self, series: usize, point: usize) -> usize {
         let Some(at) = self.0[series][point] else {
             return 0;
@@ -23,7 +23,7 @@ impl Places {
         later.filter(upon).count().min(MOST)
     }
 
-    /// The number of later series that have the same stretch of line, from this point to the next, 3 at most.
+    /// The number of later series that have the same stretch of line, from this point to the next, at most 3.
     pub(super) fn above_stretch(&self, series: usize, point: usize) -> usize {
         let (Some(a), Some(b)) = (self.0[series][point], self.0[series][point + 1]) else {
             return 0;

@@ -9,15 +9,15 @@ use crate::style::{Colour, Marker, Style};
 use crate::svg::{Paint, Stroke, Svg, Text};
 
 const MARKER: f64 = 4.2;
-/// Width of a rim (px) round lines and markers that cover others.
+/// Width of a rim (px) around lines and markers that cover others.
 const RIM: f64 = 1.6;
 /// The colour of signs that belong to no series.
 const NEUTRAL: Colour = Colour(0x77, 0x77, 0x77);
-/// The legend's word for the arrow where a series leaves the frame.
+/// The legend's text for the arrow at which a series leaves the frame.
 const LEAVES: &str = "leaves the frame";
 
 impl Plot {
-    /// The picture as a file of its own or for a page. Covered lines and markers show as rims; lines without
+    /// The picture as a separate file or for a page. Covered lines and markers are visible as rims; lines without
     /// markers are thinned to the resolution of pixels.
     #[must_use]
     pub fn svg(&self) -> String {
@@ -31,10 +31,10 @@ impl Plot {
     }
 }
 
-/// The place where each series leaves the frame, in shares of it, if it does.
+/// The position at which each series leaves the frame, in shares of the frame; `None` if it does not.
 type Exits = Vec<Option<(f64, f64)>>;
 
-/// The places of everything, where each series leaves the frame, and the legend's entries besides the series.
+/// The layout, the position at which each series leaves the frame, and the legend's entries in addition to the series.
 fn laid_out(plot: &Plot) -> (Layout, Exits, &'static [&'static str]) {
     // Where series leave does not depend on the legend.
     let plain = Layout::of(plot, &[]);
@@ -96,7 +96,7 @@ fn described(plot: &Plot) -> String {
 }
 
 impl Layout {
-    /// Frame and axes, by which a script turns a place into values.
+    /// Frame and axes, with which a script converts a position into values.
     fn for_scripts(&self, plot: &Plot) -> [(&'static str, String); 5] {
         let frame = self.frame;
         let is_lines = plot
@@ -122,7 +122,7 @@ impl Layout {
         ]
     }
 
-    /// The places of the series with markers; others are too long to be compared.
+    /// The positions of the series with markers; others are too long to be compared.
     fn places(&self, plot: &Plot) -> Places {
         let of = |series: &Series| match series.style.marker {
             None => Vec::new(),
@@ -192,7 +192,7 @@ impl Layout {
         }
     }
 
-    /// The place where a series first leaves the frame through its top or bottom, in shares of the frame.
+    /// The position at which a series first leaves the frame through its top or bottom, in shares of the frame.
     fn exit(&self, series: &Series) -> Option<(f64, f64)> {
         let shares: Vec<_> = series.points.iter().map(|p| self.shares(p)).collect();
         shares.windows(2).find_map(|pair| {
@@ -213,7 +213,7 @@ impl Layout {
         })
     }
 
-    /// An arrow where a series leaves the frame.
+    /// Draws an arrow at the position at which a series leaves the frame.
     fn arrow(&self, svg: &mut Svg, series: &Series, (x, edge): (f64, f64)) {
         let (marker, inwards) = if edge > 0.5 {
             (Marker::Up, 1.0)

@@ -1,6 +1,6 @@
 //! A line that leaves the frame.
 
-/// Place as shares of the frame: to the right, and upwards.
+/// Position in shares of the frame: to the right, and upwards.
 type Place = (f64, f64);
 
 /// Shares of the frame's height beyond which a line is not followed: well outside the frame, yet

@@ -1,4 +1,4 @@
-//! Places of everything in a plot.
+//! Layout of a plot.
 
 use super::{Plot, Point, Rule, Series};
 use crate::axis::{Fitted, Tick};
@@ -14,7 +14,7 @@ pub(super) const LANE: f64 = 26.0;
 /// Length of a line in the legend.
 pub(super) const SAMPLE: f64 = 34.0;
 
-/// Places in pixels.
+/// Layout in pixels.
 pub(super) struct Layout {
     pub(super) x: Fitted,
     pub(super) y: Fitted,
@@ -30,7 +30,7 @@ pub(super) struct Layout {
     pub(super) height: f64,
 }
 
-/// Places of the legend's entries.
+/// Positions of the legend's entries.
 pub(super) struct Legend {
     pub(super) top: f64,
     pub(super) rows: usize,
@@ -38,7 +38,7 @@ pub(super) struct Legend {
 }
 
 impl Layout {
-    /// Lays a plot out; `marks` are the legend's entries besides the series.
+    /// Computes the layout of a plot; `marks` are the legend's entries in addition to the series.
     pub(super) fn of(plot: &Plot, marks: &[&str]) -> Self {
         let points = || plot.series.iter().flat_map(|series| &series.points);
         let rules = |rules: &[Rule]| rules.iter().map(|rule| rule.at).collect::<Vec<_>>();
@@ -136,7 +136,7 @@ impl Layout {
         }
     }
 
-    /// The place of a point in shares of the frame; none if it cannot be shown.
+    /// The position of a point in shares of the frame; `None` if it cannot be shown.
     pub(super) fn shares(&self, point: &Point) -> Option<(f64, f64)> {
         let (x, y) = (self.x.share(point.x), self.y.share(point.y));
         let share = |middle: f64| (self.frame.bottom() - middle) / self.frame.height;
@@ -156,7 +156,7 @@ impl Layout {
         inside(x) && (inside(y) || in_a_lane)
     }
 
-    /// The place of the n-th entry of the legend: left end and middle.
+    /// The position of the n-th entry of the legend: left end and middle.
     pub(super) fn entry(&self, index: usize) -> (f64, f64) {
         let rows = self.legend.rows.max(1);
         let (column, row) = ((index / rows) as f64, (index % rows) as f64);
@@ -173,7 +173,7 @@ pub(super) fn named(plot: &Plot) -> impl Iterator<Item = (usize, &Series)> {
     series.filter(|(_, series)| !series.name.is_empty())
 }
 
-/// Middles of the labels of vertical rules, in as many rows as keep them apart.
+/// Middles of the labels of vertical rules, in as many rows as are needed to separate them.
 fn place_rule_labels(
     plot: &Plot,
     x: &Fitted,

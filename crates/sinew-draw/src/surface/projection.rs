@@ -21,8 +21,8 @@ pub(super) fn project([x, y, z]: [f64; 3]) -> Projected {
     }
 }
 
-/// The brightness of a triangle, in 0.72..1: little varied, since colour carries the number. Both sides
-/// are lit alike, as inverted elements turn theirs.
+/// The brightness of a triangle, in 0.72..1: it varies little, since colour represents the number. Both sides have the
+/// same brightness, since inverted elements exchange their sides.
 pub(super) fn light(corners: &[[f64; 3]; 3]) -> f64 {
     // From above, more from the left than from the right.
     const LAMP: [f64; 3] = [-0.62, -0.18, 0.76];
@@ -57,7 +57,7 @@ pub(super) fn corners([low, high]: [[f64; 3]; 2]) -> [[f64; 3]; 8] {
 
 type Edge = [[f64; 3]; 2];
 
-/// The edges of a box: those behind it, and those before it.
+/// The edges of a box: those at the back, and those at the front.
 pub(super) fn edges(bounds: [[f64; 3]; 2]) -> (Vec<Edge>, Vec<Edge>) {
     let corners = corners(bounds);
     // Farthest from the viewer: +x, +y, -z.

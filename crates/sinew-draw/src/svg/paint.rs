@@ -1,7 +1,7 @@
 //! Colours and lines.
 //!
-//! Neutral colours have a name besides their value, so that a page can restyle them: its CSS overrides attributes, and
-//! a file alone still looks right.
+//! Neutral colours have a name in addition to their value, so that a page can restyle them: its CSS overrides
+//! attributes, and a file alone still looks right.
 
 use crate::style::{Colour, Dash};
 
@@ -14,7 +14,7 @@ pub enum Paint {
     Paper,
     /// Text and strong lines.
     Ink,
-    /// Lesser text and lines.
+    /// Secondary text and lines.
     Muted,
     /// Lines behind the data.
     Grid,

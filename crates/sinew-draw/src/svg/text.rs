@@ -1,11 +1,11 @@
-//! Texts and the space that they take.
+//! Texts and their extent.
 
 use std::fmt::{self, Display};
 
 use super::Paint;
 use crate::markup::escape;
 
-/// The part of a text that its position refers to.
+/// The part of a text to which its position refers.
 #[derive(Clone, Copy, Debug)]
 pub enum Anchor {
     /// Its left end.
@@ -16,10 +16,10 @@ pub enum Anchor {
     End,
 }
 
-/// A text and how it is set; `y` is the middle of the line.
+/// A text and its style; `y` is the middle of the line.
 #[derive(Clone, Copy, Debug)]
 pub struct Text<'a> {
-    /// Place of its anchor (px from the left).
+    /// Position of its anchor (px from the left).
     pub x: f64,
     /// Middle of its line (px from the top).
     pub y: f64,
@@ -33,12 +33,12 @@ pub struct Text<'a> {
     pub paint: Paint,
     /// True if it is bold.
     pub bold: bool,
-    /// Turned a quarter to the left.
+    /// True if it is rotated by 90 degrees to the left.
     pub upward: bool,
 }
 
 impl<'a> Text<'a> {
-    /// A text in ordinary letters that begins at a place.
+    /// A text in ordinary letters that begins at a position.
     #[must_use]
     pub fn new(x: f64, y: f64, content: &'a str) -> Self {
         Self {
@@ -77,7 +77,7 @@ impl<'a> Text<'a> {
         Self { bold: true, ..self }
     }
 
-    /// The text turned a quarter to the left.
+    /// The text rotated by 90 degrees to the left.
     #[must_use]
     pub fn upward(self) -> Self {
         Self {
@@ -87,7 +87,7 @@ impl<'a> Text<'a> {
     }
 }
 
-/// Estimated width of a text, on the wide side: fonts differ from machine to machine.
+/// Estimated width of a text, rather too large: fonts differ from machine to machine.
 #[must_use]
 pub fn text_width(text: &str, size: f64) -> f64 {
     let ems: f64 = text

@@ -4,14 +4,13 @@ use super::error::HomogeneousError;
 use crate::frame::{frame, unit};
 use crate::hyperelastic::Tensor;
 
-/// Three axes at right angles: the first that of the pull, the second the other one of a sheet's plane.
+/// Three perpendicular axes: the first is that of the pull, the second the other one in a sheet's plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Axes([[f64; 3]; 3]);
 
 impl Axes {
-    /// Axes with the first along a vector. The second is the mesh's axis after the one that the vector is nearest to,
-    /// as far as it is at right angles to the
-    /// vector: `y` for a pull along `x`, `z` for one along `y`, `x` for one along `z`.
+    /// Axes with the first along a vector. The second is the mesh's axis after the one nearest to the vector, without
+    /// its part along the vector: `y` for a pull along `x`, `z` for one along `y`, `x` for one along `z`.
     ///
     /// # Errors
     ///
@@ -28,7 +27,7 @@ impl Axes {
             .ok_or(HomogeneousError::NoAxis)
     }
 
-    /// Axes with the first along a vector, and the second along another as far as that is at right angles to it.
+    /// Axes with the first along a vector, and the second along the part of another vector that is perpendicular to it.
     ///
     /// # Errors
     ///

@@ -52,7 +52,7 @@ pub struct End {
     pub lost: Option<f64>,
 }
 
-/// Way from one state to the next: of the logarithm of a stretch, and nearly that of a shear.
+/// Step from one state to the next, in the logarithm of a stretch, or approximately in the amount of shear.
 const STEP: f64 = 0.005;
 /// The most steps to one side, at which a stretch is 5e-5 or 2e4: no step of a logarithm leads to a stretch of 0 or less.
 const STEPS: usize = 2000;
@@ -66,9 +66,9 @@ const SECTIONS: usize = 40;
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
 impl Solid {
-    /// The curve of a load between two amounts. States are found one after the other, from rest on, at steps that do not
-    /// depend on the range, so that no verdict does; the curve ends where there is no next one. The amounts `at` are
-    /// states too.
+    /// The curve of a load between two amounts. States are found one after the other, starting at rest, at steps that
+    /// do not depend on the range. So the results on stability do not depend on it either. The curve ends if no next
+    /// state is found. The amounts `at` are also states.
     #[must_use]
     pub fn curve(&self, load: Load, axes: &Axes, between: [f64; 2], at: &[f64]) -> Curve {
         let solid = self;
@@ -266,7 +266,7 @@ impl Loaded<'_> {
     }
 }
 
-/// A fall of the stress over its size that is no rounding.
+/// Smallest relative fall of the stress that is not rounding.
 const FALL: f64 = 1e-9;
 
 impl Loaded<'_> {

@@ -18,8 +18,8 @@ pub(super) struct Loaded<'a> {
 const MOST_STEPS: usize = 60;
 /// Least share of a Newton step that is tried.
 const LEAST_SHARE: f64 = 1e-4;
-/// A stress that is left, over the largest one, and over the largest stiffness: rounding near incompressibility is some
-/// 1e-16 of the latter.
+/// Tolerances of the remaining stress: relative to the largest stress, and relative to the largest stiffness, since
+/// rounding near incompressibility is some 1e-16 of the latter.
 const LEFT: [f64; 2] = [1e-9, 1e-12];
 
 impl Loaded<'_> {
@@ -37,7 +37,7 @@ impl Loaded<'_> {
         DVector::zeros(self.load.free().len())
     }
 
-    /// The stresses (Pa) that are to vanish, and the largest of all.
+    /// The stresses (Pa) that must vanish, and the largest of all stresses.
     fn residual(&self, h: Tensor<f64>) -> Option<(DVector<f64>, f64)> {
         let stress = self.axes.of_mesh(self.solid.stress(h)?);
         let free = self.load.free().iter();
@@ -46,7 +46,7 @@ impl Loaded<'_> {
         Some((residual, Tensor(stress).largest()))
     }
 
-    /// The change of these stresses by the free strains.
+    /// The derivative of these stresses with respect to the free strains.
     fn slopes(&self, h: Tensor<f64>) -> DMatrix<f64> {
         let free = self.load.free();
         let mut slopes = DMatrix::zeros(free.len(), free.len());

@@ -11,7 +11,7 @@ pub enum HomogeneousError {
         "springs have no law at a point: their stress follows from the edges of the mesh, so there is no curve"
     )]
     Springs,
-    /// A law that does not exist, or cannot have its parameters.
+    /// A law that does not exist, or whose parameters are not allowed.
     #[error(transparent)]
     Law(#[from] LawError),
     /// An axis without direction.

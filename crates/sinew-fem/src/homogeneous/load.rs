@@ -7,7 +7,7 @@ use std::fmt;
 pub enum Load {
     /// A bar that is pulled along the first axis.
     Uniaxial,
-    /// A sheet that is stretched alike along the first and the second axis.
+    /// A sheet that is stretched equally along the first and the second axis.
     Equibiaxial,
     /// A wide sheet that is stretched along the first axis, with constant length along the second: pure shear.
     Planar,
@@ -50,7 +50,7 @@ impl Load {
         }
     }
 
-    /// True if its amount is an amount of shear and no stretch.
+    /// True if its amount is an amount of shear, not a stretch.
     #[must_use]
     pub fn is_shear(self) -> bool {
         self == Self::SimpleShear
@@ -76,7 +76,7 @@ impl Load {
         h
     }
 
-    /// The entries of that gradient which are free. With those below the diagonal at 0 nothing turns.
+    /// The entries of that gradient which are free. The entries below the diagonal are 0, which excludes rotations.
     pub(super) fn free(self) -> &'static [(usize, usize)] {
         match self {
             Self::Uniaxial => &[(0, 1), (0, 2), (1, 1), (1, 2), (2, 2)],

@@ -1,4 +1,4 @@
-//! Homogeneous loads of a material: the curves by which a law is judged before anything is run.
+//! Homogeneous loads of a material: curves to check a law before a run.
 //!
 //! | load | deformation, with the pull along the first axis | free |
 //! | --- | --- | --- |
@@ -7,12 +7,10 @@
 //! | planar (pure shear) | a wide sheet that is stretched along one axis and held along the other | its thickness |
 //! | simple shear | `F = I + g e1 (x) e2` | nothing |
 //!
-//! Strains that are free are those at which their stresses vanish, by the law with its real compressibility (Holzapfel,
-//! Nonlinear Solid Mechanics,
-//! 2000, section 6.5; Ogden, Saccomandi and Sgura, Computational Mechanics 34, 2004). As the lines of a bar's other
-//! axes may turn and shear, a bar with
-//! oblique fibres is sheared as it is pulled: `S = s e1 (x) e1` is the second Piola-Kirchhoff stress of a bar with free
-//! sides, whatever its symmetry.
+//! Free strains are those at which their stresses vanish, computed from the law with its real compressibility
+//! (Holzapfel, Nonlinear Solid Mechanics, 2000, section 6.5; Ogden, Saccomandi and Sgura, Computational Mechanics 34,
+//! 2004). The other axes of a bar may turn and shear, so a bar with oblique fibres is sheared when it is pulled: `S = s
+//! e1 (x) e1` is the second Piola-Kirchhoff stress of a bar with free sides, whatever its symmetry.
 //!
 //! ```
 //! use sinew_fem::homogeneous::{Axes, Load, Solid};

@@ -34,7 +34,7 @@ impl Solid {
     ///
     /// # Errors
     ///
-    /// [`HomogeneousError`] for springs, and for a law that cannot have its parameters.
+    /// [`HomogeneousError`] for springs, and for a law whose parameters are not allowed.
     pub fn of(region: &Region) -> Result<Self, HomogeneousError> {
         let matrix = match &region.law {
             Law::Springs { .. } => return Err(HomogeneousError::Springs),
@@ -66,7 +66,7 @@ impl Solid {
         })
     }
 
-    /// True if it is of small strain, where nominal stress and Cauchy stress are the same.
+    /// True if the law is one of small strain, for which nominal stress and Cauchy stress are the same.
     #[must_use]
     pub fn is_linear(&self) -> bool {
         matches!(self.matrix, Matrix::Linear { .. })
@@ -104,7 +104,7 @@ impl Solid {
         }
     }
 
-    /// First Piola-Kirchhoff stress (Pa) by the gradient of the displacement; `None` if the law is not defined.
+    /// First Piola-Kirchhoff stress (Pa) from the gradient of the displacement; `None` if the law is not defined.
     pub(super) fn stress(&self, h: Tensor<f64>) -> Option<Tensor<f64>> {
         let deformation = Deformation::of(h);
         let isotropic = match &self.matrix {

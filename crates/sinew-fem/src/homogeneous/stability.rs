@@ -39,7 +39,7 @@ pub(super) fn least_stiffness(solid: &Solid, h: Tensor<f64>) -> Option<f64> {
     })
 }
 
-/// Roundings of eigenvalues over the largest one.
+/// Rounding error of eigenvalues, relative to the largest one.
 const ROUNDING: f64 = 1e-13;
 
 /// An orthonormal basis of symmetric tensors.

@@ -346,7 +346,7 @@ fn springs_have_no_curve() {
     assert_eq!(refused, HomogeneousError::Springs);
 }
 
-/// The axes of the material turned with the pull: the curves stay.
+/// The axes of the material turned together with the pull: the curves stay the same.
 #[test]
 fn a_material_with_axes_is_pulled_along_them() {
     let b = [0.9, 0.6, 0.3, 0.06, -0.03, 0.09, 0.24, 0.18, 0.21];
@@ -413,7 +413,7 @@ fn no_verdict_depends_on_the_range_that_is_drawn() {
     assert!(beyond.is_some_and(|state| !state.is_stable));
 }
 
-/// Its least eigenvalue is that of volume, 3 kappa, where the others are 1e17 times as large and more.
+/// Its least eigenvalue is that of volume, 3 kappa; the others are at least 1e17 times as large.
 #[test]
 fn a_law_that_stiffens_by_many_powers_of_ten_is_stable() {
     let skin = Parameters::default()

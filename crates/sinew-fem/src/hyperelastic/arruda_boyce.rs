@@ -10,15 +10,16 @@ use super::parameters::{LawParameter, LawValues, ParameterError, Range};
 use super::tensor::Tensor;
 use super::volume;
 
-/// `psi = mu sum C_k lm^(2 - 2k) (I1^k - 3^k) + kappa/2 (J - 1)^2` with `I1` freed of volume change and
-/// `C = 1/2, 1/20, 11/1050, 19/7000, 519/673750`.
+/// `psi = mu sum C_k lm^(2 - 2k) (I1^k - 3^k) + kappa/2 (J - 1)^2` with the isochoric `I1` and `C = 1/2, 1/20, 11/1050,
+/// 19/7000, 519/673750`.
 ///
 /// Arruda and Boyce (Journal of the Mechanics and Physics of Solids 41, 1993, equation 11): chains along the eight
 /// diagonals of a cube, whose inverse Langevin function is taken to its fifth term. The shear modulus at small strain is
 /// `mu (1 + 3/(5 lm^2) + 99/(175 lm^4) + 513/(875 lm^6) + 42039/(67375 lm^8))`.
 ///
-/// For rubber and gels up to some 80 % of the locking stretch, with constants that papers give; [`super::Gent`] is the
-/// law whose stress has no end there, which five terms do not show. Not where elements may invert: refused at J <= 0.
+/// For rubber and gels up to some 80 % of the locking stretch, with constants from papers. At the locking stretch the
+/// stress of [`super::Gent`] grows without bound, which five terms do not show. Not for elements that may invert:
+/// refused at J <= 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ArrudaBoyce {
     lambda: f64,

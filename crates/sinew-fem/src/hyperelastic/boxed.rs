@@ -25,7 +25,7 @@ pub trait PointLaw: Debug + Send + Sync {
     /// Lame's constants (lambda, mu) (Pa) at small strain.
     fn lame(&self) -> (f64, f64);
 
-    /// The reason for which the law has no meaning where [`Self::margin`] ends, as half a sentence after its name
+    /// The reason for which the law is not defined beyond its [`Self::margin`], as half a sentence after its name
     /// ([`HyperelasticLaw::limit`]); `None` for a law that ends only where elements invert.
     fn limit(&self) -> Option<&str> {
         None
@@ -46,7 +46,7 @@ pub trait PointLaw: Debug + Send + Sync {
     fn tangent(&self, h: Tensor<f64>, change: Tensor<f64>) -> Tensor<f64>;
 }
 
-/// A [`PointLaw`] as loops take it.
+/// A [`PointLaw`] in the form that loops need.
 #[derive(Clone, Copy, Debug)]
 pub struct Boxed<'a>(pub &'a dyn PointLaw);
 
@@ -55,7 +55,7 @@ fn lane_of<N: Number>(tensor: Tensor<N>, lane: usize) -> Tensor<f64> {
     Tensor(tensor.0.map(|row| row.map(|entry| entry.lane(lane))))
 }
 
-/// A tensor by its lanes.
+/// A tensor from its lanes.
 fn by_lanes<N: Number>(of: impl Fn(usize) -> Tensor<f64>) -> Tensor<N> {
     let mut lanes = [Tensor::<f64>::zero(); MOST_LANES];
     for (lane, tensor) in lanes.iter_mut().enumerate().take(N::LANES) {

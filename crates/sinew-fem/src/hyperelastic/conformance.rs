@@ -1,5 +1,5 @@
-//! The checks that every hyperelastic law passes, as a suite that any crate can run on its own law. It comes with the
-//! feature `conformance`, which a crate switches on among its dev-dependencies.
+//! The checks that every hyperelastic law passes, as a suite that any crate can run on its own law. The feature
+//! `conformance` contains it; a crate switches this feature on in its dev-dependencies.
 //!
 //! ```
 //! use sinew_fem::hyperelastic::{HyperelasticLaw, NeoHookean, Parameters, conformance};
@@ -104,7 +104,7 @@ impl Random {
         [self.number(), self.number(), self.number()]
     }
 
-    /// A rotation, by the singular values of a random tensor.
+    /// A rotation, from the singular values of a random tensor.
     fn rotation(&mut self) -> Tensor<f64> {
         SingularValues::of(self.tensor()).rotation()
     }
@@ -200,8 +200,8 @@ pub fn at_rest_there_is_no_stress_and_no_energy<L: HyperelasticLaw>(law: L) {
     }
 }
 
-/// The tangent at rest is `2 mu sym + lambda tr I` of [`HyperelasticLaw::lame`], its local part that with a bulk modulus of 2 mu/3 and so
-/// lambda = 0, and theta is the trace.
+/// The tangent at rest is `2 mu sym + lambda tr I` of [`HyperelasticLaw::lame`], its local part is the same with a bulk
+/// modulus of 2 mu/3 and therefore lambda = 0, and theta is the trace.
 pub fn small_strain_is_linear_elasticity<L: HyperelasticLaw>(law: L) {
     let at = law.at(Tensor::<f64>::zero());
     let (lambda, mu) = law.lame();
@@ -272,7 +272,7 @@ pub fn small_strain_has_the_bulk_modulus_and_the_mean_shear_modulus<L: Hyperelas
     });
 }
 
-/// P is d psi/dF, for the local energy, the dilation and the whole; so they sum up.
+/// P is d psi/dF, for the local energy, the dilation and the whole; this includes that the parts add up to the whole.
 pub fn stress_is_the_slope_of_the_energy<L: HyperelasticLaw>(law: L) {
     for (_, h) in deformations(law) {
         let at = law.at(h);
@@ -364,7 +364,7 @@ fn whole_stress<L: HyperelasticLaw>(law: L, h: Tensor<f64>) -> Tensor<f64> {
     Part::Whole.stress(law, &law.at(h))
 }
 
-/// The change of the stress by roundings of F, over their size.
+/// The change of the stress due to rounding of F, over the size of the rounding.
 fn size_of_stress<L: HyperelasticLaw>(law: L, h: Tensor<f64>) -> f64 {
     let at = law.at(h);
     let size = at.gradient.squared().sqrt();
@@ -376,10 +376,11 @@ fn size_of_stress<L: HyperelasticLaw>(law: L, h: Tensor<f64>) -> f64 {
     whole_stress(law, h).largest() + size * steepest + scale_of(law)
 }
 
-/// Kinds of tangents that promise to be positive semidefinite.
+/// Kinds of tangents that must be positive semidefinite.
 const SEMIDEFINITE: [TangentKind; 2] = [TangentKind::Projected, TangentKind::Frozen];
 
-/// No eigenvalue of a projected or frozen tangent is below 0, with the dilation's own stress and with one that a patch of tetrahedra may have.
+/// Projected and frozen tangents have no eigenvalue below 0, both with the dilation's own stress and with one that a
+/// patch of tetrahedra may have.
 pub fn projected_and_frozen_tangents_are_semidefinite<L: HyperelasticLaw>(law: L) {
     for (mut random, h) in deformations(law) {
         let at = law.at(h);
@@ -406,7 +407,7 @@ pub fn projected_and_frozen_tangents_are_semidefinite<L: HyperelasticLaw>(law: L
     }
 }
 
-/// The projected tangent is the exact one with its negative eigenvalues put to 0.
+/// The projected tangent is the exact one with its negative eigenvalues set to 0.
 pub fn projection_changes_nothing_that_is_semidefinite<L: HyperelasticLaw>(law: L) {
     for (_, h) in deformations(law) {
         let at = law.at(h);
@@ -576,9 +577,9 @@ pub fn single_precision_is_double_precision_rounded<L: HyperelasticLaw>(law: L) 
     }
 }
 
-/// A law that is not defined for inverted elements refuses them, flat ones, and NaN; another has
-/// finite stresses there. A law with a limit describes it, and single precision, whose range is smaller, has a limit
-/// wherever double precision has one.
+/// A law that is not defined for inverted elements refuses them, flat ones, and NaN; any other law has finite stresses
+/// there. A law with a limit describes it, and single precision, whose range is smaller, has a limit wherever double
+/// precision has one.
 pub fn what_is_refused_is_where_the_law_is_not_defined<L: HyperelasticLaw>(law: L) {
     let flat = |x: f64| law.at(Tensor([[x - 1.0, 0.0, 0.0], [0.0; 3], [0.0; 3]]));
     for stretch in [-0.5, -1e-9, 0.0, 1e-9, f64::NAN] {
@@ -641,8 +642,8 @@ pub fn the_dilation_is_that_of_the_viscosity<L: HyperelasticLaw>(law: L) {
     }
 }
 
-/// Vectors of every instruction set give the stresses of plain numbers. Tangents are the same operations, and would
-/// take minutes to compile.
+/// Vectors of every instruction set give the stresses of plain numbers. Tangents consist of the same operations and are
+/// left out, since they would take minutes to compile.
 pub fn vectors_are_plain_numbers<L: HyperelasticLaw>(law: L) {
     for set in InstructionSet::available() {
         let is_there = [set.with_f64(OnLanes(law)), set.with_f32(OnLanes(law))];

@@ -10,12 +10,14 @@ use super::tensor::{Tensor, dot};
 
 /// `psi = mu |F - R|^2 + lambda/2 (tr S - 3)^2` with F = R S, R a proper rotation, also where J < 0.
 ///
-/// Linear elasticity in axes that turn with the element. On tetrahedra with linear displacement its force is that of warped stiffness,
-/// `R K (R'x - X)` (Mueller and Gross, Interactive virtual materials, Graphics Interface 2004). The exact tangent has the change of R, whose
-/// eigenvalues are those of Smith, de Goes and Kim (Analytic eigensystems for isotropic distortion energies, ACM Transactions on Graphics 38(1), 2019).
+/// Linear elasticity in axes that turn with the element. On tetrahedra with linear displacement its force is that of
+/// warped stiffness, `R K (R'x - X)` (Mueller and Gross, Interactive virtual materials, Graphics Interface 2004). The
+/// exact tangent contains the change of R, with the eigenvalues of Smith, de Goes and Kim (Analytic eigensystems for
+/// isotropic distortion energies, ACM Transactions on Graphics 38(1), 2019).
 ///
-/// For large rotations at small strain, and for comparison with programs that have it. In compression nothing hinders an element from inverting: the pressure
-/// is linear in the stretches and has no barrier. At a mirrored state, where two singular values add up to 0, R jumps.
+/// For large rotations at small strain, and for comparison with programs that have it. In compression nothing prevents
+/// the inversion of an element: the pressure is linear in the stretches and has no barrier. At a mirrored state, where
+/// two singular values add up to 0, R jumps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Corotational {
     lambda: f64,
@@ -48,9 +50,9 @@ impl Corotational {
         rotation * Tensor::cross_product_with(inverse.on(skew))
     }
 
-    /// Contribution of the change of R to the tangent against turning, by the stress of the dilation:
-    /// `mu I + c (tr S I - S)^-1` with `c = bulk - 2 mu`, which is what matters in extension, or a multiple of I that
-    /// is no less where c < 0, and never below 0.
+    /// Contribution of the change of R to the tangent against turning, by the stress of the dilation: `mu I + c (tr S I
+    /// - S)^-1` with `c = bulk - 2 mu`, which matters in extension. For c < 0 it is replaced by a multiple of I that is
+    /// not smaller, and never below 0.
     #[inline(always)]
     fn against_turning<N: Number>(&self, at: &Point<N, Rotated<N>>, bulk: N) -> Tensor<N> {
         let (mu, zero) = (N::of(self.mu), N::of(0.0));
@@ -66,7 +68,7 @@ impl Corotational {
     }
 }
 
-/// A rotation and what follows from it.
+/// A rotation and the quantities derived from it.
 #[derive(Clone, Copy, Debug)]
 pub struct Rotated<N> {
     /// R.

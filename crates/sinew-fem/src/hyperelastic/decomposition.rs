@@ -15,12 +15,12 @@ pub struct SingularValues<N> {
     pub right: [[N; 3]; 3],
 }
 
-/// Sweeps of Jacobi rotations at most; six are seen.
+/// Largest number of sweeps of Jacobi rotations; at most six were observed.
 const SWEEPS: usize = 16;
 
 impl<N: Number> SingularValues<N> {
     /// The singular values of any tensor, by one-sided Jacobi rotations (Hestenes 1958), which keep the relative
-    /// precision of small ones. Where two add up to 0, the rotations are one choice among many.
+    /// precision of small ones. If two of them add up to 0, the rotations are not unique.
     #[inline(always)]
     #[must_use]
     pub fn of(tensor: Tensor<N>) -> Self {
@@ -132,9 +132,9 @@ const FLAT: f64 = 0.05;
 
 /// The proper rotation R of F = R S, also where J < 0.
 ///
-/// Newton's iteration Q <- (Q + Q^-T)/2 (Higham, SIAM J. Sci. Stat. Comput. 7, 1986) until it moves no more; singular values
-/// if the element is nearly flat or inverted, and if 12 iterations do not suffice. It starts from F itself, so that
-/// the result is a function of F.
+/// Newton's iteration Q <- (Q + Q^-T)/2 (Higham, SIAM J. Sci. Stat. Comput. 7, 1986) until Q no longer changes;
+/// singular values if the element is nearly flat or inverted, and if 12 iterations do not suffice. It starts from F
+/// itself, so that the result is a function of F.
 #[inline(always)]
 #[must_use]
 pub(crate) fn rotation<N: Number>(gradient: Tensor<N>, volume_ratio: N) -> Tensor<N> {
@@ -163,11 +163,11 @@ pub(crate) fn rotation<N: Number>(gradient: Tensor<N>, volume_ratio: N) -> Tenso
     mended(gradient, rotation, volume_ratio)
 }
 
-/// Lanes at most of any number.
+/// Largest number of lanes of any [`Number`].
 pub(super) const MOST_LANES: usize = 16;
 
-/// The rotations of lanes with a volume ratio above [`FLAT`]; those of the others by singular values, lane by lane:
-/// rare, and too long to be inlined.
+/// The rotations of lanes with a volume ratio above [`FLAT`]; those of the other lanes follow from singular values,
+/// lane by lane. This is rare, and too long to be inlined.
 #[cold]
 #[inline(never)]
 fn mended<N: Number>(gradient: Tensor<N>, rotation: Tensor<N>, volume_ratio: N) -> Tensor<N> {
@@ -200,7 +200,7 @@ mod tests {
         product.largest() < 1e-14 && (determinant - 1.0).abs() < 1e-14
     }
 
-    /// A turned, stretched, turned tensor.
+    /// A tensor of these stretches with a rotation on both sides.
     fn turned(stretches: [f64; 3]) -> Tensor<f64> {
         let left = Tensor([[0.3, -0.8, 0.1], [0.5, 0.2, 0.9], [-0.7, 0.4, 0.6]]);
         let right = Tensor([[0.9, 0.2, -0.3], [-0.1, 0.4, 0.8], [0.5, -0.6, 0.3]]);

@@ -1,13 +1,13 @@
-//! The deformation of a tetrahedron, as laws need it.
+//! The deformation of a tetrahedron in the form that laws need.
 
 use sinew_sparse::simd::Number;
 
 use super::tensor::{Tensor, dot};
 
-/// A deformation gradient F = I + H, by the gradient H of the displacement.
+/// A deformation gradient F = I + H, from the gradient H of the displacement.
 ///
-/// What is small where H is small is formed from H and never as a difference from 1: in single precision and near
-/// incompressibility nothing else keeps digits of the pressure.
+/// Quantities that are small for small H are formed from H and never as a difference from 1: only this keeps the digits
+/// of the pressure in single precision and near incompressibility.
 #[derive(Clone, Copy, Debug)]
 pub struct Deformation<N> {
     /// H: row i, column j is `du_i/dX_j`.

@@ -11,9 +11,10 @@ use super::tensor::{Tensor, dot};
 
 /// A family of fibres, added to any law: an energy of `X = kd (I1 - 3) + (1 - 3 kd) (I4 - 1)`, `I4 = |F a0|^2`, which acts where X > 0.
 ///
-/// I4 is that of F itself. With the invariant freed of volume change, `J^-2/3 I4`, a sphere stays a sphere under hydrostatic load and the switch of
-/// tension is misplaced (Vergori, Destrade, McGarry and Ogden, Computational Mechanics 52, 2013; Nolan, Gower, Destrade, Ogden and McGarry, Journal of the Mechanical Behavior of
-/// Biomedical Materials 39, 2014); `split` has it, for comparison with programs that do.
+/// I4 is that of F itself. With the isochoric invariant, `J^-2/3 I4`, a sphere stays a sphere under hydrostatic load,
+/// and the switch between tension and compression is in the wrong place (Vergori, Destrade, McGarry and Ogden,
+/// Computational Mechanics 52, 2013; Nolan, Gower, Destrade, Ogden and McGarry, Journal of the Mechanical Behavior of
+/// Biomedical Materials 39, 2014); `split` selects this form, for comparison with programs that use it.
 ///
 /// Young's modulus and Poisson's ratio of the law are then those across the fibres. At small strain fibres in tension add `4 eta` or `4 k1` (dispersion 0) to the stiffness along them.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,7 +23,7 @@ pub struct Fibres {
     split: bool,
 }
 
-/// The energy of fibres by their stretch.
+/// The energy of fibres as a function of their stretch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Stiffening {
     /// `eta/2 X^2` without dispersion (Bonet and Burton, Computer Methods in Applied Mechanics and Engineering 162, 1998; Taylor, Comas, Cheng, Passenger, Hawkes, Atkinson and Ourselin, Medical Image Analysis 13, 2009).
@@ -36,7 +37,7 @@ pub enum Stiffening {
         k1: f64,
         /// Dimensionless exponent: the larger, the sooner the fibres stiffen.
         k2: f64,
-        /// kd: 0 for parallel fibres, 1/3 for ones of all directions.
+        /// kd: 0 for parallel fibres, 1/3 for fibres in all directions equally.
         dispersion: f64,
     },
 }
@@ -50,14 +51,14 @@ pub struct FibrePoint<N> {
     stretch: N,
     /// First and second derivative of the energy by X.
     derivatives: [N; 2],
-    /// The second derivative, or that in tension if it is idle.
+    /// The second derivative; for fibres in compression that in tension.
     second_when_pulled: N,
     /// The second derivative at rest on the side of tension, and 0 in compression.
     viscosity: N,
     viscosity_when_pulled: N,
     /// Half of dX/dF.
     slope: Tensor<N>,
-    /// `J^-2/3` and `kd I1 + (1 - 3 kd) I4` where X is freed of volume change.
+    /// `J^-2/3` and `kd I1 + (1 - 3 kd) I4`, if X is isochoric.
     split: Option<[N; 2]>,
 }
 
@@ -84,7 +85,7 @@ impl Fibres {
         Ok(Self { stiffening, split })
     }
 
-    /// The same with invariants freed of volume change, which need J > 0; for comparison.
+    /// The same with isochoric invariants, which need J > 0; for comparison.
     #[must_use]
     pub fn split(self) -> Self {
         Self {
@@ -171,7 +172,7 @@ impl Fibres {
         tensor.scaled(N::of(kd)).plus(N::of(1.0 - 3.0 * kd), along)
     }
 
-    /// The modulus (Pa) by which a stretch along the fibres raises the energy, `d2 psi/dX2` at rest on the side of tension.
+    /// The modulus (Pa) of the energy for a stretch along the fibres, `d2 psi/dX2` at rest on the side of tension.
     #[must_use]
     pub(crate) fn modulus_at_rest(&self) -> f64 {
         match self.stiffening {
@@ -192,8 +193,8 @@ impl Fibres {
         self.split
     }
 
-    /// A number that is not below 0 if the energy is of a size to compute with: an exponential grows beyond all
-    /// numbers.
+    /// A number that is not below 0 if the energy can be computed: an exponential may exceed the largest floating-point
+    /// number.
     #[inline(always)]
     pub(crate) fn margin<N: Number>(&self, at: &FibrePoint<N>) -> N {
         let most = N::of(largest_lawful_exponent::<N>());
@@ -227,7 +228,7 @@ impl Fibres {
         at.slope.scaled(N::of(2.0) * at.derivatives[0])
     }
 
-    /// The change of the stress by a change of F. Positive semidefinite unless the invariants are freed of volume change.
+    /// The change of the stress by a change of F. It is positive semidefinite unless the invariants are isochoric.
     #[inline(always)]
     pub fn tangent<N: Number>(&self, at: &FibrePoint<N>, change: Tensor<N>) -> Tensor<N> {
         let turned = self.half_slope(change, at.direction);
@@ -267,8 +268,9 @@ impl Fibres {
         at.slope.scaled(along)
     }
 
-    /// The stress of stiffness damping by a rate of F, for a factor of 1 s: that of the modulus at rest for the rate of X, while fibres are pulled. As
-    /// X is a function of Green's strain, it is objective, and it never does work.
+    /// The stress of stiffness damping by a rate of F, for a factor of 1 s: that of the modulus at rest for the rate of
+    /// X, while fibres are pulled. X is a function of Green's strain, so this stress is objective. It never adds
+    /// energy.
     #[inline(always)]
     pub(crate) fn viscous_stress<N: Number>(
         &self,
@@ -308,7 +310,8 @@ impl Fibres {
 }
 
 impl<N: Number> FibrePoint<N> {
-    /// The same with idle fibres as stiff and as viscous as in tension: no state near this one is stiffer by much.
+    /// The same, but fibres in compression are as stiff and as viscous as in tension: no state near this one is much
+    /// stiffer.
     #[must_use]
     pub(crate) fn as_if_pulled(self) -> Self {
         let [first, _] = self.derivatives;

@@ -16,7 +16,7 @@ pub(super) fn beyond<N: Number>(own: &Isochoric<N>) -> N {
     N::of(3.0).mul_add(own.scale - N::of(1.0), own.scale * own.first)
 }
 
-/// i by parts of its own size, for energies: `J^-2/3 - 1` is formed without a difference of large numbers.
+/// i as a sum of parts of its own size, for energies: `J^-2/3 - 1` is formed without a difference of large numbers.
 #[inline(always)]
 pub(super) fn exactly_beyond<N: Number>(at: &Point<N, Isochoric<N>>) -> N {
     let shrink = (N::of(-2.0 / 3.0) * at.volume_change.ln_1p()).exp_m1();
@@ -81,7 +81,7 @@ pub(super) fn tangent<N: Number>(
 }
 
 /// A node's own block of [`tangent`] and of `of_volume/2 (J - 1)^2`, exact and, unless a slope is below 0, positive
-/// semidefinite: the gradient of i is an outer product in it, and i is rank-one convex.
+/// semidefinite: it contains the gradient of i as an outer product, and i is rank-one convex.
 #[inline(always)]
 pub(super) fn node_block<N: Number>(
     deformation: &Deformation<N>,

@@ -18,8 +18,8 @@ use super::volume;
 /// Society 57, 1961).
 ///
 /// For arteries, skin and the wall of the heart, whose stiffness differs along three directions and grows exponentially
-/// with the strain. Not where elements may invert: refused at J <= 0. The form must be positive definite on strains that
-/// keep the volume, which makes the law stable at rest; far from rest it need not be.
+/// with the strain. Not for elements that may invert: refused at J <= 0. The form must be positive definite on strains
+/// that keep the volume, which makes the law stable at rest; far from rest it need not be.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fung {
     lambda: f64,
@@ -53,7 +53,7 @@ const B: LawParameter = LawParameter::number(
 )
 .list(9, 9);
 
-/// The deformation as [`Fung`] needs it.
+/// The deformation in the form that [`Fung`] needs.
 #[derive(Clone, Copy, Debug)]
 pub struct Strained<N> {
     /// The material's axes, by rows.
@@ -266,7 +266,7 @@ mod tests {
     use super::*;
     use crate::hyperelastic::{Parameters, conformance, sample_deformations};
 
-    /// Unlike along all axes.
+    /// A form that differs along all axes.
     const FORM: [f64; 9] = [
         0.018, 0.0135, 0.009, 0.0018, -0.0009, 0.0027, 0.0072, 0.0054, 0.0063,
     ];
@@ -304,7 +304,7 @@ mod tests {
         }
     }
 
-    /// A form that is alike in all directions: `Q = a (tr E)^2 + g E:E`, whose shear modulus at rest is `c g/2`.
+    /// An isotropic form: `Q = a (tr E)^2 + g E:E`, whose shear modulus at rest is `c g/2`.
     #[test]
     fn a_form_alike_in_all_directions_knows_no_axes() {
         let (a, g) = (0.02, 0.05);

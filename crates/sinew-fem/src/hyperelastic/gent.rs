@@ -16,8 +16,8 @@ use super::volume;
 /// the Faraday Society 57, 1961).
 ///
 /// For tissue and rubber whose fibres or chains are straight at a certain stretch, with two constants that can be read
-/// off a curve: the initial slope, and the stretch at its vertical asymptote. Not for motions that may come to
-/// `i >= Jm`, where the law has no meaning and a tetrahedron is refused; nor where elements may invert.
+/// from a curve: the initial slope, and the stretch at its vertical asymptote. Not for motions that may reach `i >=
+/// Jm`, where the law is not defined and a tetrahedron is refused, and not for elements that may invert.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gent {
     lambda: f64,

@@ -16,19 +16,18 @@ pub const SMALLEST_VOLUME_RATIO: f64 = 1e-6;
 /// Margin ([`HyperelasticLaw::margin`]) below which a law is refused.
 pub(crate) const SMALLEST_MARGIN: f64 = 1e-6;
 
-/// A hyperelastic law of a material that is alike in all directions, or has axes ([`Self::HAS_AXES`]).
+/// A hyperelastic law of a material that is isotropic, or has axes ([`Self::HAS_AXES`]).
 ///
 /// The energy density is `psi = psi_local(F) + lambda/2 theta(F)^2`: elements that do not lock average the dilation
 /// theta over patches of tetrahedra. So the local part has the whole shear modulus and the bulk modulus 2 mu/3 at small
 /// strain, which keeps it positive without the dilational part, and `lambda` is Lame's first constant.
 ///
-/// A law is written over any [`Number`]: the same text serves f64, f32 and vectors. Stresses are first Piola-Kirchhoff ones, `P = d psi/dF`
-/// (Pa), and the tangent is their change by a change of F.
+/// A law is generic over [`Number`]: the same code serves f64, f32 and vectors. Stresses are first Piola-Kirchhoff
+/// ones, `P = d psi/dF` (Pa), and the tangent is their change by a change of F.
 ///
 /// A law is a struct in one file, which states its parameters; scenes, checks, help and error texts follow from them.
-/// Those of this crate and of others are alike: [`super::register`] adds one to those that scenes and [`crate::Law`]
-/// know, and force loops are compiled for its own type.
-/// [`super::conformance`] checks a law.
+/// Laws of other crates have the same rights as those of this one: [`super::register`] adds one to those that scenes
+/// and [`crate::Law`] know, and force loops are compiled for its own type. [`super::conformance`] checks a law.
 pub trait HyperelasticLaw: Copy + Debug + Send + Sync {
     /// Name in scenes.
     const ID: &'static str;
@@ -38,17 +37,17 @@ pub trait HyperelasticLaw: Copy + Debug + Send + Sync {
     const PARAMETERS: &'static [LawParameter];
     /// Warning for scenes with the law, and advice; `None` for most.
     const WEAKNESS: Option<[&'static str; 2]> = None;
-    /// True if the law overrides [`Self::dilation`], so that its viscosity takes that measure of volume in place of
-    /// `J - 1`.
+    /// True if the law overrides [`Self::dilation`], so that its viscosity uses that measure of volume instead of `J -
+    /// 1`.
     const OWN_DILATION: bool = false;
     /// True if the law is defined where J <= 0.
     const DEFINED_WHEN_INVERTED: bool;
-    /// True if the local energy is an isochoric one, of F freed of volume change, and `mu/3 (J - 1)^2`.
+    /// True if the local energy is the sum of an isochoric one and `mu/3 (J - 1)^2`.
     const HAS_ISOCHORIC_PART: bool = false;
     /// The tangent that its node blocks belong to.
     const NODE_BLOCK: NodeBlock = NodeBlock::Majorant;
-    /// True to compile forces once more, for regions that have nothing but the law: some hundredths faster, and a good deal of time to compile, which only laws pay
-    /// back that most scenes have.
+    /// True to compile forces once more, for regions without any additions to the law: a few per cent faster, but with
+    /// a long compile time, which is worth it only for laws that most scenes have.
     const IS_COMMON: bool = false;
     /// True if the material has axes: a region then states them, and loops give the law those of each tetrahedron
     /// ([`Self::own_in`]).
@@ -61,7 +60,7 @@ pub trait HyperelasticLaw: Copy + Debug + Send + Sync {
     ///
     /// # Errors
     ///
-    /// [`ParameterError`] for values that do not go together ([`LawParameter::refused`]).
+    /// [`ParameterError`] for values that do not fit together ([`LawParameter::refused`]).
     fn from_values(values: &LawValues<'_>) -> Result<Self, ParameterError>;
 
     /// The law with these parameters.
@@ -78,7 +77,7 @@ pub trait HyperelasticLaw: Copy + Debug + Send + Sync {
         Self::ID
     }
 
-    /// Lame's constants (lambda, mu) (Pa) at small strain. Where the material has axes, mu is the mean of shear moduli
+    /// Lame's constants (lambda, mu) (Pa) at small strain. If the material has axes, mu is the mean of shear moduli
     /// over all shears, and the bulk modulus `lambda + 2/3 mu` is exact; stiffness damping is that of these two.
     fn lame(&self) -> (f64, f64);
 
@@ -138,9 +137,10 @@ pub trait HyperelasticLaw: Copy + Debug + Send + Sync {
         at.cofactor_change(change)
     }
 
-    /// A node's own block by the gradient g of its shape function, for each m^3: `B_ik = g_J H_iJkL g_L`, of the local energy and `bulk`.
-    /// Symmetric and positive semidefinite in any state. As provided it is that of the tangent, the local part without its
-    /// negative eigenvalues; laws whose exact block is one at less cost override it.
+    /// A node's own block by the gradient g of its shape function, for each m^3: `B_ik = g_J H_iJkL g_L`, of the local
+    /// energy and `bulk`. Symmetric and positive semidefinite in any state. The default is the block of the tangent,
+    /// with the local part without its negative eigenvalues. Laws whose exact block is positive semidefinite at less
+    /// cost override it.
     #[inline(always)]
     fn node_block<N: Number>(
         &self,
@@ -159,7 +159,8 @@ pub trait HyperelasticLaw: Copy + Debug + Send + Sync {
         local.plus(bulk.modulus, Tensor::outer(normal, normal))
     }
 
-    /// The sum of [`Self::node_block`] over the three axes: of isotropic laws its largest eigenvalue is that of the stiffest plane wave, and twice a shear modulus.
+    /// The sum of [`Self::node_block`] over the three axes: for isotropic laws its largest eigenvalue is that of the
+    /// stiffest plane wave plus twice a shear modulus.
     #[inline(always)]
     fn wave_moduli<N: Number>(&self, at: &Point<N, Self::Own<N>>, bulk: Bulk<N>) -> Tensor<N> {
         let [x, y, z] = Tensor::<N>::identity().0;
@@ -187,22 +188,22 @@ pub trait HyperelasticLaw: Copy + Debug + Send + Sync {
         Point { deformation, own }
     }
 
-    /// The reason for which the law has no meaning where [`Self::margin`] ends, as half a sentence after its name in a
-    /// refusal: "ends where its chains are straight, at I1 - 3 = `limit`". `None` for a law that ends at most where
-    /// elements invert; its margin is not asked for.
+    /// The reason for which the law is not defined beyond its [`Self::margin`], as half a sentence after its name in an
+    /// error message: "ends where its chains are straight, at I1 - 3 = `limit`". `None` for a law that ends at most
+    /// where elements invert; its margin is not used.
     #[inline(always)]
     fn limit(&self) -> Option<&str> {
         None
     }
 
-    /// A number above 0 if the law is defined, else 0, below, or NaN; that J is above 0 need not
-    /// show in it. It goes with [`Self::limit`].
+    /// A number above 0 if the law is defined, otherwise 0, a number below 0, or NaN. It need not take account of J >
+    /// 0. A law with a margin has a [`Self::limit`].
     #[inline(always)]
     fn margin<N: Number>(&self, _at: &Point<N, Self::Own<N>>) -> N {
         N::of(1.0)
     }
 
-    /// True if no lane is beyond the limit of the law, J aside.
+    /// True if no lane is beyond the limit of the law, apart from J.
     #[inline(always)]
     fn is_within_limit<N: Number>(&self, at: &Point<N, Self::Own<N>>) -> bool {
         self.limit().is_none() || N::all_le(N::of(SMALLEST_MARGIN), self.margin(at))
@@ -216,7 +217,7 @@ pub trait HyperelasticLaw: Copy + Debug + Send + Sync {
         is_proper && self.is_within_limit(at)
     }
 
-    /// The volumetric part of a tetrahedron that is averaged with no other.
+    /// The volumetric part of a tetrahedron without averages.
     #[inline(always)]
     fn own_bulk<N: Number>(&self, at: &Point<N, Self::Own<N>>) -> Bulk<N> {
         let modulus = N::of(self.lame().0);
@@ -226,7 +227,7 @@ pub trait HyperelasticLaw: Copy + Debug + Send + Sync {
         }
     }
 
-    /// The energy density of a tetrahedron that is averaged with no other (J/m^3).
+    /// The energy density of a tetrahedron without averages (J/m^3).
     #[inline(always)]
     fn whole_energy<N: Number>(&self, at: &Point<N, Self::Own<N>>) -> N {
         let half = N::of(0.5) * self.dilation(at);
@@ -294,12 +295,13 @@ impl<N, Own> Deref for Point<N, Own> {
     }
 }
 
-/// The energy of the dilation, by its derivatives.
+/// The energy of the dilation, given by its derivatives.
 #[derive(Clone, Copy, Debug)]
 pub struct Bulk<N> {
     /// First derivative by theta (Pa): `lambda theta`, where theta may be the mean over a patch.
     pub stress: N,
-    /// Second derivative by theta of this very tetrahedron (Pa): lambda, or 0 if the mean's share is added elsewhere.
+    /// Second derivative by theta of this tetrahedron (Pa): lambda, or 0 if the contribution of the mean is added
+    /// elsewhere.
     pub modulus: N,
 }
 

@@ -1,4 +1,4 @@
-//! A law at a deformation, for loops that are written once for all laws.
+//! A law at a deformation, for loops whose code is shared by all laws.
 
 use std::ops::Deref;
 

@@ -2,10 +2,10 @@
 
 use super::parameters::ParameterError;
 
-/// A law that does not exist, or cannot have its parameters.
+/// A law that does not exist, or whose parameters are not allowed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum LawError {
-    /// No law has this id.
+    /// An id that no law has.
     #[error("no law is called `{id}`; there are {}", known.join(", "))]
     Unknown {
         /// The id.
@@ -13,7 +13,7 @@ pub enum LawError {
         /// The ids that are known.
         known: Vec<&'static str>,
     },
-    /// The law cannot have these parameters.
+    /// Parameters that the law does not allow.
     #[error(transparent)]
     Parameter(#[from] ParameterError),
 }

@@ -15,8 +15,8 @@ use super::{first_invariant, volume};
 /// Mooney (Journal of Applied Physics 11, 1940) and Rivlin (Philosophical Transactions of the Royal Society A 241, 1948), the invariants
 /// without change of volume after Flory (Transactions of the Faraday Society 57, 1961).
 ///
-/// For rubber-like material whose curve of a tension test bends more than the neo-Hookean one: gels and phantoms. Not where elements may invert: refused
-/// at J <= 0.
+/// For rubber-like material whose curve of a tension test bends more than the neo-Hookean one: gels and phantoms. Not
+/// for elements that may invert: refused at J <= 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MooneyRivlin {
     lambda: f64,
@@ -25,7 +25,7 @@ pub struct MooneyRivlin {
 }
 
 impl MooneyRivlin {
-    /// The law by its own constants (Pa); C2 may be 0.
+    /// The law from its own constants (Pa); C2 may be 0.
     pub(super) fn of(lambda: f64, c1: f64, c2: f64) -> Self {
         Self { lambda, c1, c2 }
     }

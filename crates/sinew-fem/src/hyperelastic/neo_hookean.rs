@@ -12,8 +12,8 @@ use super::tensor::Tensor;
 /// The first two terms are Simo and Pister's (Computer Methods in Applied Mechanics and Engineering 46, 1984), the third the simplest
 /// volumetric energy (Bonet and Wood, Nonlinear Continuum Mechanics for Finite Element Analysis, 2008, chapter 6). Polyconvex; the stress needs no logarithm.
 ///
-/// The law to begin with: soft tissue in compression, tension and large rotation. Not where elements may invert, for it is infinite at
-/// J = 0 and refused beyond, and not for tissue that stiffens, which wants fibres.
+/// The first choice: soft tissue in compression, tension and large rotation. Not for elements that may invert, since it
+/// is infinite at J = 0 and refused beyond, and not for tissue that stiffens, which needs fibres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NeoHookean {
     lambda: f64,
@@ -60,7 +60,7 @@ impl HyperelasticLaw for NeoHookean {
             .scaled(N::of(self.mu))
     }
 
-    /// [`Self::stress`] and the dilation's in one.
+    /// The sum of [`Self::stress`] and the stress of the dilation.
     #[inline(always)]
     fn stress_of<N: Number>(&self, at: &Point<N, N>, share: N, bulk: N) -> Tensor<N> {
         let mu = share * N::of(self.mu);

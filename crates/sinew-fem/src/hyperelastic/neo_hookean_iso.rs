@@ -12,7 +12,7 @@ use super::tensor::Tensor;
 /// `psi = mu/2 (J^-2/3 I1 - 3) + kappa/2 (J - 1)^2`: [`MooneyRivlin`] with C2 = 0.
 ///
 /// The form of NiftySim and FEBio (Taylor, Cheng and Ourselin, IEEE Transactions on Medical Imaging 27, 2008), for
-/// comparison with them, and where a separate deviatoric part is needed. Otherwise [`super::NeoHookean`], which needs
+/// comparison with them, and if a separate deviatoric part is needed. Otherwise use [`super::NeoHookean`], which needs
 /// no cubic root.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NeoHookeanIso {

@@ -10,8 +10,8 @@ use super::tensor::Tensor;
 
 /// `psi = mu/2 (I1 - 3) - mu ln J + lambda/2 (ln J)^2` (Bonet and Wood, Nonlinear Continuum Mechanics for Finite Element Analysis, 2008, section 6.4.3).
 ///
-/// For comparison with textbooks and programs that have this form. Not polyconvex: beyond J = e it gets weaker as it expands. Otherwise
-/// as [`NeoHookean`].
+/// For comparison with textbooks and programs that have this form. Not polyconvex: beyond J = e it becomes weaker as it
+/// expands. Otherwise the same as [`NeoHookean`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NeoHookeanLog {
     base: NeoHookean,

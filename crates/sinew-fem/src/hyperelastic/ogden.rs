@@ -17,14 +17,14 @@ use super::volume;
 /// Ogden (Proceedings of the Royal Society A 326, 1972), whose mu are `2 mu/alpha` here; the stresses in principal
 /// stretches after Simo and Taylor (Computer Methods in Applied Mechanics and Engineering 85, 1991).
 ///
-/// For rubber over all of its range, and for tissue whose papers give terms, such as brain with alpha below 0. Takes up
-/// to three times as long as a law in invariants, so not where [`super::Yeoh`] fits as well. With mu of different signs
-/// states may be unstable. Not where elements may invert: refused at J <= 0.
+/// For rubber over all of its range, and for tissue whose papers give terms, such as brain with alpha below 0. It takes
+/// up to three times as long as a law in invariants; prefer [`super::Yeoh`] if that fits as well. With mu of different
+/// signs states may be unstable. Not for elements that may invert: refused at J <= 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ogden {
     lambda: f64,
     mu: f64,
-    /// mu (Pa) and alpha of each term, 0 and 1 behind the last.
+    /// mu (Pa) and alpha of each term; 0 and 1 after the last.
     terms: [[f64; 2]; MOST_TERMS],
     count: usize,
     /// The largest size of an alpha.
@@ -102,8 +102,8 @@ struct Term<N> {
 }
 
 impl<N: Number> Term<N> {
-    /// Its share in the shear of two axes: the difference of `2 mu/alpha l^alpha` over that of the squares of the
-    /// stretches, from that of their logarithms if both are near.
+    /// Contribution of the term to the shear of two axes: the difference of `2 mu/alpha l^alpha` over that of the
+    /// squares of the stretches, from that of their logarithms if both are near.
     #[inline(always)]
     fn shear<const A: usize, const B: usize>(&self, stretches: &Stretches<N>, of_logs: N) -> N {
         let one = N::of(1.0);
@@ -326,7 +326,7 @@ mod tests {
         are_one_law(of(&[0.8 * mu, 2.0, 0.2 * mu, -2.0], nu), mooney, 1e-12);
     }
 
-    /// F by its principal stretches, turned on both sides.
+    /// F with these principal stretches, with a rotation on both sides.
     fn turned(stretches: [f64; 3]) -> Tensor<f64> {
         let [left, right] = [
             [[0.3, -0.8, 0.1], [0.5, 0.2, 0.9], [-0.7, 0.4, 0.6]],

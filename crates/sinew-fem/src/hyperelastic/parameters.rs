@@ -8,7 +8,7 @@ use crate::tetra::lame;
 /// Unit of moduli; a body that is `k` times as stiff has all of them multiplied by `k`.
 const PASCAL: &str = "Pa";
 
-/// The description of a parameter: a key of scenes, with all that is read, refused and explained by it.
+/// The description of a parameter: a key of scenes, with the data for reading, checking and explaining it.
 #[derive(Clone, Copy, Debug)]
 pub struct LawParameter {
     /// Name, which is its key in scenes.
@@ -28,7 +28,7 @@ pub struct LawParameter {
     pub columns: &'static [Column],
     /// Rule for a parameter that is left out.
     pub presence: Presence,
-    /// A typical value, by which tests and the reference make the law.
+    /// A typical value, with which tests and the reference make the law.
     pub example: &'static [f64],
 }
 
@@ -123,7 +123,7 @@ impl LawParameter {
     /// [`Self::YOUNGS_MODULUS`] and [`Self::POISSONS_RATIO`]: all parameters of most laws.
     pub const MODULI: &'static [Self] = &[Self::YOUNGS_MODULUS, Self::POISSONS_RATIO];
 
-    /// [`Self::POISSONS_RATIO`] or [`Self::BULK_MODULUS`], for laws with shear constants of their own
+    /// [`Self::POISSONS_RATIO`] or [`Self::BULK_MODULUS`], for laws with their own shear constants
     /// ([`LawValues::lambda`]) or with Young's modulus ([`LawValues::lame_by_volume`]).
     pub const VOLUME: [Self; 2] = {
         const NAMES: &[&str] = &["poissons_ratio", "bulk_modulus"];
@@ -307,7 +307,7 @@ pub struct Parameters {
 }
 
 impl Parameters {
-    /// Young's modulus (Pa) and Poisson's ratio at small strain, which most laws are stated by.
+    /// Young's modulus (Pa) and Poisson's ratio at small strain: the parameters of most laws.
     #[must_use]
     pub fn new(youngs_modulus: f64, poissons_ratio: f64) -> Self {
         Self::default()
@@ -339,7 +339,7 @@ impl Parameters {
         self.get(name)?.first().copied()
     }
 
-    /// Takes a parameter out.
+    /// Removes a parameter.
     pub fn remove(&mut self, name: &str) {
         self.values.remove(name);
     }
@@ -356,7 +356,7 @@ impl Parameters {
         names.map(|parameter| self.number(parameter.name))
     }
 
-    /// Multiplies the moduli among them, but that of volume where `is_of_shear`.
+    /// Multiplies the moduli among them; if `is_of_shear`, not the bulk modulus.
     pub(crate) fn scale(&mut self, described: &[LawParameter], factor: f64, is_of_shear: bool) {
         let kept = |name: &str| is_of_shear && name == LawParameter::BULK_MODULUS.name;
         for parameter in described.iter().filter(|parameter| parameter.is_modulus()) {
@@ -367,7 +367,7 @@ impl Parameters {
         }
     }
 
-    /// The parameters by which each is given once, at its example value.
+    /// Parameters that state each quantity once, at its example value.
     pub(crate) fn examples(described: &[LawParameter]) -> Self {
         let mut parameters = Self::default();
         for parameter in described {
@@ -481,7 +481,7 @@ impl<'a> LawValues<'a> {
         Ok((triple * (triple - modulus) * over, mu))
     }
 
-    /// Lame's first constant (Pa) to a shear modulus (Pa), by [`LawParameter::POISSONS_RATIO`] or
+    /// Lame's first constant (Pa) for a shear modulus (Pa), from [`LawParameter::POISSONS_RATIO`] or
     /// [`LawParameter::BULK_MODULUS`], whichever is given.
     ///
     /// # Errors
@@ -510,7 +510,7 @@ fn count([least, most]: [usize; 2]) -> String {
     }
 }
 
-/// A parameter that a law cannot have.
+/// A parameter that a law does not allow.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum ParameterError {
     /// A number outside its range.
@@ -528,7 +528,7 @@ pub enum ParameterError {
     Length {
         /// The parameter.
         quantity: &'static str,
-        /// Its number of numbers.
+        /// The length of the list.
         found: usize,
         /// The least and the largest.
         expected: [usize; 2],
@@ -557,7 +557,7 @@ pub enum ParameterError {
         /// The parameter.
         quantity: &'static str,
     },
-    /// A law that is made otherwise than from parameters.
+    /// A law that is not made from parameters.
     #[error("the law `{law}` is not made from parameters")]
     NotStated {
         /// The law's id.

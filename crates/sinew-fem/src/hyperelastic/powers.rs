@@ -2,14 +2,14 @@
 
 use sinew_sparse::simd::Number;
 
-/// The largest size of x for [`exp_m1`]: numbers end a little beyond it.
+/// The largest size of x for [`exp_m1`]: the largest number is reached a little beyond it.
 #[inline(always)]
 fn largest_exponent<N: Number>() -> f64 {
     if is_double::<N>() { 700.0 } else { 86.0 }
 }
 
-/// The largest exponent of laws that grow exponentially: with it squares of stresses and tangents are numbers too, in
-/// single precision, which has forces alone, these themselves.
+/// The largest exponent of laws that grow exponentially: up to it the squares of stresses and tangents are finite; in
+/// single precision, which computes forces only, the stresses themselves.
 #[inline(always)]
 pub(super) fn largest_lawful_exponent<N: Number>() -> f64 {
     let share = if is_double::<N>() { 0.25 } else { 0.5 };
@@ -45,8 +45,8 @@ const OF_EXPONENTIAL: [f64; 13] = [
 /// Terms of an exponential that single precision leaves out.
 const LEFT_OUT_OF_EXPONENTIAL: usize = 6;
 
-/// `exp(x) - 1`, to a rounding or two of it also where x is small, for x up to [`largest_exponent`] in size; beyond
-/// that it is that of the bound.
+/// `exp(x) - 1`, to one or two roundings of the result also for small x, for x up to [`largest_exponent`] in size;
+/// beyond that the value at the bound.
 #[inline(always)]
 pub(super) fn exp_m1<N: Number>(x: N) -> N {
     let (most, one) = (N::of(largest_exponent::<N>()), N::of(1.0));
@@ -81,7 +81,7 @@ const OF_LOGARITHM: usize = 11;
 /// Terms of a logarithm that single precision leaves out.
 const LEFT_OUT_OF_LOGARITHM: usize = 6;
 
-/// `ln(1 + x)`, to a rounding or two of it also where x is small; x is above -1.
+/// `ln(1 + x)`, to one or two roundings of the result also for small x; x is above -1.
 #[inline(always)]
 pub(super) fn ln_1p<N: Number>(x: N) -> N {
     let (one, zero) = (N::of(1.0), N::of(0.0));

@@ -15,7 +15,7 @@ use super::tensor::Tensor;
 pub(crate) struct Linearised<'a, N, A: ?Sized> {
     at: &'a A,
     bulk: Bulk<N>,
-    /// `None` if the law's own form serves.
+    /// `None` if the law's own form is used.
     projection: Option<Projected<N>>,
     is_exact: bool,
 }
@@ -141,9 +141,10 @@ impl<N: Number> GeneralProjection<N> {
 
 /// The positive semidefinite tensor nearest to the tangent of an isotropic energy.
 ///
-/// In the axes of the singular values of F the nine directions fall into three stretches and, for each pair of axes, a twist and a flip
-/// that are eigenvectors for every isotropic energy (Smith, de Goes and Kim, Analytic eigensystems for isotropic distortion energies,
-/// ACM Transactions on Graphics 38(1), 2019). So what remains is a symmetric 3x3 tensor and six numbers.
+/// In the axes of the singular values of F the nine directions fall into three stretches and, for each pair of axes, a
+/// twist and a flip that are eigenvectors for every isotropic energy (Smith, de Goes and Kim, Analytic eigensystems for
+/// isotropic distortion energies, ACM Transactions on Graphics 38(1), 2019). This leaves a symmetric 3x3 tensor and six
+/// numbers.
 #[derive(Clone, Copy, Debug)]
 pub struct Projection<N> {
     left: Tensor<N>,
@@ -156,7 +157,8 @@ pub struct Projection<N> {
 const PAIRS: [[usize; 2]; 3] = [[0, 1], [0, 2], [1, 2]];
 
 impl<N: Number> Projection<N> {
-    /// The projection of an isotropic energy's tangent at the deformation gradient, or of the sum of some.
+    /// The projection of an isotropic energy's tangent at the deformation gradient, or of the tangent of a sum of such
+    /// energies.
     #[inline(always)]
     #[must_use]
     pub fn of(gradient: Tensor<N>, tangent: impl Fn(Tensor<N>) -> Tensor<N>) -> Self {

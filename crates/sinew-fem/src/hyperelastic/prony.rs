@@ -9,10 +9,11 @@ use super::tensor::Tensor;
 /// A symmetric tensor: xx, yy, zz, xy, yz, zx.
 pub type Symmetric<N> = [N; 6];
 
-/// A part of the stress that relaxes: `S = (1 - sum g) S0 + sum h_i`, S0 being the second Piola-Kirchhoff stress (Pa) of the elastic law and each h_i the memory of
-/// a term, `h_i' = g_i S0' - h_i/tau_i` (Simo, Computer Methods in Applied Mechanics and Engineering 60, 1987).
+/// A part of the stress that relaxes: `S = (1 - sum g) S0 + sum h_i`, S0 being the second Piola-Kirchhoff stress (Pa)
+/// of the elastic law and each h_i the history variable of a term, `h_i' = g_i S0' - h_i/tau_i` (Simo, Computer Methods
+/// in Applied Mechanics and Engineering 60, 1987).
 ///
-/// Its memory is S0 and h of the last step, six numbers each.
+/// Its history variables are S0 and h of the last step, six numbers each.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Term {
     /// g: the share of the instantaneous stress that relaxes.
@@ -56,15 +57,14 @@ pub fn relaxing(terms: &[Term]) -> f64 {
     terms.iter().map(|term| term.share).sum()
 }
 
-/// The factor from long-term moduli to the instantaneous ones that laws have.
+/// The factor from long-term moduli to the instantaneous ones that laws use.
 #[must_use]
 pub(crate) fn instantaneous_over_longterm(terms: &[Term]) -> f64 {
     1.0 / (1.0 - relaxing(terms))
 }
 
 impl Term {
-    /// The coefficients of the term over a step of dt (s), 0 or above; nothing of the memory is left after an infinite
-    /// one.
+    /// The coefficients of the term over a step of dt (s), 0 or above; after an infinite step h is 0.
     #[must_use]
     pub fn over(&self, dt: f64) -> TermStep {
         let x = dt / self.time;
@@ -76,7 +76,7 @@ impl Term {
         }
     }
 
-    /// The memory after a change of S0 that takes no time. As a step it would lose a part of it.
+    /// The history variable h after an instantaneous change of S0. A step of finite length would lose a part of it.
     #[inline(always)]
     #[must_use]
     pub fn jump<N: Number>(&self, memory: Symmetric<N>, change: Symmetric<N>) -> Symmetric<N> {
@@ -86,22 +86,23 @@ impl Term {
 }
 
 impl TermStep {
-    /// `e^-x`, x = dt/tau: the factor by which a memory decays in a step.
+    /// `e^-x`, x = dt/tau: the factor by which h decays in a step.
     #[inline(always)]
     #[must_use]
     pub fn decay(&self) -> f64 {
         self.decay
     }
 
-    /// `g (1 - e^-x)/x`: the share of a change of S0 that enters the memory.
+    /// `g (1 - e^-x)/x`: the share of a change of S0 that is added to h.
     #[inline(always)]
     #[must_use]
     pub fn gain(&self) -> f64 {
         self.gain
     }
 
-    /// The memory after the step, by that before it and the change of S0 over it: exact where S0 is linear in time over the step
-    /// (Taylor, Pister and Goudreau, International Journal for Numerical Methods in Engineering 2, 1970).
+    /// The history variable h after the step, from h before it and the change of S0 over it: exact if S0 is linear in
+    /// time over the step (Taylor, Pister and Goudreau, International Journal for Numerical Methods in Engineering 2,
+    /// 1970).
     #[inline(always)]
     #[must_use]
     pub fn next<N: Number>(&self, memory: Symmetric<N>, change: Symmetric<N>) -> Symmetric<N> {
@@ -110,7 +111,7 @@ impl TermStep {
     }
 }
 
-/// The stress: the long-term part of S0, and the memories of all terms.
+/// The stress: the long-term part of S0 plus h of all terms.
 #[inline(always)]
 #[must_use]
 pub fn stress<N: Number>(

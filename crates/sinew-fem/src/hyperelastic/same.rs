@@ -1,4 +1,4 @@
-//! The comparison of laws that ought to be one.
+//! The comparison of two laws that must be the same.
 
 use super::law::HyperelasticLaw;
 use super::samples::sample_deformations;

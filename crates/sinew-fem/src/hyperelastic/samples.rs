@@ -7,7 +7,7 @@ use super::tensor::Tensor;
 /// Number of deformations.
 const CASES: usize = 200;
 
-/// Share of the margin at rest that is left where a deformation is well within the limit of a law.
+/// Share of the margin at rest that remains for a deformation well within the limit of a law.
 const LEFT: f64 = 0.3;
 
 /// Random numbers by Steele, Lea and Flood's SplitMix64.
@@ -34,8 +34,8 @@ impl Random {
     }
 }
 
-/// Displacement gradients with J from .2 to 3, and where the law is defined there every second one with J from -3 to
-/// -.2. Of a law with a limit those well within it, made smaller by halves until they are.
+/// Displacement gradients with J from .2 to 3, and every second one with J from -3 to -.2 if the law is defined there.
+/// For a law with a limit they are halved until they are well within it.
 pub(super) fn deformations<L: HyperelasticLaw>(
     law: L,
 ) -> impl Iterator<Item = (Random, Tensor<f64>)> {

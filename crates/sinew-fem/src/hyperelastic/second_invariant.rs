@@ -52,9 +52,9 @@ pub(super) const EXACT: f64 = 14.0 / 9.0;
 
 /// The least coefficient along c g with which the block is a square.
 ///
-/// A vector w meets `|D[w g']|^2 - 8/3 (B : w g') n + 14/9 I2 n^2`, n being `c : w g'/J`. As `B : w g' = c : D[w g']`
-/// and `c : c = I2`, it is a square and so not below 0 with 16/9, which with 14/9 it may be (Hartmann and Neff,
-/// International Journal of Solids and Structures 40, 2003).
+/// The quadratic form of a vector w is `|D[w g']|^2 - 8/3 (B : w g') n + 14/9 I2 n^2`, n being `c : w g'/J`. Since `B :
+/// w g' = c : D[w g']` and `c : c = I2`, it is a square, and so not below 0, with 16/9; with 14/9 it may be below 0
+/// (Hartmann and Neff, International Journal of Solids and Structures 40, 2003).
 pub(super) const SQUARE: f64 = 16.0 / 9.0;
 
 /// A node's own block with `a` times that of [`tangent`], with a coefficient along c g.

@@ -5,15 +5,15 @@ use sinew_sparse::simd::Number;
 use super::decomposition::SingularValues;
 use super::tensor::Tensor;
 
-/// [`semidefinite`] plus its rounding error, which matters if negative eigenvalues are the larger ones: the own block
-/// of a node for a tangent that may be indefinite.
+/// Computes [`semidefinite`] plus its rounding error, which matters if negative eigenvalues are the larger ones: the
+/// own block of a node for a tangent that may be indefinite.
 #[inline(always)]
 pub(super) fn surely_semidefinite<N: Number>(block: Tensor<N>) -> Tensor<N> {
     let rounding = block.largest() * N::of(8.0 * N::EPSILON);
     semidefinite(block.symmetric()) + Tensor::diagonal(rounding)
 }
 
-/// A symmetric tensor without its negative eigenvalues: half the sum of the tensor and its positive square root's square, which is `V |s| V'`.
+/// A symmetric tensor without its negative eigenvalues: half the sum of the tensor and its absolute value `V |s| V'`.
 #[inline(always)]
 pub(crate) fn semidefinite<N: Number>(tensor: Tensor<N>) -> Tensor<N> {
     let SingularValues { values, right, .. } = SingularValues::of(tensor);

@@ -9,12 +9,14 @@ use super::tensor::Tensor;
 
 /// `psi = mu/2 (I1 - 3) - mu (J - 1) + (lambda + mu)/2 (J - 1)^2`.
 ///
-/// Smith, de Goes and Kim, Stable neo-Hookean flesh simulation, ACM Transactions on Graphics 37(2), 2018, in the form without a logarithm of
-/// Kim and Eberle, Dynamic Deformables (SIGGRAPH courses, 2022). Its volumetric modulus is `lambda + mu`, so that moduli at small strain are the true
-/// ones; with lambda alone Poisson's ratio would be 0 if 1/4 is requested.
+/// Smith, de Goes and Kim, Stable neo-Hookean flesh simulation, ACM Transactions on Graphics 37(2), 2018, in the form
+/// without a logarithm of Kim and Eberle, Dynamic Deformables (SIGGRAPH courses, 2022). Its volumetric modulus is
+/// `lambda + mu`, so that moduli at small strain are the true ones; with lambda alone Poisson's ratio would be 0 when
+/// 1/4 is requested.
 ///
-/// The law where elements may invert: it is finite and pushes them back. Between stretches of .5 and 2 within .2 % of [`super::NeoHookean`]. Not where an element may be crushed
-/// to a point, which is a shallow local minimum of the energy.
+/// For elements that may invert: the law is finite and pushes them back. Between stretches of .5 and 2 it is within .2
+/// % of [`super::NeoHookean`]. Not for elements that may be crushed to a point, which is a shallow local minimum of the
+/// energy.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StableNeoHookean {
     lambda: f64,

@@ -10,11 +10,12 @@ use super::tensor::Tensor;
 /// `psi = mu'/2 (I1 - 3) - mu'/2 ln((I1 + 1)/4) + lambda'/2 ((J - alpha)^2 - (1 - alpha)^2)` with `mu' = 4/3 mu`, `lambda' = lambda + 5/6 mu`,
 /// `alpha = 1 + 3 mu'/(4 lambda')`.
 ///
-/// Smith, de Goes and Kim, Stable neo-Hookean flesh simulation, ACM Transactions on Graphics 37(2), 2018; mu' and lambda' are their section 3.4, by which
-/// moduli at small strain are the true ones.
+/// Smith, de Goes and Kim, Stable neo-Hookean flesh simulation, ACM Transactions on Graphics 37(2), 2018; mu' and
+/// lambda' follow their section 3.4, so that moduli at small strain are the true ones.
 ///
-/// For comparison, and where elements may be crushed to a point, from which the logarithm drives them away. Otherwise [`super::StableNeoHookean`],
-/// which is nearer to the neo-Hookean law: this one is 11 % stiffer at a stretch of 2.
+/// For comparison, and for elements that may be crushed to a point, from which the logarithm drives them away.
+/// Otherwise use [`super::StableNeoHookean`], which is nearer to the neo-Hookean law: this one is 11 % stiffer at a
+/// stretch of 2.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StableNeoHookeanLog {
     lambda: f64,
@@ -22,7 +23,7 @@ pub struct StableNeoHookeanLog {
 }
 
 impl StableNeoHookeanLog {
-    /// The modulus that the law is written with (Pa).
+    /// The modulus mu' in the formula of the law (Pa).
     #[inline(always)]
     fn remapped(&self) -> f64 {
         4.0 / 3.0 * self.mu

@@ -6,7 +6,7 @@ use super::deformation::Deformation;
 use super::powers::{NEAR, artanh_share, ln_1p};
 use super::tensor::{Tensor, add, dot, scale};
 
-/// Principal stretches of a deformation, by quantities that are small near rest.
+/// Principal stretches of a deformation, as quantities that are small near rest.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Stretches<N> {
     /// Axes in the material: orthogonal unit vectors, in no order and of either hand.
@@ -21,7 +21,7 @@ pub(super) struct Stretches<N> {
     pub(super) logs: [N; 3],
 }
 
-/// Sweeps of rotations at most; five are seen.
+/// Largest number of sweeps of rotations; at most five were observed.
 const SWEEPS: usize = 12;
 
 impl<N: Number> Stretches<N> {
@@ -61,7 +61,7 @@ impl<N: Number> Stretches<N> {
         }
     }
 
-    /// `(e_a - e_b)/(g_a - g_b)` for a pair, which has a limit where both are alike.
+    /// `(e_a - e_b)/(g_a - g_b)` for a pair, with its limit if both are equal.
     #[inline(always)]
     pub(super) fn slope_of_logs(&self, a: usize, b: usize) -> N {
         let (g, e) = (self.strains, self.logs);
@@ -80,8 +80,8 @@ fn strain_of<N: Number>(axis: [N; 3], moved: [N; 3]) -> N {
     N::of(2.0).mul_add(dot(axis, moved), dot(moved, moved))
 }
 
-/// The axes of a symmetric tensor, by rotations in Jacobi's order until all lanes are done: a lane that is done
-/// turns no more.
+/// The axes of a symmetric tensor, by rotations in Jacobi's order until all lanes are done; a lane that is done is no
+/// longer rotated.
 #[inline(always)]
 fn axes_of<N: Number>(tensor: Tensor<N>) -> [[N; 3]; 3] {
     // Entries of 1 at most, so that squares of squares are numbers too.
@@ -115,9 +115,10 @@ struct Turning<N> {
 }
 
 impl<N: Number> Turning<N> {
-    /// Turns axes P and Q, whose entry is that of `OWN`, so that it vanishes nearly. The tangent of half the angle is
-    /// `e/(f d)` of the entry e and the difference d, with a fit of `f(e/d)` in place of roots: the first terms of its
-    /// series up to 1/2, lines beyond. Of a small angle the fifth power is left, of a large one up to a hundredth.
+    /// Rotates axes P and Q, whose entry is that of `OWN`, so that this entry nearly vanishes. The tangent of half the
+    /// angle is `e/(f d)` of the entry e and the difference d, with a fit of `f(e/d)` in place of roots: the first
+    /// terms of its series up to 1/2, lines beyond. The remaining entry is of the fifth power of a small angle, and up
+    /// to a hundredth for a large one.
     #[inline(always)]
     fn turn<const OWN: usize, const P: usize, const Q: usize>(&mut self) {
         let (zero, one) = (N::of(0.0), N::of(1.0));
@@ -159,7 +160,7 @@ impl<N: Number> Turning<N> {
     }
 }
 
-/// A number that is 0 for tensors, as a size and as the square of one's square.
+/// A number that counts as 0 for entries of tensors; its fourth power can still be computed.
 #[inline(always)]
 fn smallest<N: Number>() -> f64 {
     if N::EPSILON < 1e-10 { 1e-290 } else { 1e-36 }

@@ -7,11 +7,11 @@ use super::law::{Bulk, HyperelasticLaw, Point};
 use super::parameters::{LawParameter, LawValues, ParameterError};
 use super::tensor::{Tensor, dot};
 
-/// `psi = mu E:E + lambda/2 (tr E)^2`, E being Green's strain `(F'F - I)/2`: linear elasticity that does not see rotations
-/// (Bonet and Wood, Nonlinear Continuum Mechanics for Finite Element Analysis, 2008, section 6.4.1).
+/// `psi = mu E:E + lambda/2 (tr E)^2`, E being Green's strain `(F'F - I)/2`: linear elasticity that is independent of
+/// rotations (Bonet and Wood, Nonlinear Continuum Mechanics for Finite Element Analysis, 2008, section 6.4.1).
 ///
-/// For comparison with programs that have it. Compressed to less than .58 of its length a bar gets weaker, and then inverts freely: a mirrored
-/// body is at rest. In tension it is far too stiff.
+/// For comparison with programs that have it. Compressed to less than .58 of its length, a bar becomes weaker and then
+/// inverts without resistance: a mirrored body is at rest. In tension it is far too stiff.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stvk {
     lambda: f64,

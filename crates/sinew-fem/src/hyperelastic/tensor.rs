@@ -54,7 +54,7 @@ impl<N: Number> Tensor<N> {
         Self::diagonal(N::of(1.0))
     }
 
-    /// The tensor in every lane that has these entries.
+    /// The tensor that has these entries in every lane.
     #[inline(always)]
     #[must_use]
     pub fn of(rows: [[f64; 3]; 3]) -> Self {
@@ -68,7 +68,7 @@ impl<N: Number> Tensor<N> {
         entries!(|i, j| a[i] * b[j])
     }
 
-    /// A tensor by its columns.
+    /// A tensor from its columns.
     #[inline(always)]
     #[must_use]
     pub fn from_columns([a, b, c]: [[N; 3]; 3]) -> Self {
@@ -136,7 +136,7 @@ impl<N: Number> Tensor<N> {
         (axes * self).times_transposed(axes)
     }
 
-    /// The tensor that is this one in perpendicular axes.
+    /// The tensor whose entries in perpendicular axes, given by the rows of `axes`, are these.
     #[inline(always)]
     #[must_use]
     pub fn out_of_axes(self, axes: Self) -> Self {

@@ -19,9 +19,9 @@ use super::volume;
 /// Veronda and Westmann (Journal of Biomechanics 3, 1970), for the skin of a cat; the invariants without change of
 /// volume after Flory (Transactions of the Faraday Society 57, 1961).
 ///
-/// For skin, breast and other soft tissue whose stress grows exponentially with stretch. Not for small motions alone,
-/// where its part in I2 takes away half of the shear modulus of the other part, nor where elements may invert:
-/// refused at J <= 0, and where the exponential comes near the end of the numbers.
+/// For skin, breast and other soft tissue whose stress grows exponentially with stretch. Not for small motions only, in
+/// which its part in I2 takes away half of the shear modulus of the other part, and not for elements that may invert:
+/// refused at J <= 0, and if the exponential comes near the largest floating-point number.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VerondaWestmann {
     lambda: f64,
@@ -159,7 +159,7 @@ impl HyperelasticLaw for VerondaWestmann {
         volume::tangent(at, self.of_volume(), local, change)
     }
 
-    /// The exact block of the local energy with its negative eigenvalues put to 0, and that of the dilation: the part
+    /// The exact block of the local energy with its negative eigenvalues set to 0, and that of the dilation: the part
     /// in I2 has a negative coefficient, and at rest takes half of the other's shear modulus.
     #[inline(always)]
     fn node_block<N: Number>(

@@ -10,9 +10,10 @@ use super::tensor::{Tensor, dot};
 /// A law whose tangent is the viscosity of stiffness damping, and whose stress is 0, so that loops over tangents make products, matrices and own
 /// blocks of damping too.
 ///
-/// Its second Piola-Kirchhoff stress is that of the elasticity at rest for the rate of Green's strain E, with the law's own dilation theta:
-/// `S = 2 mu E' + lambda theta' d theta/dE`, that is `P = 2 mu F sym(F'dF) + lambda (d theta/dF : dF) d theta/dF` for a rate dF of F. It is objective, as
-/// E and theta are; `S : E' = 2 mu E':E' + lambda theta'^2` is never below 0, in any state; at rest it is the tangent of the law.
+/// Its second Piola-Kirchhoff stress is that of the elasticity at rest for the rate of Green's strain E, with the law's
+/// own dilation theta: `S = 2 mu E' + lambda theta' d theta/dE`, that is `P = 2 mu F sym(F'dF) + lambda (d theta/dF :
+/// dF) d theta/dF` for a rate dF of F. It is objective, since E and theta are; `S : E' = 2 mu E':E' + lambda theta'^2`
+/// is never below 0, in any state; at rest it is the tangent of the law.
 ///
 /// The law given names the dilation; laws with the same one have the same viscosity.
 #[derive(Clone, Copy, Debug)]
@@ -24,7 +25,7 @@ pub(crate) struct Viscous<L> {
 }
 
 impl Viscous<OfVolume> {
-    /// The viscosity of laws whose dilation is `J - 1`, by their constants (lambda, mu) (Pa).
+    /// The viscosity of laws whose dilation is `J - 1`, from their constants (lambda, mu) (Pa).
     pub(crate) fn of_volume(lame: (f64, f64)) -> Self {
         Self::new(OfVolume, lame)
     }

@@ -16,9 +16,9 @@ use super::volume;
 /// Yeoh (Rubber Chemistry and Technology 66, 1993); the invariant without change of volume after Flory (Transactions of
 /// the Faraday Society 57, 1961).
 ///
-/// For tissue and rubber that stiffen with stretch, alike in all directions; its curves of tension and shear are bent
-/// by c2 and c3 alone. With c2 or c3 below 0 it may soften, and a state beyond that need not be stable. Not where
-/// elements may invert: refused at J <= 0.
+/// For isotropic tissue and rubber that stiffen with stretch; only c2 and c3 bend its curves of tension and shear. With
+/// c2 or c3 below 0 it may soften, and a state beyond that need not be stable. Not for elements that may invert:
+/// refused at J <= 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Yeoh {
     lambda: f64,

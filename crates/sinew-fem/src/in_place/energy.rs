@@ -23,7 +23,7 @@ pub(crate) struct InMotion<'a> {
 
 impl InPlace {
     /// The kinetic energy (J) of nodes whose sums are recomputed, and the elastic energy of tetrahedra of another
-    /// shape: all others keep theirs. The difference of its values before and after a model follows a split is the
+    /// shape: the energy of all others does not change. The difference of the values before and after a split is the
     /// change of the energy.
     pub(crate) fn energy(&self, of: &InMotion<'_>, body: &CuttableBody) -> Energy {
         let nodes = self.touched.made_anew();

@@ -11,7 +11,8 @@ use crate::loads::{Spread, share_of_corner};
 use crate::supports::HeldLoad;
 use crate::{LoadKind, Problem};
 
-/// Loads with the nodes, triangles or tetrahedra they act on, so that their shares at a few nodes can be recomputed.
+/// Loads with the nodes, triangles or tetrahedra that they act on, so that their shares at a few nodes can be
+/// recomputed.
 #[derive(Debug)]
 pub(super) struct LoadsInPlace {
     /// Triangles of each load, in the order of the problem; `None` for forces, which stay with their nodes.
@@ -30,8 +31,8 @@ struct Faces {
 }
 
 impl LoadsInPlace {
-    /// The loads of a problem on the mesh of a body, uncut and as cuts left it, with space for `nodes` touched nodes;
-    /// `None` if one of them cannot follow a split.
+    /// The loads of a problem on the mesh of a body, before and after cuts, with space for `nodes` touched nodes;
+    /// `None` if one of them cannot be updated after a split.
     pub(super) fn new(
         problem: &Problem,
         uncut: &TetMesh,
@@ -159,7 +160,7 @@ impl Faces {
     }
 }
 
-/// Sets the value of a key in a list by increasing keys, or takes it out of it.
+/// Sets the value of a key in a list by increasing keys, or removes it.
 fn set<T>(list: &mut Vec<(u32, T)>, key: u32, value: T, is_there: bool) {
     match (
         list.binary_search_by_key(&key, |(other, _)| *other),

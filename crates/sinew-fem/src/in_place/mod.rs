@@ -1,4 +1,4 @@
-//! Splits that a model follows in its place.
+//! Updates of a model in place after splits.
 
 mod energy;
 mod loads;
@@ -25,8 +25,8 @@ use neighbours::Neighbours;
 use rows::{Gathering, Source};
 use touched::Touched;
 
-/// State for following splits, stored next to the model: it is built once, with memory for a tenth more nodes, and
-/// allocates nothing until that is used up.
+/// State for updates after splits, stored next to the model. It is built once, with memory for a tenth more nodes, and
+/// allocates nothing until this memory is used up.
 ///
 /// Nodes and tetrahedra have the same numbers in the body and in the model, so nothing may have been removed.
 #[derive(Debug)]
@@ -54,8 +54,8 @@ pub(crate) struct ModelParts<'a> {
 }
 
 impl InPlace {
-    /// For a problem on a mesh, uncut and as cuts without removals left it, whose tetrahedra have these densities
-    /// (kg/m^3); `None` if some load cannot follow.
+    /// The state for a problem on a mesh, given before cuts and after cuts without removals, whose tetrahedra have
+    /// these densities (kg/m^3); `None` if some load cannot be updated.
     pub(crate) fn new(
         problem: &Problem,
         uncut: &TetMesh,
@@ -76,7 +76,7 @@ impl InPlace {
         })
     }
 
-    /// Lets a mesh follow a stroke.
+    /// Updates a mesh after a stroke.
     pub(crate) fn follow_mesh(&self, mesh: &mut CutMesh, body: &CuttableBody) {
         mesh.follow_split(&split_of(body), &self.follower);
     }
@@ -86,7 +86,7 @@ impl InPlace {
         self.touched.find(body, body.last_stroke(), nodes_before);
     }
 
-    /// Lets a model follow the last stroke of a body, after [`InPlace::look`]. Returns true if all rows were laid out
+    /// Updates a model after the last stroke of a body, after [`InPlace::look`]. Returns true if all rows were laid out
     /// again.
     pub(crate) fn follow(
         &mut self,

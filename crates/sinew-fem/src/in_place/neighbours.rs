@@ -32,7 +32,8 @@ impl Neighbours {
         })
     }
 
-    /// Counts them again at some nodes, both ends of all edges that came or went among them; the number of edges that came.
+    /// Counts them again at some nodes, among them both ends of all edges that were added or removed; returns the
+    /// number of added edges.
     pub(super) fn follow(&mut self, body: &CuttableBody, nodes: &[u32]) -> isize {
         self.counts.resize(body.nodes(), 0);
         self.seen.resize(body.nodes(), 0);

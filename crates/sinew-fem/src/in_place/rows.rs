@@ -14,7 +14,7 @@ use crate::volumes::flat;
 /// Placeholder for a tetrahedron without a shape.
 const NONE: u32 = u32::MAX;
 
-/// Rows of K that a split changes. Used again, it allocates nothing.
+/// Rows of K that a split changes. Repeated use allocates nothing.
 #[derive(Debug)]
 pub(super) struct Gathering {
     /// Place of each tetrahedron among the shapes.
@@ -34,7 +34,7 @@ struct Shape {
     gradients: [[f64; 3]; 4],
 }
 
-/// A row in the making: columns in the order in which they came, and their blocks.
+/// A row under construction: columns in the order of their insertion, and their blocks.
 #[derive(Debug, Default)]
 struct Row {
     columns: Vec<u32>,
@@ -51,7 +51,7 @@ pub(super) struct Source<'a> {
     pub(super) materials: &'a [Material],
     /// Lumped masses (kg) of the nodes.
     pub(super) masses: &'a [f64],
-    /// K before.
+    /// K before the split.
     pub(super) stiffness: &'a BlockMatrix,
 }
 
@@ -113,7 +113,7 @@ impl Gathering {
         }
     }
 
-    /// Gathers the rows of all touched nodes that are cells, to the bits of an assembly.
+    /// Gathers the rows of all touched nodes that are cells; the result equals an assembly to the bit.
     pub(super) fn gather(&mut self, of: &Source<'_>, touched: &Touched) -> Result<(), FemError> {
         self.rows.clear();
         for tet in self.tets.drain(..) {
@@ -150,7 +150,7 @@ impl Gathering {
         Ok(())
     }
 
-    /// Adds everything that the tetrahedra at a node have.
+    /// Adds all contributions of the tetrahedra at a node.
     fn add_all(&mut self, of: &Source<'_>, node: u32) -> Result<(), FemError> {
         for tet in of.tets_at(node) {
             let Shape {

@@ -2,22 +2,22 @@
 
 use sinew_cutting::{CuttableBody, Stroke};
 
-/// Tetrahedra at the node have other nodes.
+/// Mark of a node whose tetrahedra have other nodes.
 const BESIDE: u8 = 1;
 
-/// The node was split, or is a copy.
+/// Mark of a node that was split, or is a copy.
 const SPLIT: u8 = 2;
 
-/// The node, or its original, was moved.
+/// Mark of a node that was moved, or whose original was.
 const MOVED: u8 = 4;
 
-/// A tetrahedron at the node has a node that was moved.
+/// Mark of a node with a tetrahedron that has a moved node.
 const RESHAPED: u8 = 8;
 
-/// The nodes that a split touches, and how. Used again, it allocates nothing.
+/// The nodes that a split touches, with the kind of change. Repeated use allocates nothing.
 #[derive(Debug, Default)]
 pub(super) struct Touched {
-    /// Increasing.
+    /// The nodes, increasing.
     nodes: Vec<u32>,
     /// Place of each node of the body among them.
     places: Vec<u32>,
@@ -89,7 +89,7 @@ impl Touched {
         self.marks[node as usize] & MOVED != 0
     }
 
-    /// True if the tetrahedra at a node are others, or have another shape: then all sums over them are recomputed. At
+    /// True if the tetrahedra at a node have changed, or have another shape: then all sums over them are recomputed. At
     /// other touched nodes only the coupling to split ones changes.
     pub(super) fn is_made_anew(&self, node: u32) -> bool {
         self.marks[node as usize] & (SPLIT | RESHAPED) != 0

@@ -13,7 +13,7 @@ use crate::hyperelastic::{HyperelasticLaw, OwnAt, Tensor};
 pub(crate) enum RegionAxes<T = f64> {
     /// The same in all tetrahedra.
     Everywhere(Tensor<f64>),
-    /// Others in each tetrahedron, one array for each entry.
+    /// Axes of each tetrahedron, one array for each entry.
     Each(Arc<[Aligned<T>; 9]>),
 }
 
@@ -67,7 +67,7 @@ impl<T: Real> RegionAxes<T> {
 pub(crate) enum Place {
     /// The tetrahedra side by side from one on.
     Tets(usize),
-    /// The means of some: axes that differ do not go with them.
+    /// The means over some tetrahedra: not for axes that differ between them.
     Means,
 }
 

@@ -1,4 +1,4 @@
-//! Stress beside the law's: that of fibres, and what is left of earlier stress.
+//! Stress in addition to the law's: that of fibres, and the remainder of earlier stress.
 
 use sinew_core::{EvaluationError, TangentKind};
 use std::ops::Range;
@@ -17,7 +17,7 @@ use crate::hyperelastic::prony::first_piola;
 use crate::hyperelastic::{Deformation, Tensor, dot};
 use crate::tissue::Tissue;
 
-/// The stress beside the law's in the tetrahedra of a chunk, compiled once for all laws.
+/// The stress in addition to the law's in the tetrahedra of a chunk, compiled once for all laws.
 pub(super) struct StressBeside<'a, T> {
     pub(super) region: &'a HyperelasticRegion,
     pub(super) rest: &'a Rest<T>,
@@ -36,7 +36,7 @@ pub(super) struct StressBeside<'a, T> {
 }
 
 impl<T: Vectors> WithReal<T> for StressBeside<'_, T> {
-    /// The energy (J); 0 unless it is asked for.
+    /// The energy (J); 0 unless it is requested.
     type Output = Result<f64, EvaluationError>;
 
     #[inline(always)]
@@ -93,7 +93,7 @@ pub(super) fn carried_energy<N: Number>(deformation: &Deformation<N>, carried: [
     half.mul_add(diagonal, rxy * xy + ryz * yz + rzx * zx)
 }
 
-/// The tangent of the stress beside the law's in tetrahedra side by side; empty if absent.
+/// The tangent of the stress in addition to the law's in tetrahedra side by side; empty if absent.
 pub(super) struct TangentBeside<'a, N> {
     fibres: [Option<(&'a RegionFibres, FibrePoint<N>)>; Tissue::MOST_FAMILIES],
     factor_of_fibres: f64,
@@ -127,7 +127,7 @@ impl<'a, N: Number<Real = f64>> TangentBeside<'a, N> {
         }
     }
 
-    /// A change of the law's stress with that beside it by a change of F.
+    /// The change of the total stress, the law's and the additional one, by a change of F.
     #[inline(always)]
     pub(super) fn with(&self, stress: Tensor<N>, change: Tensor<N>) -> Tensor<N> {
         let mut stress = stress;
@@ -146,8 +146,8 @@ impl<'a, N: Number<Real = f64>> TangentBeside<'a, N> {
     }
 }
 
-/// A node's own block beside the law's in tetrahedra side by side, for each m^3, without negative eigenvalues. Idle fibres count as pulled: else it
-/// would jump as soon as they are.
+/// A node's own block of the additional stress in tetrahedra side by side, for each m^3, without negative eigenvalues.
+/// Fibres in compression count as pulled: otherwise the block would jump as soon as they are.
 #[inline(always)]
 pub(super) fn block_beside<N: Number<Real = f64>>(
     region: &HyperelasticRegion,
@@ -168,7 +168,7 @@ pub(super) fn block_beside<N: Number<Real = f64>>(
     block
 }
 
-/// `g . R g`, or 0 where that is less, on the diagonal.
+/// `g . R g`, or 0 if that is negative, on the diagonal.
 #[inline(always)]
 pub(super) fn carried_block<N: Number<Real = f64>>(
     relaxing: &Relaxing<'_>,

@@ -13,12 +13,12 @@ pub(super) struct Slot {
     pub(super) is_padding: bool,
 }
 
-/// Tetrahedra that are worked on together: what is kept of them stays in the first cache.
+/// Tetrahedra that are processed together: their intermediate values stay in the first-level cache.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Chunk {
     /// Their places, a multiple of [`LANES`].
     pub(super) slots: Range<usize>,
-    /// Their patches, each of which is whole.
+    /// Their patches, each complete.
     pub(super) patches: Range<usize>,
 }
 
@@ -28,18 +28,18 @@ pub(super) const LANES: usize = f32::LANES;
 /// Tetrahedra in a chunk, unless a patch has more.
 const SIZE: usize = 256;
 
-/// The place of a tetrahedron's corner among those of all places: vertex by vertex for as many tetrahedra as the widest vector has lanes, so that vectors write rows
-/// side by side.
+/// The place of a tetrahedron's corner among those of all places: vertex by vertex for groups of as many tetrahedra as
+/// the widest vector has lanes, so that vectors write rows side by side.
 pub(super) fn corner(tet: usize, vertex: usize) -> usize {
     4 * (tet - tet % LANES) + LANES * vertex + tet % LANES
 }
 
-/// The tetrahedron at whose corner a place is.
+/// The tetrahedron to which the corner at a place belongs.
 pub(super) fn tet_at(corner: usize) -> usize {
     corner / (4 * LANES) * LANES + corner % LANES
 }
 
-/// Cuts tetrahedra into chunks of whole patches and whole vectors.
+/// Divides tetrahedra into chunks of whole patches and whole vectors.
 pub(super) fn chunks(
     tets: &[u32],
     patch_of: impl Fn(u32) -> Option<usize>,

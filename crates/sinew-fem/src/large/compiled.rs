@@ -1,4 +1,4 @@
-//! All that is compiled for a law's own type, behind an object-safe trait.
+//! The functions that are compiled for a law's own type, behind an object-safe trait.
 
 use std::fmt::Debug;
 use std::sync::Arc;
@@ -33,10 +33,10 @@ pub(crate) trait Compiled: Asked + Debug + Send + Sync {
     /// The least and the largest shear modulus (Pa) at small strain.
     fn shear_moduli(&self) -> [f64; 2];
 
-    /// The tangent that own blocks of nodes belong to.
+    /// The tangent from which the nodes' own blocks are computed.
     fn node_block_kind(&self) -> NodeBlock;
 
-    /// Gradients of displacements, each with a change, where the law is defined.
+    /// Gradients of displacements for which the law is defined, each with a change.
     fn samples(&self) -> Vec<[Tensor<f64>; 2]>;
 
     fn forces(&self, forces: Forces<'_, f64>) -> Result<Deformed, EvaluationError>;
@@ -178,7 +178,7 @@ impl<T: WithType> Compiled for T {
 
 /// A precision that force loops are compiled for.
 pub(crate) trait Precision: Vectors {
-    /// Makes a piece of an evaluation.
+    /// Computes a piece of an evaluation.
     fn forces(law: &dyn Compiled, forces: Forces<'_, Self>) -> Result<Deformed, EvaluationError>;
 }
 

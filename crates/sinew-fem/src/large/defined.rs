@@ -39,7 +39,7 @@ pub(super) fn require_law<N: Number, A: LawAt<N> + ?Sized>(
     Err(limit_reached(at.id(), limit, tag(lane)))
 }
 
-/// [`require_law`] for fibres.
+/// Same as [`require_law`], for fibres.
 #[inline(always)]
 pub(super) fn require_fibres<N: Number>(
     fibres: &[RegionFibres],
@@ -54,7 +54,7 @@ pub(super) fn require_fibres<N: Number>(
     Err(fibres_refused(tag(lane), ratios[lane]))
 }
 
-/// Refuses tetrahedra side by side of which fibres are beyond their limit, by the least margin of all families.
+/// Refuses tetrahedra side by side whose fibres are beyond their limit, by the least margin of all families.
 #[inline(always)]
 pub(super) fn require_limit_of_fibres<N: Number>(
     margin: N,
@@ -67,7 +67,7 @@ pub(super) fn require_limit_of_fibres<N: Number>(
     Err(limit_of_fibres_reached(tag(lane)))
 }
 
-/// [`require_law`] for memory.
+/// Same as [`require_law`], for memory.
 #[inline(always)]
 pub(super) fn require_memory<N: Number, T: Real>(
     relaxing: &Relaxing<'_, T>,

@@ -2,7 +2,7 @@
 
 use sinew_core::EvaluationError;
 
-/// Formats a ratio of volumes: to three places, where these say how large it is.
+/// Formats a ratio of volumes: to three decimal places, if these are sufficient.
 fn in_words(volume_ratio: f64) -> String {
     if (1e-3..1e4).contains(&volume_ratio.abs()) || volume_ratio == 0.0 {
         format!("{volume_ratio:.3}")
@@ -11,7 +11,7 @@ fn in_words(volume_ratio: f64) -> String {
     }
 }
 
-/// The error for a tetrahedron that fibres freed of volume change are not defined for.
+/// The error for a tetrahedron for which fibres with isochoric invariants are not defined.
 #[cold]
 pub(super) fn fibres_refused(tag: u64, volume_ratio: f64) -> EvaluationError {
     EvaluationError {
@@ -24,7 +24,7 @@ pub(super) fn fibres_refused(tag: u64, volume_ratio: f64) -> EvaluationError {
     }
 }
 
-/// The error for a tetrahedron, or the mean of some, that memory is not defined for.
+/// The error for a tetrahedron, or the mean of some, for which memory is not defined.
 #[cold]
 pub(super) fn memory_refused(tag: u64, volume_ratio: f64) -> EvaluationError {
     EvaluationError {
@@ -48,7 +48,7 @@ pub(super) fn limit_of_fibres_reached(tag: u64) -> EvaluationError {
     }
 }
 
-/// Advice where a law ends.
+/// Advice for deformations beyond the limit of a law.
 const AT_A_LIMIT: &str = "shorter steps avoid that unless the motion itself leads there, and then smaller loads or a softer law do";
 
 /// The error for a tetrahedron, or the mean of some, that is beyond the limit of a law.
@@ -60,7 +60,7 @@ pub(super) fn limit_reached(law: &str, limit: &str, tag: u64) -> EvaluationError
     }
 }
 
-/// The error for a tetrahedron, or the mean of some, that a law is not defined for.
+/// The error for a tetrahedron, or the mean of some, for which a law is not defined.
 #[cold]
 pub(super) fn refused(law: &str, tag: u64, volume_ratio: f64) -> EvaluationError {
     let reason = if volume_ratio.is_finite() {

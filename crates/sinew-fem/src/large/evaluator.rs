@@ -1,4 +1,4 @@
-//! A law at one deformation after the other, as loops over tangents ask for it.
+//! A law at one deformation after the other, for loops over tangents.
 
 use std::ops::Deref;
 
@@ -10,7 +10,7 @@ use super::axes::{Place, RegionAxes, at_place};
 use super::wanted::Wanted;
 use crate::hyperelastic::{HyperelasticLaw, LawAt, OwnAt, Tensor};
 
-/// A law that is asked at one deformation after the other.
+/// A law that is evaluated at one deformation after the other.
 pub(super) trait Evaluator<N: Number> {
     /// The law at a deformation.
     type At<'a>: LawAt<N> + ?Sized
@@ -30,7 +30,7 @@ pub(super) trait Evaluator<N: Number> {
     ) -> Self::Ref<'_>;
 }
 
-/// An evaluator of a law whose type is known, for vectors: what it gives stays in registers, as far as these go.
+/// An evaluator of a law whose type is known, for vectors: its results stay in registers as far as possible.
 pub(super) struct Typed<'a, L>(pub(super) &'a L);
 
 /// An owner.
@@ -78,12 +78,12 @@ pub(crate) trait Untyped {
     /// Lame's constants (Pa) of the law.
     fn lame(&self) -> (f64, f64);
 
-    /// theta and its derivative by F at a gradient of the displacement: all that a patch asks of its tetrahedra, without
-    /// the stretches that some laws would look for.
+    /// theta and its derivative by F at a gradient of the displacement: all that a patch needs from its tetrahedra,
+    /// without the stretches that some laws would compute.
     fn dilation(&self, h: Tensor<f64>) -> (f64, Tensor<f64>);
 }
 
-/// A law with its type, and the deformation that it was asked at last.
+/// A law with its type, and the deformation at which it was last evaluated.
 pub(super) struct Last<'a, L: HyperelasticLaw> {
     pub(super) law: &'a L,
     pub(super) at: Option<OwnAt<'a, f64, L>>,
@@ -129,7 +129,7 @@ impl Evaluator<f64> for dyn Untyped + '_ {
     }
 }
 
-/// A law that loops ask behind a pointer.
+/// A law behind a pointer, for loops.
 pub(crate) trait Asked {
     /// Calls `work` with the law, or with its viscosity.
     fn asked(&self, wanted: Wanted, work: &mut dyn FnMut(&mut (dyn Untyped + '_)));

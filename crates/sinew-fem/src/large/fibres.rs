@@ -1,8 +1,8 @@
 //! Fibres of a region.
 //!
-//! They see the strain of each single tetrahedron, also where the law sees averages: fibres resist a stretch along
-//! their own direction and no shear across it, which is what locks tetrahedra in bending, and their direction may be
-//! another in each.
+//! Their stress follows from the strain of each single tetrahedron, also if that of the law follows from averages.
+//! Fibres resist a stretch along their own direction but no shear across it, and only such shear locks tetrahedra in
+//! bending; and their direction may differ in each tetrahedron.
 
 use std::sync::Arc;
 

@@ -1,4 +1,4 @@
-//! Internal forces and the energy behind them.
+//! Internal forces and the elastic energy.
 
 #![allow(unsafe_code, reason = "a kernel; ARCHITECTURE.md names it")]
 
@@ -52,7 +52,8 @@ impl<'a, T: Vectors> Forces<'a, T> {
     /// The tasks of a piece; `None` if it has nothing to do.
     ///
     /// # Safety
-    /// The parts of a schedule of these regions are done pass by pass; other users of the places wait for the end.
+    /// The parts of a schedule of these regions are done pass by pass; other users of the places wait until they are
+    /// done.
     pub(super) unsafe fn of(
         evaluation: &'a Evaluation<'a, T>,
         part: usize,
@@ -86,7 +87,7 @@ impl<'a, T: Vectors> Forces<'a, T> {
         }
     }
 
-    /// [`Self::run`]; `PLAIN` is true if nothing but the law's own forces is asked for.
+    /// Same as [`Self::run`]; `PLAIN` is true if only the law's own forces are requested.
     fn sweep<const PLAIN: bool, L: HyperelasticLaw>(
         self,
         law: L,
@@ -128,12 +129,12 @@ impl<'a, T: Vectors> Forces<'a, T> {
     }
 }
 
-/// All loops over a region, for one law; `PLAIN` ones know neither energy nor memory, fibres, axes and shares of the stiffness: without their branches vectors stay in
-/// registers.
+/// All loops over a region, for one law. `PLAIN` loops compute no energy, memory, fibres, axes or shares of the
+/// stiffness: without these branches vectors stay in registers.
 ///
-/// The proof of all blocks below is the schedule: a task reads what its part did before or any part in a pass before,
-/// and nobody writes what another part of the pass reads ([`super::schedule::Schedule`]). Places of gradients, edges
-/// and corners are within assigned blocks, and these within the arrays ([`Places::hold`]).
+/// The proof of all blocks below is the schedule: a task reads only results of its own part or of an earlier pass, and
+/// no part writes values that another part of the same pass reads ([`super::schedule::Schedule`]). Places of gradients,
+/// edges and corners are within assigned blocks, and these within the arrays ([`Places::hold`]).
 struct Sweep<'a, T, L, const PLAIN: bool> {
     region: &'a HyperelasticRegion,
     numbers: &'a Numbers<T>,
@@ -308,19 +309,19 @@ impl<T: Vectors, L: HyperelasticLaw, const PLAIN: bool> Sweep<'_, T, L, PLAIN> {
         Ok(())
     }
 
-    /// The material's axes, where its law has some.
+    /// The material's axes, if its law has some.
     #[inline(always)]
     fn axes(&self) -> Option<&RegionAxes<T>> {
         self.numbers.axes.as_ref().filter(|_| !PLAIN)
     }
 
-    /// Factors of the law's energies, where they differ.
+    /// Factors of the law's energies, if they differ.
     #[inline(always)]
     fn stiffness(&self) -> Option<&Stiffness<T>> {
         self.numbers.stiffness.as_deref().filter(|_| !PLAIN)
     }
 
-    /// The memory that is brought up to date, where it is.
+    /// The memory that is updated, if it is.
     #[inline(always)]
     fn remembering(&self) -> Option<Remembering<'_, T>> {
         if PLAIN {
@@ -333,7 +334,8 @@ impl<T: Vectors, L: HyperelasticLaw, const PLAIN: bool> Sweep<'_, T, L, PLAIN> {
         Some(Remembering::of(memory, remembered.dt, internal))
     }
 
-    /// Computes the stress beside the law's in the tetrahedra of a chunk, and keeps the gradients; the energy where it is asked for.
+    /// Computes the stress in addition to the law's in the tetrahedra of a chunk, and keeps the gradients; returns the
+    /// energy if it is requested.
     fn beside(&self, slots: &Range<usize>) -> Result<f64, EvaluationError> {
         // SAFETY: see `Sweep`.
         let kept = unsafe { self.places.chunks.write(self.of_part.clone()) };
@@ -463,7 +465,7 @@ impl<T: Vectors, L: HyperelasticLaw, const PLAIN: bool> Sweep<'_, T, L, PLAIN> {
     }
 }
 
-/// A range of a region among that of all regions, in which its own begins at `first`.
+/// A range of a region as a range among all regions, in which the region begins at `first`.
 fn from(first: usize, range: &Range<usize>) -> Range<usize> {
     first + range.start..first + range.end
 }

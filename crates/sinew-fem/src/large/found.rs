@@ -14,7 +14,7 @@ pub(super) struct Found<N> {
     pub(super) energy_of_sets: f64,
     /// The smallest volume ratio.
     smallest: N,
-    /// The place of the first lane beside it.
+    /// The place of the first of the lanes to which it belongs.
     place: N,
     inverted: usize,
 }
@@ -31,7 +31,7 @@ impl<N: Number> Found<N> {
         }
     }
 
-    /// Takes note of the volume ratios of tetrahedra side by side.
+    /// Records the volume ratios of tetrahedra side by side.
     #[inline(always)]
     pub(super) fn note(&mut self, first: usize, ratio: N, rest: &Rest<N::Real>) {
         self.place = N::select_le(self.smallest, ratio, self.place, N::of(first as f64));
@@ -44,7 +44,7 @@ impl<N: Number> Found<N> {
         }
     }
 
-    /// All lanes together.
+    /// The findings of all lanes together.
     #[inline(always)]
     pub(super) fn over(self, rest: &Rest<N::Real>) -> Deformed {
         let mut found = Deformed {

@@ -1,4 +1,4 @@
-//! Sums of what tetrahedra give to their nodes.
+//! Sums of the contributions of tetrahedra to their nodes.
 
 #![allow(unsafe_code, reason = "a kernel; ARCHITECTURE.md names it")]
 
@@ -34,7 +34,7 @@ impl CornerPlaces {
         Self { places, count }
     }
 
-    /// Number of places that an array of corners has at least.
+    /// Least number of places in an array of corners.
     pub(super) fn count(&self) -> usize {
         self.count
     }
@@ -78,7 +78,7 @@ impl Gather {
         }
     }
 
-    /// All of its nodes.
+    /// All nodes that have a corner.
     pub(super) fn nodes(&self) -> &[u32] {
         &self.nodes
     }
@@ -99,7 +99,8 @@ impl Gather {
     /// is at a place of its own.
     ///
     /// # Safety
-    /// The places are below the count of `at_corners`. Nobody else uses the sums of these nodes meanwhile, or writes forces at their corners.
+    /// The places are below the count of `at_corners`. No other code uses the sums of these nodes during the call, or
+    /// writes forces at their corners.
     #[inline(always)]
     pub(super) unsafe fn sum<T: Real>(
         &self,
@@ -130,7 +131,7 @@ impl Gather {
         }
     }
 
-    /// [`Gather::sum`] with arrays that nobody shares.
+    /// Same as [`Gather::sum`], with arrays that are not shared.
     pub(super) fn sum_part(
         &self,
         which: Range<usize>,
@@ -145,7 +146,7 @@ impl Gather {
     }
 }
 
-/// The sum of two rows, which is one instruction.
+/// The sum of two rows, computed by one instruction.
 #[inline(always)]
 fn row_sum<T: Add<Output = T> + Copy>(a: [T; 4], b: &[T; 4]) -> [T; 4] {
     [a[0] + b[0], a[1] + b[1], a[2] + b[2], a[3] + b[3]]

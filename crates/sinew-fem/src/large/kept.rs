@@ -1,4 +1,4 @@
-//! Tensors as force loops keep them from one task to another, and lanes of vectors.
+//! Storage format of tensors that force loops keep from one task to another, and lanes of vectors.
 
 use sinew_sparse::simd::Number;
 
@@ -34,7 +34,7 @@ pub(super) fn store<N: Number>(tensor: Tensor<N>, to: &mut [Rows<N::Real>]) {
     N::store_rows(z, &mut rows[2..], 3);
 }
 
-/// The tensor whose entries are stored one vector behind the other.
+/// The tensor whose entries are stored one vector after the other.
 #[inline(always)]
 pub(super) fn load_entries<N: Number>(from: &[N::Real]) -> Tensor<N> {
     let from = &from[..9 * N::LANES];
@@ -52,7 +52,7 @@ fn load_row<N: Number>(from: &[N::Real]) -> [N; 3] {
     ]
 }
 
-/// Writes the entries of a tensor one vector behind the other.
+/// Writes the entries of a tensor one vector after the other.
 #[inline(always)]
 pub(super) fn store_entries<N: Number>(tensor: Tensor<N>, to: &mut [N::Real]) {
     let entries = tensor.0.as_flattened().iter();

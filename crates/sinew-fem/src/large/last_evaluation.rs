@@ -2,7 +2,8 @@
 
 use sinew_core::Deformed;
 
-/// Findings of the last evaluation of a body without memory, and its displacement: a row of a table takes forces, reactions and the energy of one state.
+/// Findings of the last evaluation of a body without memory, and its displacement: a row of a table needs forces,
+/// reactions and the energy of one state.
 #[derive(Debug, Default)]
 pub(super) struct LastEvaluation {
     /// Displacement (m) of all mesh nodes.
@@ -10,12 +11,12 @@ pub(super) struct LastEvaluation {
     found: Option<Deformed>,
     /// True if `found` has the energy.
     has_energy: bool,
-    /// True if the energy was asked for at the last displacement, so that it may be at the next.
+    /// True if the energy was requested at the last displacement, so that it may be requested at the next.
     energy_follows: bool,
 }
 
 impl LastEvaluation {
-    /// None yet, with space for the displacement of this number of nodes.
+    /// No evaluation yet, with space for the displacement of this number of nodes.
     pub(super) fn none(nodes: usize) -> Self {
         Self {
             displacement: Vec::with_capacity(nodes),
@@ -30,7 +31,7 @@ impl LastEvaluation {
         (self.has_energy || !with_energy).then_some(found)
     }
 
-    /// True if an evaluation elsewhere, which is asked for forces alone, should find the energy too.
+    /// True if an evaluation at another displacement should also find the energy although only forces are requested.
     pub(super) fn expects_energy(&mut self) -> bool {
         std::mem::take(&mut self.energy_follows)
     }
@@ -46,7 +47,7 @@ impl LastEvaluation {
         (self.found, self.has_energy) = (Some(found), has_energy);
     }
 
-    /// Forgets it, as its sums are overwritten.
+    /// Discards it, since its sums are overwritten.
     pub(super) fn forget(&mut self) {
         self.found = None;
     }

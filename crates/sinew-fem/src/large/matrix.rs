@@ -41,7 +41,7 @@ pub(crate) struct Sum<'o> {
 }
 
 impl Tangents<'_, '_> {
-    /// Adds it.
+    /// Adds the tangent, or the viscosity, of a region with this law.
     pub(super) fn run(&mut self, law: &dyn Asked) -> Result<(), EvaluationError> {
         law.with(self.wanted, Ok(()), |law| self.add(law))
     }
@@ -119,8 +119,8 @@ impl<'o> Sum<'o> {
         }
     }
 
-    /// Adds `V g_aJ H_iJkL g_bL` between the nodes of the average, for a share of its volume V. `tangent` is given changes of F,
-    /// and the same again to be replaced by those of the stress.
+    /// Adds `V g_aJ H_iJkL g_bL` between the nodes of the average, for a share of its volume V. `tangent` receives
+    /// changes of F, and a copy of them to replace by those of the stress.
     fn add(
         &mut self,
         share: f64,

@@ -1,4 +1,4 @@
-//! Means over patches and edges, as tangents take them.
+//! Means over patches and edges, for tangents.
 
 use sinew_core::EvaluationError;
 use sinew_sparse::simd::Number;
@@ -85,7 +85,8 @@ pub(super) fn add(sum: &mut Rows<f64>, factor: f64, tensor: &Rows<f64>) {
     }
 }
 
-/// Takes the derivative of a patch's mean dilation by the displacement of each of its nodes, in the place of a mean gradient.
+/// Takes the derivative of a patch's mean dilation by the displacement of each of its nodes, instead of a mean
+/// gradient.
 pub(super) fn take_dilation(
     region: &HyperelasticRegion,
     law: &(dyn Untyped + '_),
@@ -101,7 +102,7 @@ pub(super) fn take_dilation(
     }));
 }
 
-/// Refuses tetrahedra side by side that the law, the fibres or the memory are not defined for.
+/// Refuses tetrahedra side by side for which the law, the fibres or the memory are not defined.
 #[inline(always)]
 pub(super) fn require<N: Number, A: LawAt<N> + ?Sized>(
     at: &A,

@@ -1,9 +1,10 @@
 //! Memory of a region: stress that relaxes.
 //!
-//! With S0 the stress that relaxes, at once, and h_i the memories of its terms, a step makes of them `S = f S0 + R` at
-//! its end: f is a factor and R, which is symmetric, follows from the history variables before the step. So during a
-//! step a tissue with memory is elastic: its stress is the derivative of `f psi + R : (F'F - I)/2`, which gives
-//! tangents and searches along lines. Only the update of the history variables takes an inverse of F, once a step.
+//! With S0 the instantaneous value of the stress that relaxes, and h_i the history variables of its terms, the stress
+//! at the end of a step is `S = f S0 + R`: f is a factor and R, which is symmetric, follows from the history variables
+//! before the step. So during a step a tissue with memory is elastic: its stress is the derivative of `f psi + R : (F'F
+//! - I)/2`, which allows tangents and line searches. Only the update of the history variables needs an inverse of F,
+//! once per step.
 
 use std::ops::Range;
 
@@ -16,29 +17,29 @@ use crate::tissue::{Memory, ViscousPart};
 /// History variables of a body, and the time since their last update.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Past<'a, T = f64> {
-    /// Internal variables; none where the body was at rest before.
+    /// Internal variables; empty if the body was at rest before.
     pub(crate) internal: &'a [T],
-    /// Time (s) since then: 0 where all happens at once, infinite where all has relaxed.
+    /// Time (s) since the last update: 0 for an instantaneous change, infinite for complete relaxation.
     pub(crate) dt: f64,
 }
 
 impl<T> Past<'_, T> {
-    /// Nothing happened before, and all happens at once.
+    /// Instantaneous change from rest, without history.
     pub(crate) const NONE: Self = Self {
         internal: &[],
         dt: 0.0,
     };
 
-    /// All has relaxed.
+    /// Complete relaxation.
     pub(crate) const RELAXED: Self = Self {
         internal: &[],
         dt: f64::INFINITY,
     };
 }
 
-/// Layout of the history variables of a region: for each of its points S0 and the memory of each term, six numbers
-/// each. Points are the places of tetrahedra and, where shear is averaged over edges, these too. All first numbers of
-/// tetrahedra are consecutive, then all second ones, and so on.
+/// Layout of the history variables of a region: for each of its points S0 and h of each term, six numbers each. Points
+/// are the places of tetrahedra and, if shear is averaged over edges, those of edges. All first numbers of tetrahedra
+/// are consecutive, then all second ones, and so on.
 #[derive(Clone, Debug)]
 pub(super) struct RegionMemory {
     terms: Vec<Term>,
@@ -121,7 +122,7 @@ pub(super) struct Relaxing<'a, T = f64> {
     steps: Steps,
     /// f.
     pub(super) factor: f64,
-    /// Internal variables of the region; empty where it was at rest before.
+    /// Internal variables of the region; empty if it was at rest before.
     internal: &'a [T],
 }
 
@@ -160,7 +161,8 @@ impl<'a, T: Real> Relaxing<'a, T> {
         self.memory.is_some()
     }
 
-    /// The factor of the stress of fibres, which are elastic where only deviatoric stress relaxes: their deviatoric stress alone has no energy.
+    /// The factor of the stress of fibres, which are elastic if only deviatoric stress relaxes: their deviatoric stress
+    /// alone has no energy.
     #[inline(always)]
     pub(super) fn factor_of_fibres(&self) -> f64 {
         if self.is_deviatoric() {
@@ -239,7 +241,7 @@ impl<'a, T: Real> Relaxing<'a, T> {
 }
 
 impl Relaxing<'_> {
-    /// R (Pa) at points side by side as tensors, without negative eigenvalues unless it is wanted exactly.
+    /// R (Pa) at points side by side as tensors, without negative eigenvalues unless the exact tensor is requested.
     #[inline(always)]
     pub(super) fn carried_tensor<N: Number<Real = f64>>(
         &self,
@@ -274,7 +276,7 @@ pub(super) struct Remembered<'a, T> {
     pub(super) dt: f64,
 }
 
-/// The memory of a region while it is brought up to date.
+/// The memory of a region during its update.
 #[derive(Debug)]
 pub(super) struct Remembering<'a, T> {
     memory: &'a RegionMemory,
@@ -298,7 +300,7 @@ impl<'a, T: Real> Remembering<'a, T> {
         self.memory.is_deviatoric
     }
 
-    /// Updates the history variables by the first Piola-Kirchhoff stress (Pa) that relaxes, at points side by side.
+    /// Updates the history variables from the first Piola-Kirchhoff stress (Pa) that relaxes, at points side by side.
     #[inline(always)]
     pub(super) fn take<N: Number<Real = T>>(
         &mut self,

@@ -72,7 +72,7 @@ pub(crate) struct LargeDeformation {
     nodes: usize,
     /// Number of internal (history) variables.
     variables: usize,
-    /// The instructions that force loops are run with.
+    /// The instruction set of force loops.
     set: InstructionSet,
     /// Place of each tetrahedron of the mesh among those of the regions.
     place_of_tet: Vec<u32>,
@@ -141,8 +141,8 @@ impl LargeDeformation {
         result
     }
 
-    /// Computes the internal forces (N) at the corners for the displacement in the scratch, and, where it is asked for, the energy
-    /// and what else is found on the way.
+    /// Computes the internal forces (N) at the corners for the displacement in the scratch, and, if requested, the
+    /// energy and the other findings.
     pub(crate) fn evaluate(
         &self,
         scratch: &mut Scratch,
@@ -182,7 +182,7 @@ impl LargeDeformation {
         self.variables
     }
 
-    /// Brings internal variables up to date with the displacement in the scratch, `dt` (s) after the one they are of.
+    /// Updates internal variables to the displacement in the scratch, `dt` (s) after that of their current values.
     pub(crate) fn remember(
         &self,
         scratch: &mut Scratch,
@@ -204,19 +204,19 @@ impl LargeDeformation {
         evaluate_alone(self.all.alone(), &self.all.laws, &evaluation).map(drop)
     }
 
-    /// Its forces in double precision, by instructions of choice, in `parts` parts that threads compute at the same
+    /// The forces in double precision, with a chosen instruction set, in `parts` parts that threads compute at the same
     /// time.
     pub(crate) fn in_double(&self, parts: usize, set: InstructionSet) -> SharedForces<f64> {
         SharedForces::new(Arc::clone(&self.all), self.numbers.clone(), parts, set)
     }
 
-    /// [`LargeDeformation::in_double`] in single precision.
+    /// Same as [`LargeDeformation::in_double`], in single precision.
     pub(crate) fn in_single(&self, parts: usize, set: InstructionSet) -> SharedForces<f32> {
         let numbers = self.numbers.iter().map(Numbers::rounded).collect();
         SharedForces::new(Arc::clone(&self.all), numbers, parts, set)
     }
 
-    /// The mesh nodes of the regions, by the order in which forces are complete.
+    /// The mesh nodes of the regions, in the order in which their forces are completed.
     pub(crate) fn nodes_in_order(&self) -> &[u32] {
         self.all.gather.nodes()
     }
@@ -353,9 +353,9 @@ impl LargeDeformation {
         Ok(found)
     }
 
-    /// The Cauchy stress (Pa) of a tetrahedron of the mesh, in the order of [`crate::stress`], with the displacement (m) of each node; `None`
-    /// where it is in no hyperelastic region, not a number where its law has no meaning. `shared` is filled with what other tetrahedra
-    /// take again at the same displacement.
+    /// The Cauchy stress (Pa) of a tetrahedron of the mesh, in the order of [`crate::stress`], with the displacement
+    /// (m) of each node; `None` if it is in no hyperelastic region, NaN if its law is not defined. `shared` is filled
+    /// with values that other tetrahedra reuse at the same displacement.
     pub(crate) fn stress(
         &self,
         tet: usize,
@@ -378,7 +378,7 @@ impl LargeDeformation {
         Some(cauchy.run(law))
     }
 
-    /// Space for what the stresses of all tetrahedra share at one displacement.
+    /// Buffer for values that the stresses of all tetrahedra share at one displacement.
     pub(crate) fn shared_stresses(&self) -> SharedStresses {
         SharedStresses(self.all.regions.iter().map(SharedStress::of).collect())
     }
@@ -420,7 +420,7 @@ mod tests {
         },
     ];
 
-    /// Without and with fibres and memory.
+    /// Tissues without and with fibres and memory.
     fn tissues() -> [Tissue; 5] {
         let exponential = Stiffening::Exponential {
             k1: 1000.0,
@@ -629,8 +629,8 @@ mod tests {
         assert_eq!(facts(found), facts(expected), "{name}");
     }
 
-    /// The sums at the nodes by the parts of a schedule, in order or backwards in each pass; what no task has written is not a
-    /// number.
+    /// The sums at the nodes by the parts of a schedule, in order or backwards in each pass; places that no task has
+    /// written are NaN.
     #[allow(
         unsafe_code,
         reason = "the parts of a schedule are done one after the other"

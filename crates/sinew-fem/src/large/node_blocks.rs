@@ -28,7 +28,7 @@ pub(crate) struct Blocks<'a> {
 }
 
 impl Blocks<'_> {
-    /// True if plain numbers compute them: vectors do not take the stress beside the law's.
+    /// True if plain numbers compute them: vectors do not support the stress in addition to the law's.
     pub(super) fn take_numbers(&self) -> bool {
         self.wanted.has_beside(self.region)
     }
@@ -38,7 +38,7 @@ impl Blocks<'_> {
         law.with(self.wanted, Ok(()), |law| self.tets::<true, f64, _>(law))
     }
 
-    /// Computes those of means, where they are taken.
+    /// Computes those of means, if means are taken.
     pub(super) fn of_means(&mut self, law: &dyn Asked) -> Result<(), EvaluationError> {
         if !self.region.is_smoothed() {
             return Ok(());
@@ -46,8 +46,8 @@ impl Blocks<'_> {
         law.with(self.wanted, Ok(()), |law| self.at_edges_and_patches(law))
     }
 
-    /// Computes those of tetrahedra. `ALL` is true if the stress beside the law's may contribute, which is compiled for
-    /// plain numbers only.
+    /// Computes those of tetrahedra. `ALL` is true if stress in addition to the law's may contribute, which is compiled
+    /// for plain numbers only.
     #[inline(always)]
     fn tets<const ALL: bool, N: Number<Real = f64>, E: Evaluator<N> + ?Sized>(
         &mut self,
@@ -104,7 +104,7 @@ impl Blocks<'_> {
         Ok(())
     }
 
-    /// Adds what belongs to means, where they are taken.
+    /// Adds the contributions of means, if means are taken.
     fn at_edges_and_patches(
         &mut self,
         law: &mut (dyn Untyped + '_),
@@ -174,8 +174,8 @@ impl<L: HyperelasticLaw> WithReal<f64> for Sweep<'_, '_, L> {
     }
 }
 
-/// The own blocks of nodes, for each m^3, of a share of the local energy and of the dilational one; nothing without a share, as the stress of a patch
-/// alone has none.
+/// The own blocks of nodes, for each m^3, of a share of the local energy and of the dilational one; zero without a
+/// share, since the stress of a patch alone has no own block.
 #[inline(always)]
 fn own_block<N: Number, A: LawAt<N> + ?Sized>(
     at: &A,

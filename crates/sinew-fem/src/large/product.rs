@@ -34,7 +34,7 @@ pub(crate) struct Products<'a> {
 }
 
 impl Products<'_> {
-    /// True if plain numbers compute it: vectors take neither projections nor the stress beside the law's.
+    /// True if plain numbers compute it: vectors support neither projections nor the stress in addition to the law's.
     pub(super) fn take_numbers(&self, law: &dyn Asked) -> bool {
         let kind = self.wanted.kind();
         self.wanted.has_beside(self.region)
@@ -46,8 +46,8 @@ impl Products<'_> {
         law.with(self.wanted, Ok(()), |law| self.all::<true, f64, _>(law))
     }
 
-    /// Does the tasks. `ALL` is true if projections and the stress beside the law's may contribute: that
-    /// is compiled for plain numbers only, as it would double what there is to compile.
+    /// Does the tasks. `ALL` is true if projections and stress in addition to the law's may contribute. That is
+    /// compiled for plain numbers only, since it would double the code to compile.
     #[inline(always)]
     fn all<const ALL: bool, N: Number<Real = f64>, E: Evaluator<N> + ?Sized>(
         &mut self,
@@ -265,7 +265,7 @@ impl<L: HyperelasticLaw> WithReal<f64> for Sweep<'_, '_, L> {
     }
 }
 
-/// The remainder, after relaxation, of the energy of tetrahedra side by side that are averaged with no other.
+/// The remainder, after relaxation, of the energy of tetrahedra side by side without averages.
 #[inline(always)]
 pub(super) fn left_of_tets<N: Number<Real = f64>, A: LawAt<N> + ?Sized>(
     region: &HyperelasticRegion,
@@ -303,9 +303,9 @@ pub(super) fn left_of_smoothed<N: Number<Real = f64>, A: LawAt<N> + ?Sized>(
 /// The tangent of a share of the local energy, and of the dilational one.
 pub(super) struct OwnTangent<'a, N, A: ?Sized> {
     at: &'a A,
-    /// The tangent for each share, where there is one.
+    /// The tangent for each share, if there is one.
     linearised: Option<(N, Linearised<'a, N, A>)>,
-    /// First derivative of the dilational energy (Pa), where there is no share.
+    /// First derivative of the dilational energy (Pa), if there is no share.
     bulk_stress: N,
 }
 
@@ -404,7 +404,7 @@ impl<'a, N: Number<Real = f64>, A: LawAt<N> + ?Sized> EdgeTangent<'a, N, A> {
         self.with_carried(self.own.on(change), change)
     }
 
-    /// The changes of the stress by changes of F, in place of `stresses`, which are these changes.
+    /// Replaces `stresses`, which contains the changes of F, by the changes of the stress.
     pub(super) fn on_all(&self, changes: &[Tensor<N>], stresses: &mut [Tensor<N>]) {
         self.own.on_all(stresses);
         for (stress, change) in stresses.iter_mut().zip(changes) {

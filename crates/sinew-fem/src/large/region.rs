@@ -17,7 +17,7 @@ use crate::shares::Shares;
 use crate::smoothing::{Average, Sets, Smoothing};
 use crate::tissue::Tissue;
 
-/// A region of hyperelastic tetrahedra as its material states it, beside the law.
+/// The properties of a region of hyperelastic tetrahedra that its material states in addition to the law.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RegionLaw<'a> {
     /// Lame's second constant (Pa) of the stiffest tetrahedron.
@@ -29,39 +29,38 @@ pub(crate) struct RegionLaw<'a> {
     pub(crate) tissue: &'a Tissue,
     /// The stiffness of each tetrahedron of the mesh over that of the law.
     pub(crate) shares: &'a Shares,
-    /// The direction of each family of fibres in each tetrahedron of the mesh; `None` where all have that of the
-    /// tissue.
+    /// The direction of each family of fibres in each tetrahedron of the mesh; `None` if all have that of the tissue.
     pub(crate) directions: &'a [Option<UnitVectors>],
-    /// The material's axes, where its law has some.
+    /// The material's axes, if its law has some.
     pub(crate) axes: Option<&'a Axes>,
 }
 
 /// A region of hyperelastic tetrahedra, with its own numbering.
 #[derive(Clone, Debug)]
 pub(crate) struct HyperelasticRegion {
-    /// Factors of its energies; `None` where all tetrahedra are equally stiff.
+    /// Factors of its energies; `None` if all tetrahedra are equally stiff.
     stiffness: Option<Arc<Stiffness>>,
     /// Families of fibres.
     pub(super) fibres: Vec<RegionFibres>,
-    /// The material's axes, where its law has some.
+    /// The material's axes, if its law has some.
     pub(super) axes: Option<RegionAxes>,
     pub(super) memory: Option<RegionMemory>,
     pub(super) rest: Arc<Rest>,
     /// Place of its first tetrahedron among those of all such regions.
     pub(super) first: usize,
-    /// Its places among what is kept, for those of the regions that need it.
+    /// First places of the region in arrays over the regions that need them.
     pub(super) kept: FirstPlaces,
-    /// Its tetrahedra in the order in which they are worked on.
+    /// Its tetrahedra in the order in which they are processed.
     pub(super) chunks: Vec<Chunk>,
     /// Share of the local energy that is averaged over edges.
     pub(super) edge_share: f64,
-    /// The tetrahedra at each edge; none where `edge_share` is 0.
+    /// The tetrahedra at each edge; none if `edge_share` is 0.
     pub(super) edges: Sets,
     /// The volume (m^3) of the tetrahedra at each edge, then zeros to fill a vector.
     pub(super) edge_volumes: Arc<[f64]>,
     /// The six edges of each tetrahedron.
     pub(super) edges_of: Vec<[u32; 6]>,
-    /// The tetrahedra of each patch; none where the dilation of each tetrahedron is its own.
+    /// The tetrahedra of each patch; none if dilations are not averaged.
     pub(super) patches: Sets,
     /// The volume (m^3) of each patch.
     pub(super) patch_volumes: Arc<[f64]>,
@@ -75,7 +74,7 @@ pub(crate) struct HyperelasticRegion {
 }
 
 impl HyperelasticRegion {
-    /// The region of the tetrahedra at these places, whose sets are among those of the body.
+    /// The region of the tetrahedra at these places, with its sets from those of the body.
     pub(super) fn new(
         mesh: &TetMesh,
         smoothing: &Smoothing,
@@ -197,7 +196,7 @@ impl HyperelasticRegion {
         N::from_lanes(|lane| stiffness.of_patch(self.patch_of[first + lane] as usize))
     }
 
-    /// The first places behind those of this region.
+    /// The first places after those of this region.
     pub(super) fn next_places(&self) -> FirstPlaces {
         let tets = if self.is_smoothed() {
             self.rest.count()
@@ -233,8 +232,8 @@ impl HyperelasticRegion {
         })
     }
 
-    /// Squares (1/m^2) of the largest wave number of each tetrahedron, over the density: with a modulus (Pa), the square of a frequency
-    /// (1/s^2), where each node has a quarter of the mass. 0 for padding.
+    /// Squares (1/m^2) of the largest wave number of each tetrahedron, over the density: times a modulus (Pa), the
+    /// square of a frequency (1/s^2), each node having a quarter of the mass. 0 for padding.
     pub(super) fn wave_numbers(&self) -> &[f64] {
         self.wave_numbers.get_or_init(|| {
             let of_tet = |tet| {
@@ -250,18 +249,18 @@ impl HyperelasticRegion {
         })
     }
 
-    /// An edge by its place among vectors of edges: padding behind the last one repeats it.
+    /// An edge by its place among vectors of edges: padding after the last one repeats it.
     #[inline(always)]
     pub(super) fn edge_at(&self, place: usize) -> usize {
         place.min(self.edges.count().saturating_sub(1))
     }
 
-    /// True if loops need neither axes nor stress beside the law's.
+    /// True if loops need neither axes nor stress in addition to the law's.
     pub(super) fn is_plain(&self) -> bool {
         !self.has_beside() && self.axes.is_none()
     }
 
-    /// True if there is stress beside the law's: that of fibres, or the remainder of earlier stress.
+    /// True if there is stress in addition to the law's: that of fibres, or the remainder of earlier stress.
     pub(super) fn has_beside(&self) -> bool {
         !self.fibres.is_empty() || self.memory.is_some()
     }
@@ -291,7 +290,7 @@ impl HyperelasticRegion {
 /// Places of a region among those of all regions that need them.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct FirstPlaces {
-    /// Place of its first tetrahedron, where patches take means.
+    /// Place of its first tetrahedron, if patches take means.
     pub(super) tets: usize,
     /// Place of its first internal variable.
     pub(super) variables: usize,
@@ -305,11 +304,11 @@ pub(super) struct Numbers<T> {
     pub(super) edge_volumes: Arc<[T]>,
     /// The volume (m^3) of each patch.
     pub(super) patch_volumes: Arc<[T]>,
-    /// Factors of the law's energies; `None` where all tetrahedra are equally stiff.
+    /// Factors of the law's energies; `None` if all tetrahedra are equally stiff.
     pub(super) stiffness: Option<Arc<Stiffness<T>>>,
     /// The directions of each family of fibres.
     pub(super) directions: Vec<Directions<T>>,
-    /// The material's axes, where its law has some.
+    /// The material's axes, if its law has some.
     pub(super) axes: Option<RegionAxes<T>>,
 }
 
@@ -328,8 +327,9 @@ impl Numbers<f64> {
     }
 }
 
-/// Numbers edges by the chunk of the last tetrahedron of each, those of one chunk by how many tetrahedra they have: so they are completed in order, and loops over
-/// tetrahedra at edges are about as long for edges side by side. Returns how many there are.
+/// Numbers edges by the chunk of the last tetrahedron of each, those of one chunk by how many tetrahedra they have: so
+/// they are completed in order, and loops over tetrahedra at edges have similar lengths for edges side by side. Returns
+/// their number.
 fn order_edges(edges_of: &mut [[u32; 6]], slots: &[Slot], chunks: &[Chunk]) -> usize {
     let count = numbered_anew(edges_of.as_flattened_mut().iter_mut());
     let mut keys = vec![(0, 0); count];
@@ -357,7 +357,7 @@ fn order_edges(edges_of: &mut [[u32; 6]], slots: &[Slot], chunks: &[Chunk]) -> u
     count
 }
 
-/// Replaces numbers by 0, 1, .. in the order in which they first appear; returns how many there are.
+/// Replaces numbers by 0, 1, .. in the order in which they first appear; returns the number of different ones.
 fn numbered_anew<'a>(numbers: impl Iterator<Item = &'a mut u32>) -> usize {
     let mut known = std::collections::HashMap::new();
     for number in numbers {

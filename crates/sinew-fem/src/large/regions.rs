@@ -17,7 +17,7 @@ pub(super) struct Regions {
     /// The law of each.
     pub(super) laws: Vec<Arc<dyn Compiled>>,
     pub(super) gather: Gather,
-    /// Made for the first evaluation by one thread.
+    /// The order of work of one thread; made for the first evaluation by one thread.
     alone: OnceLock<Arc<Schedule>>,
 }
 
@@ -52,7 +52,7 @@ impl Regions {
 /// Does the tasks of a piece of a part with the law of its region, and returns their findings.
 ///
 /// # Safety
-/// The parts of a schedule of these regions are done pass by pass; other users of the places wait for the end.
+/// The parts of a schedule of these regions are done pass by pass; other users of the places wait until they are done.
 #[allow(unsafe_code, reason = "a kernel; ARCHITECTURE.md names it")]
 pub(super) unsafe fn make<T: Precision>(
     laws: &[Arc<dyn Compiled>],
@@ -67,7 +67,7 @@ pub(super) unsafe fn make<T: Precision>(
     }
 }
 
-/// Makes an evaluation, whose places nobody else uses meanwhile, by one thread.
+/// Makes an evaluation by one thread. No other code uses its places during the call.
 #[allow(unsafe_code, reason = "a kernel; ARCHITECTURE.md names it")]
 pub(super) fn evaluate_alone<T: Precision>(
     schedule: &Schedule,

@@ -1,4 +1,4 @@
-//! Tetrahedra at rest, as loops over deformed ones read them.
+//! Tetrahedra at rest, in the format for loops over deformed ones.
 
 #![allow(unsafe_code, reason = "a kernel; ARCHITECTURE.md names it")]
 
@@ -99,7 +99,7 @@ impl Rest {
         sum / volumes
     }
 
-    /// [`Rest::gradient_of`] for a function of the node, in one tetrahedron.
+    /// Same as [`Rest::gradient_of`], for a function of the node, in one tetrahedron.
     pub(super) fn gradient_by(&self, tet: usize, field: impl Fn(u32) -> [f64; 3]) -> Tensor<f64> {
         let [a, b, c, d] = self.nodes(tet).map(field);
         let edges = [b, c, d].map(|end| difference(end, a));
@@ -113,7 +113,7 @@ impl<T: Real> Rest<T> {
         self.tags.len()
     }
 
-    /// True if a place is taken by a tetrahedron, not by padding.
+    /// True if a place contains a tetrahedron, not padding.
     pub(super) fn is_taken(&self, tet: usize) -> bool {
         self.volume(tet) > T::default()
     }

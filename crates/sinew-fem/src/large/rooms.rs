@@ -21,7 +21,7 @@ pub(super) struct Rooms {
 /// Places of a region.
 #[derive(Clone, Debug, Default)]
 pub(super) struct RegionRooms {
-    /// The first gradient of each chunk; none where edges take no means.
+    /// The first gradient of each chunk; empty if edges take no means.
     pub(super) gradients: Vec<u32>,
     /// The first corner of each chunk.
     pub(super) corners: Vec<u32>,
@@ -29,16 +29,16 @@ pub(super) struct RegionRooms {
     pub(super) edges: Vec<u32>,
     /// Start of the gradients at each edge in `gradients_at`, and the end of the last, repeated to fill a vector.
     pub(super) starts_at: Vec<u32>,
-    /// The gradient of each tetrahedron at each edge, as the edges' sets have them.
+    /// The gradient of each tetrahedron at each edge, in the order of the edges' sets.
     pub(super) gradients_at: Vec<u32>,
     /// The six edges of each tetrahedron.
     pub(super) edges_of: Vec<[u32; 6]>,
 }
 
-/// Allocator of blocks of one size: a block that is given back is taken again, the last first.
+/// Allocator of blocks of one size: a released block is reused, the last one first.
 struct Blocks {
     size: usize,
-    /// Rows that were ever given.
+    /// Number of rows allocated in total.
     count: usize,
     free: Vec<u32>,
 }
@@ -66,7 +66,8 @@ impl Blocks {
 struct Freed(HashMap<usize, Vec<u32>>);
 
 impl Freed {
-    /// Notes that something is read at these times: it becomes free with the last, and never where one is in a later pass.
+    /// Records that a block is read at these times: it is released after the last one, and never if one is in a later
+    /// pass.
     fn after(&mut self, block: u32, reads: impl Iterator<Item = When>) {
         let mut last = None;
         for when in reads {
@@ -192,7 +193,7 @@ impl Rooms {
 }
 
 impl RegionRooms {
-    /// Finds what tasks read.
+    /// Finds the values that tasks read.
     fn find(&mut self, region: &HyperelasticRegion, all: &AllChunks) {
         let gradient = |tet: u32| {
             let (_, chunk) = all.chunks[all.of_place[region.first + tet as usize] as usize];
@@ -259,7 +260,7 @@ fn readers_of_corners(gather: &Gather, all: &AllChunks, nodes: &[When]) -> Vec<V
     readers
 }
 
-/// Notes a time, often the same as the one before.
+/// Records a time, which is often the same as the one before.
 fn note(readers: &mut Vec<When>, when: When) {
     if readers.last() != Some(&when) {
         readers.push(when);

@@ -31,13 +31,13 @@ pub(super) struct Piece {
 
 /// Passes that follow one another, each of parts that threads may do at the same time.
 ///
-/// Within a part edges, forces and sums at nodes follow the chunk that completes them, so that they find what they read in the second cache.
-/// What needs the chunks of two parts is left to later passes: the edges first, then the forces of chunks at such edges, then
-/// the nodes. So every task reads what its own part did before it, or any part in a pass before, and nobody writes what another
-/// part of the same pass reads.
+/// Within a part edges, forces and sums at nodes follow the chunk that completes them, so that their input is still in
+/// the second-level cache. Tasks that need the chunks of two parts are done in later passes: the edges first, then the
+/// forces of chunks at such edges, then the nodes. So every task reads only results of its own part or of an earlier
+/// pass, and no part writes values that another part of the same pass reads.
 ///
-/// Values that a part keeps from one task to another overwrite values that are no longer needed: so a small buffer is
-/// reused again and again, and stays in the second cache, instead of streaming through it to memory and back.
+/// Values that a part keeps from one task to another overwrite values that are no longer needed. So a small buffer is
+/// reused repeatedly and stays in the second-level cache, instead of being written to memory and read back.
 #[derive(Clone, Debug)]
 pub(crate) struct Schedule {
     passes: Vec<Vec<Vec<Piece>>>,
@@ -190,7 +190,7 @@ impl Task {
         }
     }
 
-    /// Makes this task one with the next, where they are neighbours.
+    /// Merges this task with the next if they are neighbours.
     fn takes(&mut self, next: &Self) -> bool {
         match (self, next) {
             (Self::Edges(own), Self::Edges(next)) | (Self::Nodes(own), Self::Nodes(next))

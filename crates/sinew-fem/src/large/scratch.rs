@@ -13,9 +13,9 @@ use crate::hyperelastic::Tensor;
 pub(crate) struct Scratch {
     /// Displacement (m) of all mesh nodes, and a number to fill a row.
     pub(crate) displacement: Aligned<[f64; 4]>,
-    /// Its change, for products.
+    /// Change of the displacement, for products.
     pub(crate) change: Vec<[f64; 4]>,
-    /// Their sums (N) at each node that has corners, in the order of [`super::gather::Gather`].
+    /// Sums of forces (N) at each node that has corners, in the order of [`super::gather::Gather`].
     pub(super) sums: Vec<[f64; 4]>,
     /// The evaluation that `sums` are of.
     pub(super) last: LastEvaluation,
@@ -23,7 +23,7 @@ pub(crate) struct Scratch {
     pub(super) kept: Kept<f64>,
     /// Values that products keep.
     pub(super) product: ProductRooms,
-    /// Gradient of the displacement in each tetrahedron of a region, where means are taken.
+    /// Gradient of the displacement in each tetrahedron of a region, if means are taken.
     pub(super) gradients: Vec<Rows<f64>>,
     /// Dilation of each tetrahedron times its volume (m^3).
     pub(super) dilations_of_tets: Vec<f64>,
@@ -31,10 +31,11 @@ pub(crate) struct Scratch {
     pub(super) dilations: Vec<f64>,
 }
 
-/// Values that the loops of products keep from one task to another, as [`Kept`] those of forces; empty until a product is made.
+/// Values that the loops of products keep from one task to another (those of forces are in [`Kept`]); empty until a
+/// product is made.
 #[derive(Debug, Default)]
 pub(super) struct ProductRooms {
-    /// Gradients of the displacement, and of its change, times volumes, where edges take means.
+    /// Gradients of the displacement, and of its change, times volumes, if edges take means.
     pub(super) gradients: [Vec<Rows<f64>>; 2],
     /// Changes of the stress (Pa) at edges.
     pub(super) at_edges: Vec<Rows<f64>>,
@@ -60,7 +61,7 @@ impl ProductRooms {
     }
 }
 
-/// The largest count of a region that takes means.
+/// The largest count over regions that take means.
 fn most(regions: &[HyperelasticRegion], count: impl Fn(&HyperelasticRegion) -> usize) -> usize {
     let smoothed = regions.iter().filter(|region| region.is_smoothed());
     smoothed.map(count).max().unwrap_or(0)
@@ -71,12 +72,13 @@ fn most(regions: &[HyperelasticRegion], count: impl Fn(&HyperelasticRegion) -> u
 pub(super) struct Kept<T> {
     /// The mean dilation of the patch of each tetrahedron.
     dilations: Shared<T>,
-    /// The gradients of the displacement in the tetrahedra of a chunk, vector by vector, then the stress (Pa) beside the law's; for each part.
+    /// The gradients of the displacement in the tetrahedra of a chunk, vector by vector, then the stress (Pa) in
+    /// addition to the law's; for each part.
     chunks: Shared<T>,
     /// Numbers for one part, and those of gradients among them.
     chunk: usize,
     gradients_of_chunk: usize,
-    /// Gradients of the displacement times volumes, by rows; where edges take means.
+    /// Gradients of the displacement times volumes, by rows; if edges take means.
     gradients: Shared<Rows<T>>,
     /// Stresses (Pa) at edges by rows.
     at_edges: Shared<Rows<T>>,
@@ -95,7 +97,7 @@ pub(super) struct Places<'a, T> {
     pub(super) chunks: SharedSlice<'a, T>,
     /// Numbers of `chunks` for one part.
     pub(super) chunk: usize,
-    /// Numbers for gradients among them, before those for the stress beside the law's.
+    /// Numbers for gradients among them, before those for the stress in addition to the law's.
     pub(super) gradients_of_chunk: usize,
     pub(super) gradients: SharedSlice<'a, Rows<T>>,
     pub(super) at_edges: SharedSlice<'a, Rows<T>>,
@@ -112,12 +114,12 @@ impl<T: Copy> Places<'_, T> {
 }
 
 impl<T: Real> Kept<T> {
-    /// Arrays for regions that are worked on in `parts` parts.
+    /// Arrays for regions that are processed in `parts` parts.
     pub(super) fn new(regions: &[HyperelasticRegion], rooms: &Rooms, parts: usize) -> Self {
         Self::filled(regions, rooms, parts, T::default())
     }
 
-    /// [`Kept::new`] with this number everywhere.
+    /// Same as [`Kept::new`], with this number everywhere.
     pub(super) fn filled(
         regions: &[HyperelasticRegion],
         rooms: &Rooms,
@@ -149,7 +151,7 @@ impl<T: Real> Kept<T> {
         }
     }
 
-    /// With displacements and sums of forces, all places of an evaluation.
+    /// All places of an evaluation, together with displacements and sums of forces.
     pub(super) fn places<'a>(
         &'a self,
         displacement: &'a [[T; 4]],
@@ -190,12 +192,12 @@ impl Scratch {
         }
     }
 
-    /// The gradient of the displacement in a tetrahedron of a region, where means are taken.
+    /// The gradient of the displacement in a tetrahedron of a region, if means are taken.
     pub(super) fn gradient(&self, tet: usize) -> Tensor<f64> {
         load(&self.gradients[tet..])
     }
 
-    /// The places of an evaluation in f64, which nobody else uses meanwhile.
+    /// The places of an evaluation in f64, which no other code uses during it.
     pub(super) fn places(&mut self) -> Places<'_, f64> {
         let sums = SharedSlice::of(&mut self.sums);
         self.kept.places(&self.displacement, sums)

@@ -6,20 +6,20 @@ use super::chunks::LANES;
 use super::rest::Rest;
 use crate::smoothing::Sets;
 
-/// Factors of the energies of a region's law. Fibres have moduli of their own, and the history variables are stresses,
-/// which have their factor already.
+/// Factors of the energies of a region's law. Fibres have their own moduli. The history variables are stresses, which
+/// contain the factor already.
 #[derive(Debug)]
 pub(super) struct Stiffness<T = f64> {
-    /// In each tetrahedron.
+    /// Factor of each tetrahedron.
     tets: Aligned<T>,
-    /// At each edge, then zeros to fill a vector.
+    /// Factor of each edge, then zeros to fill a vector.
     edges: Aligned<T>,
-    /// In each patch.
+    /// Factor of each patch.
     patches: Vec<T>,
 }
 
 impl Stiffness {
-    /// Factors by the stiffness of each tetrahedron; sets have the mean of theirs by volume.
+    /// Factors from the stiffness of each tetrahedron; the factor of a set is the mean by volume over its tetrahedra.
     pub(super) fn new(tets: &[f64], rest: &Rest, [edges, patches]: [&Sets; 2]) -> Self {
         let means = |sets: &Sets| -> Vec<f64> {
             let mean = |set| rest.mean(sets.of(set), |tet| tets[tet]);

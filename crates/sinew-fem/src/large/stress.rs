@@ -34,7 +34,7 @@ pub(crate) struct SharedStress {
 }
 
 impl SharedStress {
-    /// Without a value yet, for a region; `None` where its tetrahedra share nothing.
+    /// An instance without values for a region; `None` if its tetrahedra share nothing.
     pub(super) fn of(region: &HyperelasticRegion) -> Option<Self> {
         region.is_smoothed().then(|| Self {
             gradients: vec![None; region.rest.count()],
@@ -52,7 +52,7 @@ struct AtEdge {
 }
 
 impl Cauchy<'_> {
-    /// Computes it for the law of the region.
+    /// Computes the stress for the law of the region.
     pub(super) fn run(mut self, law: &dyn Asked) -> [f64; 6] {
         law.with(Wanted::Kind(TangentKind::Exact), [f64::NAN; 6], |law| {
             self.of(law)

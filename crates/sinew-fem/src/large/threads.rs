@@ -73,7 +73,8 @@ impl<T: Precision> SharedForces<T> {
     /// Computes a part of a pass with the displacement (m) of all mesh nodes.
     ///
     /// # Safety
-    /// Passes follow one another, each part of a pass is computed once, and nobody uses the sums meanwhile.
+    /// Passes follow one another, each part of a pass is computed once, and no other code uses the sums during the
+    /// call.
     pub(crate) unsafe fn make(
         &self,
         displacement: &[[T; 4]],
@@ -88,7 +89,7 @@ impl<T: Precision> SharedForces<T> {
         })
     }
 
-    /// Computes everything, so that what is refused does not depend on the parts.
+    /// Computes everything in one part, so that errors do not depend on the parts.
     pub(crate) fn make_alone(&mut self, displacement: &[[T; 4]]) -> Result<(), EvaluationError> {
         let alone = self.all.alone();
         let kept = Kept::new(&self.all.regions, alone.rooms(), 1);

@@ -6,22 +6,22 @@ use super::memory::{Past, Relaxing};
 use super::region::HyperelasticRegion;
 use crate::hyperelastic::{HyperelasticLaw, Viscous};
 
-/// A tangent, or the viscosity of stiffness damping, which is one of another law.
+/// A tangent, or the viscosity of stiffness damping, which is the tangent of another law.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Wanted {
     /// A tangent of a kind.
     Kind(TangentKind),
-    /// The exact tangent with fibres that are idle as if they were pulled, since they may be before the next check: it
+    /// The exact tangent with fibres in compression taken as pulled, since they may be pulled before the next check: it
     /// bounds a stable step.
     Stiffest,
-    /// Viscosity for a factor of 1 s; of stress that relaxes, as it is at once.
+    /// Viscosity for a factor of 1 s; for stress that relaxes with instantaneous moduli.
     Viscosity,
-    /// Viscosity with fibres that are idle as if they were pulled: it bounds a stable step.
+    /// Viscosity with fibres in compression taken as pulled: it bounds a stable step.
     MostViscous,
 }
 
 impl Wanted {
-    /// Viscosity is the exact tangent of its law.
+    /// The kind of tangent; for viscosity the exact tangent of its law.
     pub(super) fn kind(self) -> TangentKind {
         match self {
             Self::Kind(kind) => kind,
@@ -33,12 +33,12 @@ impl Wanted {
         matches!(self, Self::Viscosity | Self::MostViscous)
     }
 
-    /// True if idle fibres count as if they were pulled.
+    /// True if fibres in compression count as pulled.
     pub(super) fn idle_fibres_count(self) -> bool {
         matches!(self, Self::Stiffest | Self::MostViscous)
     }
 
-    /// The memory of a region in what is wanted.
+    /// The memory of a region for this tangent or viscosity.
     pub(super) fn relaxing<'a>(
         self,
         region: &'a HyperelasticRegion,
@@ -50,7 +50,7 @@ impl Wanted {
         }
     }
 
-    /// True if stress beside the law's contributes.
+    /// True if stress in addition to the law's contributes.
     pub(super) fn has_beside(self, region: &HyperelasticRegion) -> bool {
         match self.is_viscosity() {
             true => !region.fibres.is_empty(),
@@ -72,7 +72,7 @@ impl Wanted {
     }
 }
 
-/// Loops over a region that are written for any law.
+/// Loops over a region that are generic over the law.
 pub(super) trait OnLaw {
     type Output;
 

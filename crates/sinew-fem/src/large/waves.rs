@@ -16,9 +16,11 @@ use crate::hyperelastic::{Bulk, HyperelasticLaw, LawAt, Tensor};
 
 /// The square (1/s^2) of the largest frequency of plane waves as short as a tetrahedron, over all tetrahedra of a region.
 ///
-/// A wave along g that moves tissue along a has the modulus `a_i g_J A_iJkL a_k g_L`, A being the tangent of the tetrahedron's own deformation (Marsden and Hughes,
-/// Mathematical Foundations of Elasticity, 1983, section 3.4). Over all g it is at most the largest eigenvalue of `A_iJkJ`, which is one for isotropic laws but for the
-/// shear moduli. Elements that average strain have the frequency of their tetrahedra here: what counts is the growth since the body was at rest.
+/// A wave along g that moves tissue along a has the modulus `a_i g_J A_iJkL a_k g_L`, A being the tangent of the
+/// tetrahedron's own deformation (Marsden and Hughes, Mathematical Foundations of Elasticity, 1983, section 3.4). Over
+/// all g it is at most the largest eigenvalue of `A_iJkJ`, which for isotropic laws exceeds it only by shear moduli.
+/// Elements that average strain have the frequency of their tetrahedra here: only the growth since the body was at rest
+/// matters.
 pub(crate) struct Waves<'a> {
     pub(super) region: &'a HyperelasticRegion,
     pub(super) scratch: &'a Scratch,
@@ -31,7 +33,7 @@ pub(crate) struct Waves<'a> {
 }
 
 impl Waves<'_> {
-    /// True if plain numbers compute it: vectors do not take the stress beside the law's.
+    /// True if plain numbers compute it: vectors do not support the stress in addition to the law's.
     pub(super) fn take_numbers(&self) -> bool {
         Wanted::Stiffest.has_beside(self.region)
     }
@@ -43,7 +45,8 @@ impl Waves<'_> {
         })
     }
 
-    /// `ALL` is true if the stress beside the law's may contribute, which is compiled for plain numbers only.
+    /// Computes the square over all tetrahedra. `ALL` is true if stress in addition to the law's may contribute, which
+    /// is compiled for plain numbers only.
     #[inline(always)]
     fn tets<const ALL: bool, N: Number<Real = f64>, E: Evaluator<N> + ?Sized>(
         &mut self,
@@ -119,7 +122,8 @@ impl<L: HyperelasticLaw> WithReal<f64> for Sweep<'_, '_, L> {
     }
 }
 
-/// A bound of the largest eigenvalue of a symmetric tensor, by its first two invariants: exact where two eigenvalues, the smaller ones, are equal.
+/// An upper bound of the largest eigenvalue of a symmetric tensor, from its first two invariants: exact if the two
+/// smaller eigenvalues are equal.
 #[inline(always)]
 fn largest_eigenvalue<N: Number>(tensor: Tensor<N>) -> N {
     let mean = N::of(1.0 / 3.0) * tensor.trace();

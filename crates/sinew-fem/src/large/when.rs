@@ -7,14 +7,14 @@ use super::region::HyperelasticRegion;
 pub(super) struct When {
     pub(super) pass: usize,
     pub(super) part: usize,
-    /// The chunk, of all regions, with which all is there that the task reads.
+    /// The chunk, among those of all regions, after which all input of the task is available.
     pub(super) stage: usize,
 }
 
 /// The pass in which a part follows its chunks.
 pub(super) const FIRST: usize = 0;
 
-/// The chunks of all regions, one region behind the other.
+/// The chunks of all regions, one region after the other.
 pub(super) struct AllChunks {
     /// Region, and number in the region.
     pub(super) chunks: Vec<(usize, usize)>,
@@ -43,8 +43,8 @@ impl AllChunks {
         }
     }
 
-    /// The earliest time for a task that reads results computed at the times `needed`; in pass `otherwise` if they are
-    /// of two parts.
+    /// The earliest time for a task that reads results computed at the times `needed`; in pass `otherwise` if they
+    /// belong to two parts.
     pub(super) fn after(&self, needed: impl Iterator<Item = When>, otherwise: usize) -> When {
         let all = needed.reduce(|a, b| When {
             pass: if a.part == b.part {
@@ -66,7 +66,7 @@ impl AllChunks {
         when
     }
 
-    /// The time at which a tetrahedron's chunk is taken.
+    /// The time at which a tetrahedron's chunk is processed.
     pub(super) fn first(&self, place: usize) -> When {
         let stage = self.of_place[place] as usize;
         When {

@@ -1,4 +1,4 @@
-//! A state, carried to a model whose body was cut.
+//! The transfer of a state to a model whose body was cut.
 
 use sinew_core::{Acceleration, Inputs, LoadTime, State, System};
 use sinew_mesh::MovedNode;
@@ -9,26 +9,26 @@ use crate::Problem;
 use crate::by_tet::ByTet;
 use crate::error::FemError;
 
-/// The nodes of a body before and after a cut, by its own numbers.
+/// The nodes of a body before and after a cut, by the body's own numbers.
 #[derive(Clone, Copy, Debug)]
 pub struct NodesCarried<'a> {
     /// Number of nodes that the body had.
     pub nodes: usize,
-    /// The node of the body that each node of the mesh before is.
+    /// Node of the body for each node of the mesh before the cut.
     pub before: &'a [u32],
-    /// The nodes that were moved at rest, in this order.
+    /// The nodes that were moved at rest, in the order of the moves.
     pub moved: &'a [MovedNode],
-    /// The node that each new node is a copy of: the new ones follow the last one.
+    /// Original of each new node; the new nodes follow the last old one.
     pub copied: &'a [u32],
-    /// The node of the body that each node of the mesh after is.
+    /// Node of the body for each node of the mesh after the cut.
     pub after: &'a [u32],
 }
 
-/// A reason for which a state cannot be carried over a cut.
+/// A reason for which a state cannot be transferred over a cut.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CutStateError {
-    /// Memory of regions whose numbers are not in the order of tetrahedra alone.
+    /// Memory of regions whose history variables are not per tetrahedron alone.
     #[error(
         "tissue with memory (`prony`) can be cut where its element is p1, and none of its tetrahedra can be removed: otherwise its stored stresses would belong to other tetrahedra"
     )]
@@ -57,7 +57,7 @@ impl Model {
         (0..3).all(|axis| self.motions.courses(node, axis).is_empty())
     }
 
-    /// The density (kg/m^3) of each tetrahedron, by the problem that the model was made of.
+    /// The density (kg/m^3) of each tetrahedron, from the problem that the model was made of.
     pub(crate) fn densities(&self, problem: &Problem) -> Result<Vec<f64>, FemError> {
         let by_tet = ByTet::new(&self.mesh, problem, &self.region_of)?;
         let regions = self.region_of.iter().enumerate();
@@ -67,7 +67,7 @@ impl Model {
         Ok(regions.map(density).collect())
     }
 
-    /// The state of this model, whose body was cut, from that of the model `before`: copies of nodes get displacement
+    /// Transfers the state of the model `before` to this model, whose body was cut: copies of nodes get displacement
     /// and velocity of their originals, and moved nodes the mean at their new place.
     ///
     /// Neither a stored acceleration nor contact forces are transferred, since the forces on both sides of a cut and
@@ -112,7 +112,7 @@ impl Model {
         Ok(cut)
     }
 
-    /// A field at the nodes of the mesh before as a vector of this model.
+    /// A field at the nodes of the mesh before the cut, as a vector of this model.
     fn carried(
         &self,
         before: &[[f64; 3]],

@@ -9,10 +9,11 @@ use crate::large::{Past, Wanted, fill};
 
 impl Model {
     /// The power (W) that damping dissipates, `v'D(u) v` over all nodes, fixed and moved ones included, with their
-    /// displacements (m) and velocities (m/s); never below 0 but for rounding, and NaN outside a law's domain.
+    /// displacements (m) and velocities (m/s); never below 0 except for rounding, and NaN outside a law's domain.
     ///
-    /// With the displacement between two instants over its time as velocity, and the displacement half way, it is the
-    /// mean power of the damped strain: Green's strain changes by `sym(F'dF)` at the middle, exactly.
+    /// If the velocity is the change of displacement between two instants over the time between them, and the
+    /// displacement is that halfway, it is the mean power of the damped strain: Green's strain changes by `sym(F'dF)`
+    /// at the middle, exactly.
     ///
     /// # Errors
     /// [`FieldError::Length`] unless both have one entry for each node of the mesh.

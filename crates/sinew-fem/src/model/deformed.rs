@@ -1,4 +1,4 @@
-//! Tetrahedra as a motion deforms them.
+//! Tetrahedra deformed by a motion.
 
 use super::Model;
 use super::field_error::FieldError;
@@ -6,7 +6,7 @@ use crate::hyperelastic::{Deformation, Tensor, rotation};
 use crate::large::Past;
 use crate::{stress, tetra};
 
-/// A tetrahedron as a motion deforms it.
+/// A tetrahedron deformed by a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DeformedTet {
     /// The strain, see [`Model::strain`].
@@ -23,8 +23,8 @@ pub struct DeformedTet {
 }
 
 impl Model {
-    /// Each tetrahedron with this displacement (m) of the nodes of the mesh: all that a picture of the body takes, in
-    /// one pass.
+    /// Each tetrahedron with this displacement (m) of the nodes of the mesh: all data for a picture of the body, in one
+    /// pass.
     ///
     /// # Errors
     /// [`FieldError::Length`] unless `displacement` has one entry for each node of the mesh.
@@ -89,7 +89,7 @@ fn small_strain([[xx, xy, xz], [yx, yy, yz], [zx, zy, zz]]: &[[f64; 3]; 3]) -> [
     [*xx, *yy, *zz, shear[0], shear[1], shear[2]]
 }
 
-/// The angle (rad) of the rotation R in F = R S, by the gradient of the displacement.
+/// The angle (rad) of the rotation R in F = R S, from the gradient of the displacement.
 fn angle(displacement_gradient: &[[f64; 3]; 3]) -> f64 {
     let Deformation {
         gradient,

@@ -11,8 +11,9 @@ use crate::tetra;
 const ROUNDING: f64 = 1e-12;
 
 impl Model {
-    /// Bounds by single tetrahedra, which stay valid after any cut along their faces. Checks each tetrahedron. `None` if a
-    /// region is hyperelastic, so that its stiffness changes, or averages strain over tetrahedra that a cut separates.
+    /// Bounds from single tetrahedra, which stay valid after any cut along their faces. Checks each tetrahedron. `None`
+    /// if a region is hyperelastic, so that its stiffness changes, or averages strain over tetrahedra that a cut
+    /// separates.
     #[must_use]
     pub fn element_bounds(&self) -> Option<ElementBounds> {
         if self.large.is_some() || !self.body.smoothing.is_empty() {
@@ -46,8 +47,9 @@ impl Model {
         }
     }
 
-    /// The largest frequency (1/s) at which a tetrahedron (0-based) with these vertices (m) would swing its own mass, at small strain. Where
-    /// density differs within a region, the least one counts. Infinite if the vertices lie in one plane.
+    /// The largest frequency (1/s) at which a tetrahedron (0-based) with these vertices (m) would swing its own mass,
+    /// at small strain. If density differs within a region, the least one counts. Infinite if the vertices lie in one
+    /// plane.
     #[must_use]
     pub fn tet_frequency(&self, tet: usize, vertices: &[[f64; 3]; 4]) -> f64 {
         let region = self.region_of[tet] as usize;
@@ -76,7 +78,8 @@ pub(crate) struct TetFrequencies {
 }
 
 impl TetFrequencies {
-    /// The largest frequency (1/s) of a tetrahedron (0-based) with these vertices (m), as by [`Model::tet_frequency`].
+    /// The largest frequency (1/s) of a tetrahedron (0-based) with these vertices (m), same as
+    /// [`Model::tet_frequency`].
     pub(crate) fn of(&self, tet: usize, vertices: &[[f64; 3]; 4]) -> f64 {
         let region = self.region_of[tet] as usize;
         let frequency = self.materials[region].frequency(tet, vertices, self.densities[region]);
@@ -103,8 +106,8 @@ fn by_blocks(matrix: &[f64; 144]) -> Option<ElementMatrix> {
     Some(scaled)
 }
 
-/// True if no eigenvalue is larger than `bound`, but for rounding. It takes a small part of the time that eigenvalues
-/// take, and most tetrahedra of a mesh are no worse than the worst of those before.
+/// True if no eigenvalue is larger than `bound`, except for rounding. This takes a small part of the time of
+/// eigenvalues, and most tetrahedra of a mesh do not exceed the bound of those before.
 fn is_bounded(matrix: &ElementMatrix, bound: f64) -> bool {
     let room = bound * (1.0 + ROUNDING / 2.0);
     let rest = ElementMatrix::from_diagonal_element(room) - matrix;

@@ -122,10 +122,10 @@ impl Following {
         self.pressures.is_empty()
     }
 
-    /// Computes the forces.
+    /// Computes the forces of the pressures.
     ///
     /// # Safety
-    /// Nobody uses them meanwhile.
+    /// No other code uses them during the call.
     unsafe fn make(&self, displacement: impl Fn(u32) -> [f64; 3]) {
         let all = self.forces.slice();
         // SAFETY: the caller's promise.
@@ -191,7 +191,7 @@ impl<T: Precision> Sweep<T> {
     /// The displacement (m) of all mesh nodes.
     ///
     /// # Safety
-    /// Nobody writes it meanwhile.
+    /// No other code writes it during the call.
     unsafe fn displacement(&self) -> &[[T; 4]] {
         let all = self.displacement.slice();
         // SAFETY: the caller's promise.
@@ -204,7 +204,7 @@ impl<T: Precision + ElementPrecision> ElementSweep<T> for Sweep<T> {
         self.forces.as_ref().map_or(0, SharedForces::passes)
     }
 
-    /// In the first pass pressures are a part of their own.
+    /// Number of parts of a pass; in the first pass pressures are a separate part.
     fn parts(&self, pass: usize) -> usize {
         self.parts + usize::from(pass == 0 && !self.following.is_empty())
     }

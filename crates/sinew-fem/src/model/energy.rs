@@ -40,8 +40,8 @@ impl Model {
         Ok(linear + self.large_energy(displacement))
     }
 
-    /// The kinetic and elastic energy (J) of a motion at a time, as a balance of energy counts them: with moved
-    /// parts, fixed and moved nodes are included. `None` outside a law's domain.
+    /// The kinetic and elastic energy (J) of a motion at a time, for a balance of energy: with moved parts, fixed and
+    /// moved nodes are included. `None` outside a law's domain.
     pub(crate) fn energy_with_supports(
         &self,
         when: LoadTime<'_>,
@@ -65,8 +65,8 @@ impl Model {
     /// then, fixed components included, without those by which prescribed motions act on their neighbours.
     ///
     /// # Errors
-    /// [`FieldError::Length`] unless `displacement` and `out` have one entry for each node of the mesh, and [`FieldError::NoInput`] where a
-    /// load follows an input that the time does not bring.
+    /// [`FieldError::Length`] unless `displacement` and `out` have one entry for each node of the mesh, and
+    /// [`FieldError::NoInput`] if a load follows an input that the time does not contain.
     pub fn load_forces<'a>(
         &self,
         when: impl Into<LoadTime<'a>>,

@@ -34,7 +34,7 @@ pub enum FieldError {
         /// Tetrahedra of the mesh.
         tets: usize,
     },
-    /// A motion or load that follows an input which the time does not bring.
+    /// A motion or load that follows an input which the time does not contain.
     #[error(
         "the body follows input {channel}, which is not given: ask with `LoadTime::at(t).under(&inputs)`, with \
          the inputs of the step, not with a bare time"
@@ -63,7 +63,7 @@ pub(super) fn require_length(
     })
 }
 
-/// Refuses ramps that follow channels which the inputs do not have: such a channel is not at 0, but unknown.
+/// Refuses ramps that follow channels which the inputs do not have: the value of such a channel is unknown, not 0.
 pub(super) fn require_inputs<'a>(
     mut ramps: impl Iterator<Item = &'a Ramp>,
     inputs: &Inputs,

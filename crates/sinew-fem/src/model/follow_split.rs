@@ -1,4 +1,4 @@
-//! A model that follows splits of its body in its place.
+//! Updates of a model in place after splits of its body.
 
 use std::sync::Arc;
 
@@ -11,8 +11,9 @@ use crate::error::FemError;
 use crate::in_place::{InMotion, InPlace, ModelParts};
 
 impl Model {
-    /// True if splits can be followed: in linear bodies of plain tetrahedra whose supports rest. Springs, hyperelastic
-    /// regions, elements that average strain and prescribed motions are rebuilt.
+    /// True if the model can be updated in place after splits: for linear bodies of plain tetrahedra with resting
+    /// supports. Models with springs, hyperelastic regions, elements that average strain or prescribed motions are
+    /// rebuilt.
     pub(crate) fn can_follow_splits(&self) -> bool {
         let mut tets = self.region_of.iter().enumerate();
         self.large.is_none()
@@ -26,7 +27,7 @@ impl Model {
             })
     }
 
-    /// Reserves space for [`spare_nodes`], so that following splits allocates nothing until it is used up.
+    /// Reserves space for [`spare_nodes`], so that updates after splits allocate nothing until it is used up.
     pub(crate) fn make_room_for_splits(&mut self) {
         let spare = spare_nodes(self.mesh.points.len());
         Arc::make_mut(&mut self.mesh).reserve(spare);
@@ -45,7 +46,8 @@ impl Model {
         body.linear_pattern = Arc::clone(&body.pattern);
     }
 
-    /// Follows the last stroke of the body, after [`InPlace::look`]. Returns true if all rows were laid out again.
+    /// Updates the model after the last stroke of the body, after [`InPlace::look`]. Returns true if all rows were laid
+    /// out again.
     pub(crate) fn follow_split(
         &mut self,
         in_place: &mut InPlace,
@@ -93,8 +95,8 @@ impl Model {
         }
     }
 
-    /// Carries a state of the model before over the last stroke, as [`Model::state_after_cut`] does; the body had
-    /// `nodes_before` nodes before.
+    /// Transfers a state of the model before the last stroke to this one, as [`Model::state_after_cut`] does; the body
+    /// had `nodes_before` nodes before.
     pub(crate) fn carry_over_split(&self, state: &mut State, stroke: &Stroke, nodes_before: usize) {
         self.carry_values(&mut state.u, stroke, nodes_before);
         self.carry_values(&mut state.v, stroke, nodes_before);

@@ -1,4 +1,4 @@
-//! The traits by which integrators see a model with hyperelastic regions.
+//! The traits through which integrators use a model with hyperelastic regions.
 
 use std::sync::Arc;
 
@@ -15,7 +15,7 @@ use crate::hyperelastic::{Deformation, SingularValues};
 use crate::large::{LargeDeformation, Past, Scratch, Wanted, fill};
 use crate::motion::Field;
 
-/// A hyperelastic body at a trial point. Evaluations of models without such regions leave everything to the matrices.
+/// A hyperelastic body at a trial point. Models without such regions are evaluated by the matrices alone.
 impl Model {
     /// Calls `with` with the hyperelastic regions and the displacement of all nodes at a trial point; does nothing
     /// without such regions.
@@ -226,7 +226,7 @@ impl ForceLaw for Model {
         Some(self)
     }
 
-    /// Without stiffness damping, which takes a tangent, and memory.
+    /// The element forces; `None` with stiffness damping, which needs a tangent, and with memory.
     fn element_forces(&self) -> Option<&dyn ElementForces> {
         // What a machine of its own holds has no memory.
         let is_sum = self.operators.damping().stiffness == 0.0
@@ -252,7 +252,7 @@ impl ForceLaw for Model {
         hash.value()
     }
 
-    /// From the tangent at the state, or at rest.
+    /// The spectrum of the tangent at the state, or at rest.
     fn spectrum(&self, about: Option<&State>) -> Option<Spectrum> {
         let rest;
         let (when, u) = match about {
@@ -433,7 +433,7 @@ impl ElasticLaw for Model {
         !self.motions.is_empty()
     }
 
-    /// Without the motion of supports of linear regions, which is among the loads.
+    /// The viscous force, without the motion of supports of linear regions, which is among the loads.
     fn viscous_force(
         &self,
         trial: &Trial<'_>,

@@ -26,8 +26,8 @@ impl Model {
         Ok(out)
     }
 
-    /// [`Model::forces`] written over the content of `out`, which allocates nothing once `out` has the capacity, unless
-    /// many forces come in another order than that of their nodes.
+    /// Writes the result of [`Model::forces`] over the content of `out`. Allocates nothing once `out` has the capacity,
+    /// unless many forces are not in the order of their nodes.
     ///
     /// # Errors
     /// Same as [`Model::forces`]; `out` is unchanged then.

@@ -6,10 +6,12 @@ use sinew_mesh::TetMesh;
 
 use crate::cells::Cells;
 
-/// Share of the largest resistance of supports below which a motion counts as free: nodes that are on a line to rounding let a part turn about it.
+/// Share of the largest resistance of supports below which a motion counts as free: nodes on a line, up to rounding,
+/// let a part turn about it.
 const FREE: f64 = 1e-13;
 
-/// The parts of a mesh, joined by nodes that tetrahedra share, that its supports leave a rigid motion, by their lowest nodes.
+/// The connected parts of a mesh for which the supports leave a rigid motion, in the order of their lowest nodes.
+/// Tetrahedra that share a node are connected.
 pub(super) fn of(mesh: &TetMesh, cells: &Cells) -> Vec<FreePart> {
     let roots = roots(mesh);
     let mut used = vec![false; roots.len()];
@@ -26,7 +28,7 @@ pub(super) fn of(mesh: &TetMesh, cells: &Cells) -> Vec<FreePart> {
         .collect()
 }
 
-/// The lowest node that each one is connected with.
+/// The lowest node that each node is connected with.
 fn roots(mesh: &TetMesh) -> Vec<u32> {
     fn root(parents: &mut [u32], mut node: u32) -> u32 {
         while parents[node as usize] != node {

@@ -52,10 +52,10 @@ use crate::report::{ModelReport, MoveFacts};
 use crate::supports::Supports;
 use crate::{Element, Problem, check, volumes};
 
-/// A model of a body: M, D, K over its moving nodes, loads, and the geometry behind them.
+/// A model of a body: M, D, K over its moving nodes, loads, and the geometry.
 ///
-/// With hyperelastic regions it is a force law ([`sinew_core::ForceLaw`], [`sinew_core::ElasticLaw`]): K is that of the other regions then,
-/// and the hyperelastic ones are evaluated element by element.
+/// With hyperelastic regions it is a force law ([`sinew_core::ForceLaw`], [`sinew_core::ElasticLaw`]): K is then that
+/// of the other regions, and the hyperelastic ones are evaluated element by element.
 #[derive(Clone, Debug)]
 pub struct Model {
     mesh: Arc<TetMesh>,
@@ -69,7 +69,7 @@ pub struct Model {
     /// Lumped mass of each node (kg).
     masses: Vec<f64>,
     supports: Supports,
-    /// Pressures that follow the surface, which the operators have as on the surface at rest.
+    /// Pressures that follow the surface; the operators contain their forces on the surface at rest.
     following: Arc<[FollowingPressure]>,
     motions: Motions,
     /// Source of each load of the operators.
@@ -83,7 +83,7 @@ pub struct Model {
 pub(crate) type Frozen<'a> = &'a [(u32, [f64; 3])];
 
 impl Model {
-    /// Assembles a problem on a mesh, of which the model has a copy. [`Model::build_on`] needs none.
+    /// Assembles a problem on a mesh, of which the model keeps a copy. [`Model::build_on`] needs no copy.
     ///
     /// # Errors
     /// [`FemError`] with the part of the problem at fault.
@@ -92,8 +92,7 @@ impl Model {
     }
 
     /// Assembles the problem of a body that was cut. `frozen` nodes, increasing, which the problem fixes, get these
-    /// constant displacements (m). A load on supports alone is no error then: the rest of its nodes were removed or
-    /// frozen.
+    /// constant displacements (m). A load on supports alone is then no error: its other nodes were removed or frozen.
     pub(crate) fn build_after_cuts(
         mesh: &TetMesh,
         problem: &Problem,
@@ -102,7 +101,8 @@ impl Model {
         Self::build_keeping(mesh, problem, Some(frozen), || Arc::new(mesh.clone()))
     }
 
-    /// Assembles a problem on a mesh that the model shares with its owner, to the same result as [`Model::build`].
+    /// Assembles a problem on a mesh that the model shares with its owner; the result is the same as that of
+    /// [`Model::build`].
     ///
     /// # Errors
     /// Same as [`Model::build`].
@@ -125,9 +125,9 @@ impl Model {
     }
 
     /// Assembles another problem on the mesh of this model in which the same components are free, for sweeps over
-    /// materials, damping, loads and prescribed motions. The two models share the mesh and, where strain is averaged
-    /// over the same tetrahedra, the pattern of the matrices, so that an analysis of the pattern serves both. The
-    /// result is that of [`Model::build`] to the last bit.
+    /// materials, damping, loads and prescribed motions. The two models share the mesh and, if strain is averaged over
+    /// the same tetrahedra, the pattern of the matrices, so that one analysis of the pattern serves both. The result is
+    /// that of [`Model::build`] to the last bit.
     ///
     /// # Errors
     /// Same as [`Model::build`], and [`Cause::OtherSupports`] if the problem fixes or moves other components.
@@ -160,7 +160,7 @@ impl Model {
         }
     }
 
-    /// True if a problem couples nodes as this model does: linear regions by matrices, others without, averages over
+    /// True if a problem couples nodes as this model does: linear regions with matrices, others without, averages over
     /// the same sets of tetrahedra.
     fn couples_as(&self, problem: &Problem, region_of: &[u32]) -> bool {
         let kind = |(is_large, element): (bool, Element)| {
@@ -183,8 +183,9 @@ impl Model {
             || self.region_of == region_of && own().map(kind).eq(wanted().map(kind))
     }
 
-    /// Assembles the materials and loads of a problem, whose numbers were checked, with the frozen nodes of a body that was cut. `kept` gives the mesh that the model is
-    /// to have; a copy is made at the end, when all that only building needs is gone.
+    /// Assembles the materials and loads of a problem, whose numbers were checked, with the frozen nodes of a body that
+    /// was cut. `kept` gives the mesh that the model keeps; a copy is made at the end, after all data that only the
+    /// assembly needs is freed.
     fn on_body(
         mesh: &TetMesh,
         graph: Graph<'_>,
@@ -258,7 +259,7 @@ impl Model {
         resting.in_motion()
     }
 
-    /// The same, touched from outside.
+    /// The same model with contact.
     #[must_use]
     pub fn with_contact(self, contact: Arc<dyn Contact>) -> Self {
         Self {

@@ -9,9 +9,9 @@ use crate::motion::Field;
 use crate::{Course, SupportMotion};
 
 impl Model {
-    /// This model with the loads of its prescribed motions: for each course `d r(t)` the loads `-K_fp d r(t)`, by the
-    /// position at the instant, and `-D_fp d r'(t)`. Mass damping acts on the velocity of the moved nodes alone, so
-    /// it is part of their reactions only.
+    /// This model with the loads of its prescribed motions: for each course `d r(t)` the loads `-K_fp d r(t)`, from the
+    /// position at the instant, and `-D_fp d r'(t)`. Mass damping acts on the velocity of the moved nodes alone, so it
+    /// is part of their reactions only.
     pub(super) fn in_motion(mut self) -> Result<Self, FemError> {
         if self.motions.is_empty() {
             return Ok(self);
@@ -46,8 +46,8 @@ impl Model {
         Ok(self)
     }
 
-    /// The courses of a component (0, 1, 2 for x, y, z) of a mesh node (0-based) that is moved, or a constant one where
-    /// it was frozen; empty if the component is fixed at rest or free.
+    /// The courses of a component (0, 1, 2 for x, y, z) of a mesh node (0-based) that is moved, or a constant one if it
+    /// was frozen; empty if the component is fixed at rest or free.
     #[must_use]
     pub fn courses(&self, node: u32, axis: usize) -> &[Course] {
         self.motions.courses(node, axis)
@@ -58,7 +58,7 @@ impl Model {
     ///
     /// # Errors
     /// Same as [`Model::to_nodes`], and [`FieldError::NoInput`] if a motion follows an input that the time does not
-    /// bring.
+    /// contain.
     pub fn displacements_at<'a>(
         &self,
         when: impl Into<LoadTime<'a>>,
@@ -133,8 +133,8 @@ impl Model {
         ))
     }
 
-    /// A function that gives the velocity (m/s) of each mesh node (0-based) at a time (s), with the velocity `v` (m/s) of
-    /// the degrees of freedom then: for a few nodes of many.
+    /// A function that gives the velocity (m/s) of each mesh node (0-based) at a time (s), with the velocity `v` (m/s)
+    /// of the degrees of freedom then: for use at a few nodes of a large mesh.
     ///
     /// # Errors
     /// Same as [`Model::displacements_at`].
@@ -177,7 +177,7 @@ impl Model {
         })
     }
 
-    /// Adds the displacements (m) of all nodes of the mesh to places (m), of which each node has the one of this number; as
+    /// Adds the displacements (m) of all nodes of the mesh to places (m), one for each node; as
     /// [`Model::displacements_at`].
     pub(crate) fn displace(
         &self,

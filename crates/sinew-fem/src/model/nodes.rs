@@ -1,4 +1,4 @@
-//! Fields over nodes and vectors over degrees of freedom, turned into each other.
+//! Conversions between fields over nodes and vectors over degrees of freedom.
 
 use super::Model;
 use super::field_error::{FieldError, require_length};

@@ -8,11 +8,11 @@ use super::Model;
 use crate::error::{FemError, Item};
 
 impl Model {
-    /// This model, its matrices shared, with other factors over time for its loads and gravity: the result of `ramp`
-    /// for each; `None` leaves it unchanged. Prescribed motions are unchanged.
+    /// This model, with shared matrices, but with other factors over time for its loads and gravity: the result of
+    /// `ramp` for each; `None` leaves it unchanged. Prescribed motions are unchanged.
     ///
     /// # Errors
-    /// [`FemError`] for a ramp with an impossible parameter.
+    /// [`FemError`] for a ramp with a parameter outside its range.
     pub fn with_ramps(&self, ramp: impl Fn(Item) -> Option<Ramp>) -> Result<Self, FemError> {
         let other = |item: Item, own: &Ramp| match item {
             Item::Load(_) | Item::Gravity => ramp(item).unwrap_or_else(|| own.clone()),

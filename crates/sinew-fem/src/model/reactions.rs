@@ -26,20 +26,21 @@ impl Model {
     /// (m) and velocity `v` (m/s) at that time (see [`sinew_core::State::velocity_at_t`]); zero in free components. For
     /// a state of a run with stiffness damping see [`Model::reactions_in`].
     ///
-    /// At each fixed or moved component p it is `M_p (a_p + alpha v_p) + (K u + D v)_p - F_p(t)`: the force
-    /// of its prescribed motion, the pull of all other components, less the model's own loads on p, so that all
-    /// reactions together are minus all loads if nothing moves. A change of speed at an instant, as at a row of a
-    /// table, takes an impulse, which is a force over some time only: [`LoadTime::around`] names the time, two steps of a
-    /// run or the distances to the rows before and after, over which `a_p` is then a mean. Loads that were given to the
-    /// system in other ways are not included; add those of [`NodalForces::dropped`](super::NodalForces) to the result.
+    /// At each fixed or moved component p it is `M_p (a_p + alpha v_p) + (K u + D v)_p - F_p(t)`: the force of its
+    /// prescribed motion, the pull of all other components, less the model's own loads on p, so that all reactions
+    /// together are minus all loads if nothing moves. A change of velocity at an instant, as at a row of a table, needs
+    /// an impulse, which is a force only with respect to a time interval: [`LoadTime::around`] gives this interval, two
+    /// steps of a run or the distances to the rows before and after. `a_p` is then the mean over it. Loads that were
+    /// given to the system in other ways are not included; add those of [`NodalForces::dropped`](super::NodalForces) to
+    /// the result.
     ///
-    /// The first call sums up the rows of the fixed nodes; later ones allocate nothing but a few numbers for each
-    /// prescribed motion beyond the eighth, and with hyperelastic regions one vector over the nodes.
+    /// The first call sums up the rows of the fixed nodes; later ones allocate only a few numbers for each prescribed
+    /// motion beyond the eighth, and with hyperelastic regions one vector over the nodes.
     ///
     /// # Errors
-    /// [`FieldError::Length`] unless `u` and `v` have one entry for each degree of freedom and `out` one
-    /// for each node of the mesh, and [`FieldError::NoInput`] if a motion, or a load on fixed components, follows
-    /// an input that the time does not bring.
+    /// [`FieldError::Length`] unless `u` and `v` have one entry for each degree of freedom and `out` one for each node
+    /// of the mesh, and [`FieldError::NoInput`] if a motion, or a load on fixed components, follows an input that the
+    /// time does not contain.
     pub fn reactions<'a>(
         &self,
         when: impl Into<LoadTime<'a>>,
@@ -94,8 +95,8 @@ impl Model {
     }
 
     /// The force (N) of the supports on the body at all nodes of a part of the mesh together, see [`Model::reactions`].
-    /// Nodes that are neither fixed nor moved add nothing. Searches the nodes on each call: for every frame, use
-    /// [`On::nodes`] once and then [`Model::reaction_of_nodes`].
+    /// Nodes that are neither fixed nor moved add nothing. Searches the nodes on each call: for calls in every frame,
+    /// use [`On::nodes`] once and then [`Model::reaction_of_nodes`].
     ///
     /// # Errors
     /// Same as [`Model::reactions`], and [`FieldError::Place`] if the mesh has no such part.
@@ -147,8 +148,8 @@ impl Model {
     /// other damping. Motions that the problem prescribes are those of [`Model::reactions`].
     ///
     /// # Errors
-    /// [`FieldError::Length`] unless all have one entry for each node of the mesh, and [`FieldError::NoInput`] where
-    /// a load on fixed components follows an input that the time does not bring.
+    /// [`FieldError::Length`] unless all have one entry for each node of the mesh, and [`FieldError::NoInput`] if a
+    /// load on fixed components follows an input that the time does not contain.
     pub fn moving_reactions<'a>(
         &self,
         when: impl Into<LoadTime<'a>>,
@@ -181,7 +182,7 @@ impl Model {
         require_inputs(ramps, when.inputs())
     }
 
-    /// Forces of `row_forces`, with the prescribed motion.
+    /// The result of `row_forces` with the prescribed motion.
     fn forces_in_motion<'a>(
         &'a self,
         (when, past): (LoadTime<'a>, Past<'a>),
@@ -204,8 +205,8 @@ impl Model {
         self.supports.border(self.parts(), self.held_nodes())
     }
 
-    /// M (a + alpha v) + K u + D v (N) at a fixed node, D being the damping other than alpha M, with the displacement
-    /// at which it acts; less the forces of follower pressures beyond those on the surface at rest.
+    /// M (a + alpha v) + K u + D v (N) at a fixed node, D being the damping other than alpha M, evaluated at its
+    /// displacement; less the forces of follower pressures beyond those on the surface at rest.
     fn row_forces(
         &self,
         at: (LoadTime<'_>, Past<'_>),
@@ -296,7 +297,8 @@ impl Model {
     }
 }
 
-/// A motion by which damping acts: displacement (m) and velocity (m/s) of the degrees of freedom, and the time for which supports have theirs.
+/// The motion that determines damping: displacement (m) and velocity (m/s) of the degrees of freedom, and the time of
+/// the supports' velocity.
 struct Damped<'a> {
     when: LoadTime<'a>,
     u: &'a [f64],

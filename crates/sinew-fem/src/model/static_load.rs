@@ -5,8 +5,8 @@ use sinew_core::{BlockMatrix, EvaluationError, LoadTime, StaticLoad};
 use super::Model;
 use crate::following::{FollowingPressure, Part};
 
-/// Some loads of a model at their full value, whatever their ramps, with follower pressures as such. Supports are at
-/// their places at t = 0.
+/// Some loads of a model at their full value, independent of their ramps; follower pressures follow the surface.
+/// Supports are at their positions at t = 0.
 #[derive(Clone, Debug)]
 pub struct ModelLoads<'m> {
     model: &'m Model,

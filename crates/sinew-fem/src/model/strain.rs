@@ -12,15 +12,15 @@ use crate::springs::Spring;
 use crate::{stress, tetra};
 
 impl Model {
-    /// Writes the strain of each tetrahedron at a time (s), with the displacement `u` (m) of the
-    /// degrees of freedom then: Green's, `(F'F - I)/2`, in hyperelastic regions and the small strain elsewhere.
-    /// xx, yy, zz, xy, yz, zx, the shear entries being the tensor's, half of the engineering shear
-    /// (see [`crate::stress`]). Prescribed motions are taken at the time, and nothing else depends on
-    /// it. Allocates nothing but a few numbers for each prescribed motion beyond the eighth.
+    /// Writes the strain of each tetrahedron at a time (s), with the displacement `u` (m) of the degrees of freedom
+    /// then: Green's, `(F'F - I)/2`, in hyperelastic regions and the small strain elsewhere. xx, yy, zz, xy, yz, zx,
+    /// the shear entries being the tensor's, half of the engineering shear (see [`crate::stress`]). Prescribed motions
+    /// are taken at the time; nothing else depends on it. Allocates only a few numbers for each prescribed motion
+    /// beyond the eighth.
     ///
     /// # Errors
-    /// [`FieldError::Length`] unless `u` has one entry for each degree of freedom and `out` one for each
-    /// tetrahedron, and [`FieldError::NoInput`] if a motion follows an input that the time does not bring.
+    /// [`FieldError::Length`] unless `u` has one entry for each degree of freedom and `out` one for each tetrahedron,
+    /// and [`FieldError::NoInput`] if a motion follows an input that the time does not contain.
     pub fn strain<'a>(
         &self,
         when: impl Into<LoadTime<'a>>,
@@ -37,16 +37,16 @@ impl Model {
     }
 
     /// Writes the stress (Pa) of each tetrahedron at a time (s), in the order of [`Model::strain`]: that of the elastic
-    /// law alone, without damping; Cauchy's in hyperelastic regions. Where regions average strain ([`crate::Element`])
-    /// it follows from the averages, and memory is allocated for them; otherwise nothing is.
+    /// law alone, without damping; Cauchy's in hyperelastic regions. If regions average strain ([`crate::Element`]),
+    /// the stress follows from the averages, for which memory is allocated; otherwise nothing is allocated.
     ///
-    /// The stress of plain tetrahedra is most accurate averaged over neighbours; in nearly
-    /// incompressible materials the pressure of a single one means little.
+    /// The stress of plain tetrahedra is most accurate averaged over neighbours; in nearly incompressible materials the
+    /// pressure of a single tetrahedron is not accurate.
     ///
     /// # Errors
-    /// Same as [`Model::strain`], and [`FieldError::NoStress`] with the first region of springs if there is
-    /// one: springs have forces along edges (see [`Model::springs`]) and no stress. Where only some
-    /// regions are springs, ask for single tetrahedra. The content of `out` after an error is unspecified.
+    /// Same as [`Model::strain`], and [`FieldError::NoStress`] with the first region of springs if there is one:
+    /// springs have forces along edges (see [`Model::springs`]) and no stress. If only some regions are springs, use
+    /// [`Model::tet_stress`] for single tetrahedra. The content of `out` after an error is unspecified.
     pub fn stress<'a>(
         &self,
         when: impl Into<LoadTime<'a>>,
@@ -150,7 +150,7 @@ impl Model {
         self.large.as_ref()?.stress(tet, past, displacement, shared)
     }
 
-    /// Space for what the stresses of all tetrahedra share at one displacement.
+    /// Buffer for values that the stresses of all tetrahedra share at one displacement.
     pub(super) fn shared_stresses(&self) -> Option<SharedStresses> {
         self.large.as_ref().map(|large| large.shared_stresses())
     }
@@ -161,7 +161,8 @@ impl Model {
         stress.ok_or(FieldError::NoStress { region })
     }
 
-    /// The mean strains of the sets over which regions average, with the strain of each tetrahedron; none where no law takes strains.
+    /// The mean strains of the sets over which regions average, with the strain of each tetrahedron; empty if no law
+    /// uses strains.
     pub(super) fn mean_strains(&self, strain: impl Fn(usize) -> [f64; 6]) -> MeanStrains {
         if self.materials.iter().all(Material::is_hyperelastic) {
             return MeanStrains::default();

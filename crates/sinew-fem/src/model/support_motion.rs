@@ -5,8 +5,7 @@ use std::collections::BTreeMap;
 use super::Model;
 use crate::vector_error::SupportMotionError;
 
-/// The forces of supports in motion on the degrees of freedom that move, by
-/// [`Model::support_motion`].
+/// The forces of supports in motion on the degrees of freedom that move: the result of [`Model::support_motion`].
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SupportMotion {
     /// K_fp d: (degree of freedom, N), each once, increasing.
@@ -16,10 +15,10 @@ pub struct SupportMotion {
 }
 
 impl Model {
-    /// The products `K_fp d` and `D_fp d` over the degrees of freedom f that move, for a displacement `d`
-    /// (m) of fixed components p (of 0-based nodes). With the supports at `r(t) d` the equation of motion
-    /// gains the loads `-r(t) K_fp d` and `-r'(t) D_fp d`, which a problem's prescribed motions have already.
-    /// Displacements of one node add up.
+    /// The products `K_fp d` and `D_fp d` over the degrees of freedom f that move, for a displacement `d` (m) of fixed
+    /// components p (of 0-based nodes). With the supports at `r(t) d` the equation of motion gains the loads `-r(t)
+    /// K_fp d` and `-r'(t) D_fp d`, which the loads of a problem's prescribed motions already contain. Displacements of
+    /// one node add up.
     ///
     /// # Errors
     /// [`SupportMotionError`] for a node that does not exist, and for a component of `d` that is not

@@ -1,4 +1,4 @@
-//! The traits by which integrators see a model.
+//! The traits through which integrators use a model.
 
 use sinew_core::{
     Contact, ElementStiffness, Elements, Energy, Equations, EvaluationError, FreePart, Inputs,
@@ -41,7 +41,7 @@ impl System for Model {
         self.large.as_ref().map_or(0, |large| large.variables())
     }
 
-    /// Brings memory up to date.
+    /// Updates the history variables.
     fn accept(&self, state: &mut State, inputs: &Inputs, dt: f64) -> Result<(), EvaluationError> {
         let Some(large) = self.large.as_ref().filter(|large| large.variables() > 0) else {
             return Ok(());
@@ -154,8 +154,9 @@ impl Model {
         Some(tets.map(move |tet| tetra::signed_volume(&tet.map(&moved))))
     }
 
-    /// The square (1/s^2) of the largest frequency at which each tetrahedron would swing the masses of its nodes: alone, or with those
-    /// over which its strain is averaged. At small strain, and never above that of the body.
+    /// The square (1/s^2) of the largest frequency at which each tetrahedron would swing the masses of its nodes:
+    /// alone, or together with the tetrahedra over which its strain is averaged. It is that of small strain, and never
+    /// above that of the body.
     #[must_use]
     pub fn tet_omegas_squared(&self) -> Vec<f64> {
         let omegas = element_omegas_squared(self, self.mass());
@@ -171,7 +172,7 @@ impl Model {
     }
 }
 
-/// The parts of K; those of hyperelastic regions are at small strain, and in no matrix of the model.
+/// The parts of K; those of hyperelastic regions are at small strain, and not part of any matrix of the model.
 impl Elements for Model {
     fn count(&self) -> usize {
         self.parts().count()

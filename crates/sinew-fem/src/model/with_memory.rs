@@ -16,7 +16,7 @@ pub struct WithMemory<'m> {
 }
 
 impl Model {
-    /// The model with the internal variables of a state, whose displacement is that which is asked about.
+    /// The model with the internal variables of a state. The displacement in later calls must be that of the state.
     #[must_use]
     pub fn with_memory<'m>(&'m self, internal: &'m [f64]) -> WithMemory<'m> {
         WithMemory {
@@ -27,7 +27,7 @@ impl Model {
 }
 
 impl WithMemory<'_> {
-    /// [`Model::stress`].
+    /// Same as [`Model::stress`], in this state.
     ///
     /// # Errors
     /// Same as there.
@@ -40,7 +40,7 @@ impl WithMemory<'_> {
         self.model.stress_after(self.past, when.into(), u, out)
     }
 
-    /// [`Model::tet_stress`].
+    /// Same as [`Model::tet_stress`], in this state.
     ///
     /// # Errors
     /// Same as there.
@@ -53,7 +53,7 @@ impl WithMemory<'_> {
         self.model.tet_stress_after(self.past, when.into(), u, tet)
     }
 
-    /// [`Model::deformed_tets`].
+    /// Same as [`Model::deformed_tets`], in this state.
     ///
     /// # Errors
     /// Same as there.
@@ -64,7 +64,7 @@ impl WithMemory<'_> {
         self.model.deformed_tets_after(self.past, displacement)
     }
 
-    /// [`Model::moving_reactions`].
+    /// Same as [`Model::moving_reactions`], in this state.
     ///
     /// # Errors
     /// Same as there.

@@ -6,7 +6,7 @@ use crate::tetra::EDGES;
 /// The edges of regions that average over them.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Edges {
-    /// The tetrahedra of one region at each edge; an edge between two regions is there twice.
+    /// The tetrahedra of one region at each edge; an edge between two regions occurs twice.
     pub(crate) tets: Sets,
     /// The two nodes of each, the smaller first.
     pub(crate) nodes: Vec<[u32; 2]>,

@@ -17,7 +17,8 @@ use sinew_mesh::TetMesh;
 use crate::Element;
 use patches::{NO_PATCH, patches};
 
-/// The edges and patches of a body; empty if all regions are made of plain tetrahedra. None crosses a region.
+/// The edges and patches of a body; empty if all regions are made of plain tetrahedra. None of them crosses a boundary
+/// between regions.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Smoothing {
     pub(crate) edges: Edges,

@@ -15,9 +15,9 @@ pub(super) const NO_PATCH: u32 = u32::MAX;
 /// The patch of each tetrahedron, and the number of patches. They are numbered in the order of their first tetrahedra.
 ///
 /// Patches grow from seeds in the order of the tetrahedra: the next member is the face neighbour that shares most nodes
-/// with the patch, the first one if several do. On a grid whose hexahedra were cut into six, these six are
-/// a patch, so that patches repeat as the grid does. Patches that remain too small join the neighbour with most
-/// shared faces.
+/// with the patch, the first one if several do. On a grid whose hexahedra were cut into six, these six are a patch, so
+/// that patches repeat with the period of the grid. Patches that remain too small join the neighbour with most shared
+/// faces.
 pub(super) fn patches(
     tets: &[[u32; 4]],
     region_of: &[u32],

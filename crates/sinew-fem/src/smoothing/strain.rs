@@ -1,4 +1,4 @@
-//! The strain that a tetrahedron's stress follows from.
+//! The strain that determines a tetrahedron's stress.
 
 use sinew_mesh::TetMesh;
 

@@ -1,4 +1,4 @@
-//! Models that follow strokes in their place allocate nothing until the room for new nodes is used up.
+//! Models that are updated in place after strokes allocate nothing until the space for new nodes is used up.
 
 use std::sync::Arc;
 

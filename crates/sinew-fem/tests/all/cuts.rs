@@ -1,4 +1,4 @@
-//! Models of bodies that are cut: matrices, bounds, energy and what acts on them.
+//! Models of bodies that are cut: matrices, bounds, energy, loads and supports.
 
 use std::sync::Arc;
 

@@ -1,4 +1,4 @@
-//! Models that follow cuts in their place are those that are made anew, to the last bit.
+//! Models that are updated in place after cuts equal rebuilt models, to the last bit.
 
 use std::sync::Arc;
 
@@ -37,7 +37,7 @@ fn mesh(cells: usize, split: Split) -> TetMesh {
     mesh
 }
 
-/// Two materials, supports that hold all and some components, loads of all kinds, damping.
+/// Two materials, supports that fix all and some components, loads of all kinds, damping.
 fn problem() -> Problem {
     let region = |group: &str, density, nu| Region {
         group: Some(group.into()),
@@ -72,7 +72,8 @@ fn some_state(model: &Model) -> State {
     state
 }
 
-/// Cuts in place, and makes the model anew beside it. What shares the model, if anything does, goes on with what it had.
+/// Cuts in place, and rebuilds the model for comparison. A clone that shares the model's rows, if any, keeps its own
+/// state.
 fn compare(
     cut: &mut CutModel,
     (uncut, is_shared): (&TetMesh, bool),
@@ -216,7 +217,7 @@ fn so_does_cutting_every_face_which_uses_up_all_room() {
     assert!(every_face_is_cut(false) > 0);
 }
 
-/// Cuts every face, and returns how often rows were laid out anew.
+/// Cuts every face, and returns how often rows were laid out again.
 fn every_face_is_cut(is_shared: bool) -> u64 {
     let (mesh, mut cut, mut state) = cuttable(2, Split::Kuhn, 0.0);
     let tets = mesh.tets.len() as u32;

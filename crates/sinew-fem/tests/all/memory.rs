@@ -8,7 +8,7 @@ use sinew_core::{CountingAllocator, LinearSystem, System};
 use sinew_fem::{Law, LoadKind, Model, Problem, SpringRule};
 use sinew_mesh::structured::{Split, cube};
 
-/// The most bytes a tetrahedron in use while `make` builds a model, without the entries of its matrices.
+/// The largest number of bytes per tetrahedron in use while `make` builds a model, without the entries of its matrices.
 fn bytes_beside_matrices(make: impl FnOnce() -> Model) -> f64 {
     let (model, peak) = CountingAllocator::peak(make);
     let operators = model.operators();
@@ -34,8 +34,8 @@ fn the_counter_counts() {
     assert_eq!((kept.len(), most), (100, 5000));
 }
 
-/// A node of a large mesh has 14 neighbours, and there are six tetrahedra a node: the entries of K are 180 bytes a
-/// tetrahedron. With a copy of the mesh all else is to stay below 70, which makes 250.
+/// A node of a large mesh has 14 neighbours, and there are six tetrahedra per node: the entries of K are 180 bytes per
+/// tetrahedron. All else, with a copy of the mesh, must stay below 70, which makes 250.
 #[test]
 fn a_model_takes_seventy_bytes_a_tetrahedron_beside_its_matrices() {
     let mesh = Arc::new(cube(24, 0.1, Split::Kuhn).unwrap());

@@ -7,7 +7,7 @@ use super::kind::Kind;
 /// The faces of a tetrahedron, outward if it is positively oriented.
 const OUTWARD_FACES: [[usize; 3]; 4] = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];
 
-/// The bits of a place at rest. Nodes of bodies before and after a cut are the same if these bits are.
+/// The bits of a position at rest. Nodes of bodies before and after a cut are the same if these bits are.
 type Spot = [u64; 3];
 
 /// Triangles on the boundary of cells, between nodes.
@@ -17,15 +17,15 @@ pub(crate) struct Boundary {
     pub(crate) kinds: Vec<Kind>,
 }
 
-/// The body at the beginning: the places of its nodes, and its boundary.
+/// The body at the beginning: the positions of its nodes, and its boundary.
 #[derive(Debug, Default)]
 pub(crate) struct Uncut {
     spots: HashSet<Spot>,
     faces: HashSet<[Spot; 3]>,
 }
 
-/// The boundary of tetrahedra with these regions, and of triangles of their own, in the order of the cells. A face is
-/// cut if another one lies at the same place, or if it was inside the body `before`.
+/// The boundary of tetrahedra with these regions, and of separate triangles, in the order of the cells. A face is a cut
+/// face if another one is at the same position, or if it was inside the body `before`.
 pub(crate) fn boundary_of(
     points: &[[f64; 3]],
     tets: &[[u32; 4]],
@@ -71,7 +71,7 @@ impl Uncut {
         }
     }
 
-    /// True for a face of the present body that lay between tetrahedra at the beginning: its nodes were there, and it was
+    /// True for a face of the present body that was between tetrahedra at the beginning: its nodes existed, and it was
     /// not on the boundary.
     fn was_inside(&self, face: &[Spot; 3]) -> bool {
         face.iter().all(|spot| self.spots.contains(spot)) && !self.faces.contains(face)

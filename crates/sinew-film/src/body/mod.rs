@@ -12,7 +12,7 @@ use corners::Corners;
 /// The surface of a body: its triangles between points at rest.
 #[derive(Debug, Clone)]
 pub struct Surface {
-    /// Places (m) at rest.
+    /// Positions (m) at rest.
     pub(crate) rest: Vec<[f64; 3]>,
     pub(crate) triangles: Vec<[u32; 3]>,
     pub(crate) kinds: Vec<Kind>,
@@ -20,8 +20,8 @@ pub struct Surface {
 }
 
 impl Surface {
-    /// A surface of triangles, counter-clockwise as seen from outside. A triangle is left out if one of its corners is no
-    /// point, or if it has no kind.
+    /// A surface of triangles, counter-clockwise as seen from outside. A triangle is left out if one of its corners is
+    /// not a point, or if it has no kind.
     #[must_use]
     pub fn new(rest: Vec<[f64; 3]>, triangles: &[[u32; 3]], kinds: &[Kind]) -> Self {
         let is_there =

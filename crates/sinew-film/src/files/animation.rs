@@ -1,4 +1,5 @@
-//! Films as animated PNG: one table of colours for all pictures, and of each picture the difference from the one before.
+//! Films as animated PNG: one table of colours for all pictures, and for each picture the difference from the one
+//! before.
 
 use png::{BitDepth, BlendOp, ColorType, Compression, DisposeOp, Encoder, Filter, Writer};
 
@@ -15,7 +16,7 @@ const SAME: u8 = 2;
 /// The least time (s) for which the last picture stays before the film begins again.
 const LAST: f64 = 0.7;
 
-/// Parts of a second in which delays are given.
+/// Number of parts of a second, the unit of delays.
 const PARTS: u16 = 1000;
 
 /// A film that is written picture by picture.
@@ -25,7 +26,7 @@ pub(crate) struct Animation<'a> {
     colours: Colours,
     /// The numbers of the colours that are shown.
     shown: Vec<u8>,
-    /// Pictures to come.
+    /// Number of remaining pictures.
     left: u32,
     /// Time (s) from picture to picture.
     delay: f64,

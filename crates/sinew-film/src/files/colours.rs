@@ -1,11 +1,11 @@
-//! The few colours that a film is made of.
+//! The colours of a film, limited in number.
 
 use rayon::prelude::*;
 
 use crate::Picture;
 use crate::render::BACKGROUND;
 
-/// Bits of a component by which colours are told apart.
+/// Number of bits of a component that distinguish colours.
 const BITS: u32 = 6;
 
 /// The largest number of colours: one number of 256 is for pixels that do not change.
@@ -39,8 +39,8 @@ struct Sample {
 }
 
 impl Colours {
-    /// Colours for pictures such as these. Boxes of colours are halved along the component in which they differ most
-    /// (P. Heckbert's median cut of 1982, with the mean in place of the median). Lloyd's rounds follow.
+    /// Colours for pictures similar to these. Boxes of colours are halved along the component in which they differ most
+    /// (P. Heckbert's median cut of 1982, with the mean instead of the median). Lloyd's rounds follow.
     pub(crate) fn of<'a>(pictures: impl Iterator<Item = &'a Picture>) -> Self {
         let samples = samples(pictures);
         let mut table = halved(samples.clone());
@@ -77,7 +77,7 @@ impl Colours {
     }
 
     /// The number of the colour in the table that is nearest to a colour at a column and a row. A grey is first made
-    /// somewhat brighter or darker there, so that shadows of few colours look smooth from afar.
+    /// somewhat brighter or darker at this position, so that shadows with few colours look smooth from a distance.
     pub(crate) fn number(&self, colour: [u8; 3], (column, row): (usize, usize)) -> u8 {
         if colour == BACKGROUND {
             return 0;
@@ -104,8 +104,8 @@ fn middle(bin: usize) -> [f32; 3] {
     [2, 1, 0].map(|place| (((bin >> (place * BITS)) & mask) << (8 - BITS)) as f32 + half - 0.5)
 }
 
-/// The colours of pictures. A colour that covers a hundred times as much counts ten times as much, so that small things
-/// keep their colours.
+/// The colours of pictures. A colour that covers a hundred times as much counts ten times as much, so that small
+/// objects keep their colours.
 fn samples<'a>(pictures: impl Iterator<Item = &'a Picture>) -> Vec<Sample> {
     let mut sums = vec![([0_u64; 3], 0_u64); 1 << (3 * BITS)];
     for pixel in pictures.flat_map(Picture::pixels) {
@@ -202,7 +202,7 @@ fn moved(table: &[[f32; 3]], samples: &[Sample]) -> Vec<[f32; 3]> {
         .collect()
 }
 
-/// The place of the colour nearest to one. Green counts more and blue less, as for the eye.
+/// The index of the colour nearest to a given one. Green counts more and blue less, as for the eye.
 fn nearest(table: &[[f32; 3]], colour: [f32; 3]) -> usize {
     let distance = |other: &[f32; 3]| {
         let [r, g, b] = [0, 1, 2].map(|axis| (other[axis] - colour[axis]).powi(2));

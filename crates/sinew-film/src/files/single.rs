@@ -32,7 +32,7 @@ impl Picture {
     }
 }
 
-/// True for the bytes of a PNG file, moving or not, that this crate made.
+/// True for the bytes of a PNG file, animated or not, that this crate made.
 #[must_use]
 pub fn is_own_png(bytes: &[u8]) -> bool {
     let [keyword, program] = SOFTWARE;

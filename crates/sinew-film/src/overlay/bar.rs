@@ -7,13 +7,13 @@ use super::text::{self, Anchor, Ink};
 use crate::Picture;
 use crate::render::colour_of;
 
-/// Place and size of the bar, as shares of the picture: from its right end, from top to bottom, and its width in heights
-/// of capitals.
+/// Position and size of the bar, as shares of the picture: from its right end, from top to bottom, and its width in
+/// heights of capitals.
 const FROM_RIGHT: f32 = 0.145;
 const ROWS: [f32; 2] = [0.24, 0.76];
 const WIDTH: f32 = 1.3;
 
-/// The largest share of the width that a title takes.
+/// The largest share of the width for a title.
 const LONGEST: f32 = 0.5;
 
 /// The title, unit and values of a field's colours.
@@ -46,7 +46,7 @@ impl Bar {
         }
     }
 
-    /// Draws it at the right of a picture.
+    /// Draws the bar on the right of a picture.
     pub(super) fn draw(&self, picture: &mut Picture, ink: Ink, pale: Ink) {
         let size = picture.size();
         let [width, height] = [size.width() as f32, size.height() as f32];

@@ -184,7 +184,8 @@ pub(super) struct Glyph {
     pub(super) lines: Vec<[[f32; 2]; 2]>,
 }
 
-/// The strokes of a letter. An unknown one has those of a question mark, one with an accent those of its base letter.
+/// The strokes of a letter. An unknown letter has those of a question mark, a letter with an accent those of its base
+/// letter.
 pub(super) fn glyph(letter: char) -> Glyph {
     let found = |letter: char| GLYPHS.iter().find(|glyph| glyph.0 == letter);
     let plain = match letter {

@@ -13,7 +13,7 @@ const PREFIXES: [(f64, &str); 7] = [
     (1e9, "G"),
 ];
 
-/// The factor of a prefix and the unit with it. With them a number has one to three digits before the point.
+/// The factor of a prefix and the unit with it. With this prefix a number has one to three digits before the point.
 pub(super) fn prefixed(largest: f64, unit: &str) -> (f64, String) {
     // Plain numbers have no prefix, and powers of units would take it with them.
     let takes_none = unit.is_empty() || unit.contains(['²', '³']);

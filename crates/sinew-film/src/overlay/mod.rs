@@ -18,7 +18,7 @@ const DARK: [u8; 3] = [44, 52, 64];
 /// The colour of secondary text: the length and the bar's title and unit.
 const PALE: [u8; 3] = [104, 114, 128];
 
-/// Height of capitals as a share of the picture's height, and in pixels at least.
+/// Height of capitals as a share of the picture's height, and its minimum in pixels.
 const HEIGHT: f32 = 0.0215;
 const LEAST: f32 = 7.0;
 
@@ -29,7 +29,7 @@ const LONGEST: f32 = 0.2;
 #[derive(Debug, Clone)]
 pub(crate) struct Overlay {
     pub(crate) title: String,
-    /// Times (s) of the first and the last frame. They give the unit and the digits of the time.
+    /// Times (s) of the first and the last frame. They determine the unit and the digits of the time.
     pub(crate) span: [f64; 2],
     /// Pixels for a length of 1 m.
     pub(crate) pixels_per_metre: f64,
@@ -83,7 +83,7 @@ impl Overlay {
         format!("t = {:.digits$} {unit}", t * factor)
     }
 
-    /// A round length, whose right end is at a point.
+    /// Draws a round length, whose right end is at a point.
     fn scale(&self, picture: &mut Picture, [right, base]: [f32; 2], ink: Ink) {
         let width = picture.size().width() as f32;
         let most = f64::from(LONGEST * width) / self.pixels_per_metre;

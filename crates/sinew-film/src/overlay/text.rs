@@ -6,10 +6,10 @@ use crate::Picture;
 /// Height of capitals in the units of letters.
 const CAPITAL: f32 = 10.0;
 
-/// Room between letters, in these units.
+/// Space between letters, in these units.
 const APART: f32 = 2.3;
 
-/// Width of the pen, in these units and in pixels at least.
+/// Width of the pen, in these units, and its minimum in pixels.
 const PEN: f32 = 1.15;
 const THINNEST: f32 = 1.05;
 
@@ -21,7 +21,7 @@ pub(super) struct Ink {
     pub(super) colour: [u8; 3],
 }
 
-/// The point of a line of text that is at its place.
+/// The point of a line of text that is at its position.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Anchor {
     Left,
@@ -36,7 +36,7 @@ pub(super) fn width(text: &str, ink: Ink) -> f32 {
     (all - APART).max(0.0) * ink.height / CAPITAL
 }
 
-/// The longest beginning of a line that fits into a width (pixels), with dots in place of the rest.
+/// The longest beginning of a line that fits into a width (pixels), with dots instead of the rest.
 pub(super) fn shortened(text: &str, most: f32, ink: Ink) -> String {
     if width(text, ink) <= most {
         return text.to_owned();

@@ -1,4 +1,4 @@
-//! Projection of places to pixels.
+//! Projection of positions to pixels.
 
 use crate::View;
 use crate::vector::{V3, add, cross, dot, scaled, sub, unit};
@@ -25,14 +25,14 @@ pub(crate) struct Camera {
     pub(crate) is_perspective: bool,
 }
 
-/// A projected place.
+/// A projected position.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Seen {
     /// Column, to the right.
     pub(crate) x: f32,
     /// Row, downwards.
     pub(crate) y: f32,
-    /// Nearness: larger for nearer places, linear over the picture.
+    /// Nearness: larger for nearer positions, linear over the picture.
     pub(crate) near: f32,
     /// Reciprocal of the distance, by which lengths shrink; 1 without perspective.
     pub(crate) shrink: f32,
@@ -57,7 +57,7 @@ impl Camera {
         }
     }
 
-    /// The distance of a place before the eye; 1 without perspective.
+    /// The distance of a position in front of the eye; 1 without perspective.
     pub(crate) fn distance(&self, place: V3) -> f32 {
         match self.is_perspective {
             true => DISTANCE - dot(sub(place, self.target), self.back),
@@ -65,18 +65,18 @@ impl Camera {
         }
     }
 
-    /// True for places that are far enough before the eye.
+    /// True for positions that are far enough in front of the eye.
     pub(crate) fn is_before(&self, place: V3) -> bool {
         self.distance(place) >= NEAREST
     }
 
-    /// The end of the drawn part, as a share of the way from a place before the eye to one that is not.
+    /// The end of the drawn part, as a share of the segment from a position in front of the eye to one that is not.
     pub(crate) fn end_of(&self, before: V3, behind: V3) -> f32 {
         let [from, to] = [before, behind].map(|place| self.distance(place));
         ((from - NEAREST) / (from - to)).clamp(0.0, 1.0)
     }
 
-    /// The projection of a place.
+    /// The projection of a position.
     pub(crate) fn seen(&self, place: V3) -> Seen {
         let offset = sub(place, self.target);
         let shrink = match self.is_perspective {
@@ -98,7 +98,7 @@ impl Camera {
         }
     }
 
-    /// The direction from a place to the eye.
+    /// The direction from a position to the eye.
     pub(crate) fn towards_eye(&self, place: V3) -> V3 {
         match self.is_perspective {
             true => unit(sub(self.eye(), place)),

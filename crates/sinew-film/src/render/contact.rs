@@ -1,4 +1,4 @@
-//! The dark beneath things on the floor: less of the sky is seen from there.
+//! Darkening of the floor beneath objects: less light of the sky reaches it.
 
 use super::model::Model;
 use super::shadow::spread_over;
@@ -9,10 +9,10 @@ const EDGE: usize = 128;
 /// Half the width of the map, in units of the body's radius.
 const REACH: f32 = 2.2;
 
-/// Cells by which the dark is spread to either side, twice.
+/// Number of cells by which the dark area is spread to each side, twice.
 const SPREAD: usize = 4;
 
-/// The height above the floor at which a thing darkens it by a third.
+/// The height above the floor at which an object darkens it by a third.
 const HEIGHT: f32 = 0.22;
 
 /// The hidden share of the sky, for each part of the floor.
@@ -21,7 +21,7 @@ pub(super) struct Contact {
 }
 
 impl Contact {
-    /// The dark beneath a model on a floor at this height.
+    /// The darkening beneath a model on a floor at this height.
     pub(super) fn of(model: &Model, floor: f32) -> Self {
         let mut lowest = vec![f32::MAX; EDGE * EDGE];
         let cells = EDGE as f32 / (2.0 * REACH);
@@ -42,7 +42,7 @@ impl Contact {
         Self { hidden }
     }
 
-    /// The share of the sky that the floor does not see at a place.
+    /// The share of the sky that is hidden from the floor at a position.
     pub(super) fn at(&self, x: f32, y: f32) -> f32 {
         let cells = EDGE as f32 / (2.0 * REACH);
         let [x, y] = [x, y].map(|along| (along + REACH) * cells - 0.5);

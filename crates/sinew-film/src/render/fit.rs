@@ -4,7 +4,7 @@ use super::camera::Camera;
 use crate::vector::{V3, add, scaled};
 use crate::{Size, View};
 
-/// Rounds in which a camera in perspective converges: near things grow as the camera comes closer.
+/// Number of rounds in which a camera in perspective converges: near objects grow as the camera comes closer.
 const ROUNDS: usize = 6;
 
 /// Margins about the body for texts, as shares of the width or the height.
@@ -16,7 +16,7 @@ pub(crate) struct Room {
     pub(crate) bottom: f32,
 }
 
-/// A camera that shows these points between the margins, as large as they fit.
+/// A camera that shows these points between the margins, as large as possible.
 pub(crate) fn fitted(view: View, size: Size, room: Room, points: &[V3]) -> Camera {
     let mut camera = Camera::new(view);
     let [width, height] = [size.width() as f32, size.height() as f32];

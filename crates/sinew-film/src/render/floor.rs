@@ -1,4 +1,4 @@
-//! The floor. Only the dark on it is visible.
+//! The floor. Only shadows on it are visible.
 
 use super::contact::Contact;
 use super::shadow::Shadow;
@@ -7,7 +7,7 @@ use crate::vector::{V3, add, scaled};
 /// The colour behind everything.
 pub(crate) const BACKGROUND: [u8; 3] = [232, 236, 241];
 
-/// The share of the light that a shadow takes, and the share that a thing close above the floor takes.
+/// The share of the light that a shadow takes, and the share that an object close above the floor takes.
 const SHADED: f32 = 0.34;
 const HIDDEN: f32 = 0.42;
 
@@ -50,7 +50,7 @@ impl Floor {
         }
     }
 
-    /// The share of light of each colour that comes from the floor along a ray from a point; `None` for all of it.
+    /// The share of light of each colour from the floor along a ray from a point; `None` for all of it.
     pub(super) fn left(&self, (from, along): (V3, V3)) -> Option<V3> {
         if along[2] >= 0.0 {
             return None;

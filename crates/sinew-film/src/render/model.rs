@@ -7,7 +7,7 @@ use crate::vector::V3;
 pub(crate) enum Paint {
     /// Tissue of a region, by its number from 1 on.
     Tissue(u8),
-    /// A face that was cut.
+    /// A cut face.
     Cut,
     /// A colour for the value at each point.
     Field,
@@ -20,7 +20,7 @@ pub(crate) enum Paint {
 pub(crate) struct Vertex {
     pub(crate) place: V3,
     pub(crate) normal: V3,
-    /// Its place at rest, to which the tissue's grain is fixed.
+    /// Its position at rest, to which the tissue's grain is fixed.
     pub(crate) rest: V3,
     /// Its value, as a share of the range.
     pub(crate) value: f32,

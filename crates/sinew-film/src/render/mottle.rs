@@ -1,11 +1,11 @@
-//! The grain of tissue: smooth noise that is fixed to places at rest.
+//! The grain of tissue: smooth noise that is fixed to positions at rest.
 
 use crate::vector::V3;
 
 /// Values along an edge of the table, a power of two.
 const EDGE: usize = 32;
 
-/// Offset of places, so that none of them is below 0: many edges of the table.
+/// Offset of positions, so that none of them is below 0: many edges of the table.
 const FAR: f32 = 4096.0;
 
 /// Values of noise between 0 and 1 at the points of a periodic lattice.
@@ -26,7 +26,7 @@ impl Mottle {
         }
     }
 
-    /// The noise at a place: a cell of the lattice has the length 1.
+    /// The noise at a position: a cell of the lattice has the length 1.
     pub(super) fn at(&self, place: V3) -> f32 {
         // A conversion is cheaper than `floor`, which is a call on plain processors.
         let whole = place.map(|x| (x + FAR) as i32);

@@ -18,10 +18,10 @@ const TISSUES: [[u8; 3]; 6] = [
     [206, 150, 140],
 ];
 
-/// The colour of faces that were cut.
+/// The colour of cut faces.
 const CUT: [u8; 3] = [138, 24, 28];
 
-/// The reach of light of each colour round a tissue's edge into the shade: red reaches farthest.
+/// The reach of light of each colour around a tissue's edge into the shade: red reaches farthest.
 const WRAP: V3 = [0.42, 0.18, 0.14];
 
 /// Cells of the grain in a length of 1: blotches, and vessels.
@@ -58,7 +58,7 @@ pub(crate) struct Palette {
     mottle: Mottle,
 }
 
-/// The colour of a share of a field's range, as bars show it.
+/// The colour of a share of a field's range, the same as in bars.
 pub(crate) fn colour_of(share: f32) -> [u8; 3] {
     let colour = viridis(f64::from(share));
     [colour.0, colour.1, colour.2]
@@ -151,7 +151,7 @@ fn matt(light: &Light, point: &Point, colour: V3) -> V3 {
     times(colour, light)
 }
 
-/// Brushed metal. It mirrors a bright room with a dark floor and a window on the lamp's side.
+/// Brushed metal. It reflects a bright room with a dark floor and a window on the lamp's side.
 fn steel(light: &Light, point: &Point) -> V3 {
     let (normal, to_eye) = (point.normal, point.to_eye);
     let across = dot(normal, to_eye);

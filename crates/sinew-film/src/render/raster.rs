@@ -4,10 +4,10 @@ use super::camera::{Camera, Seen};
 use super::model::{Model, Vertex};
 use crate::vector::{between, unit};
 
-/// Rows of a band: a band's samples stay in the second cache.
+/// Rows of a band: a band's samples stay in the second-level cache.
 pub(super) const BAND: usize = 16;
 
-/// Points of a pixel, from its middle, turned so that upright and level edges get four steps.
+/// Points of a pixel, from its middle, rotated so that vertical and horizontal edges get four steps.
 pub(super) const SAMPLES: [[f32; 2]; 4] = [
     [-0.125, -0.375],
     [0.375, -0.125],
@@ -54,7 +54,7 @@ impl Projected {
         projected
     }
 
-    /// Adds the part of a triangle that is before the eye.
+    /// Adds the part of a triangle that is in front of the eye.
     fn add_clipped(&mut self, corners: [u32; 3], camera: &Camera, origin: u32) {
         let mut outline = Vec::with_capacity(4);
         for place in 0..3 {

@@ -14,7 +14,7 @@ use crate::colour_space::{Screen, linear};
 use crate::vector::{V3, add, dot, scaled, times, unit};
 use crate::{Picture, Size};
 
-/// The share of the lamp's light that reaches sides that are turned away from it.
+/// The share of the lamp's light that reaches sides facing away from it.
 const AWAY: f32 = 0.35;
 
 /// The part of a scene that is the same in all pictures.
@@ -128,7 +128,7 @@ impl Drawing<'_> {
         Some(times(self.background, left))
     }
 
-    /// The light of a triangle at a place of the picture.
+    /// The light of a triangle at a position in the picture.
     fn surface(&self, triangle: usize, [x, y]: [f32; 2]) -> V3 {
         let corners = self.projected.triangles[triangle];
         let [a, b, c] = corners.map(|corner| self.projected.seen[corner as usize]);
@@ -184,7 +184,7 @@ mod tests {
     use crate::View;
     use crate::render::{Paint, Vertex};
 
-    /// A square at a depth, as large as the picture sees.
+    /// Adds a square at a depth that fills the picture.
     fn square(model: &mut Model, towards_eye: f32, value: f32) {
         let first = model.vertices.len() as u32;
         for [x, z] in [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]] {

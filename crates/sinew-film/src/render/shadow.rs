@@ -9,16 +9,16 @@ const EDGE: usize = 448;
 /// Half the width of the map, in units of the body's radius.
 const REACH: f32 = 1.9;
 
-/// Pixels by which a shadow's edge is spread to either side, twice.
+/// Number of pixels by which a shadow's edge is spread to each side, twice.
 const SPREAD: usize = 4;
 
 /// The distance from its surface at which a point is looked up, so that no surface shades itself.
 const OFF: f32 = 0.025;
 
-/// The share of light that counts as none, since the mean of several depths lets some through everywhere.
+/// The share of light that counts as no light, since the mean of several depths lets some light through everywhere.
 const DARK: f32 = 0.25;
 
-/// Depths as the light sees them, and their squares: W. Donnelly and A. Lauritzen, Variance Shadow Maps (2006).
+/// Depths seen from the light, and their squares: W. Donnelly and A. Lauritzen, Variance Shadow Maps (2006).
 pub(super) struct Shadow {
     right: V3,
     up: V3,

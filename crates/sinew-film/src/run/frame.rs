@@ -14,7 +14,7 @@ const REGION: &str = "region";
 /// The cells of a frame. Frames with the same cells show the same body.
 #[derive(Debug, Default)]
 pub(super) struct Cells {
-    /// Places (m) of the nodes at rest.
+    /// Positions (m) of the nodes at rest.
     pub(super) points: Vec<[f64; 3]>,
     tets: Vec<[u32; 4]>,
     triangles: Vec<[u32; 3]>,
@@ -35,7 +35,7 @@ impl PartialEq for Cells {
 }
 
 impl Cells {
-    /// The cells of a frame by their corners.
+    /// The cells of a frame, given by their corners.
     pub(super) fn of(mesh: &Mesh) -> Result<Self, String> {
         let mut cells = Self {
             points: mesh.points.clone(),
@@ -146,7 +146,7 @@ pub(super) fn displacements(mesh: &Mesh, nodes: &[u32]) -> Result<Vec<[f32; 3]>,
     Ok(nodes.iter().map(of_node).collect())
 }
 
-/// Values of a field on the surface: those of nodes, or the mean over the cells about each.
+/// Values of a field on the surface: those of nodes, or the mean over the cells at each node.
 pub(super) fn values(mesh: &Mesh, shown: &Shown, cells: &Cells) -> Result<Vec<f32>, String> {
     let name = &shown.field.name;
     let components = shown.field.components.max(1);

@@ -31,7 +31,7 @@ pub struct Run<'a> {
 }
 
 impl<'a> Run<'a> {
-    /// The run whose files these are.
+    /// Opens the run with these files.
     ///
     /// # Errors
     /// [`FilmError`] for a run without frames, and for damaged files.
@@ -57,13 +57,13 @@ impl<'a> Run<'a> {
         })
     }
 
-    /// The fields that its frames have.
+    /// The fields of its frames.
     #[must_use]
     pub fn fields(&self) -> &[Field] {
         &self.fields
     }
 
-    /// The colouring of this name: `tissue`, or a field, or one of its components as in `displacement.z`.
+    /// The colouring of this name: `tissue`, or a field, or one of its components such as `displacement.z`.
     ///
     /// # Errors
     /// [`FilmError::Colour`], which lists the available ones.

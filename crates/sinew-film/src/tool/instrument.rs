@@ -8,8 +8,8 @@ use super::part::Part;
 pub struct Tool {
     /// Parts of the instrument, in its own frame.
     pub parts: Vec<Part>,
-    /// Poses in the order of time. Between two of them the instrument moves straight; before the first and after the last
-    /// it does not move.
+    /// Poses in the order of time. Between two of them the instrument moves along a straight line; before the first and
+    /// after the last it does not move.
     pub poses: Vec<PoseAt>,
     /// The times (s) between which the instrument is visible.
     pub seen: [f64; 2],

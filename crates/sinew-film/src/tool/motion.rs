@@ -1,11 +1,11 @@
 //! Poses of an instrument over time.
 
-/// A place and a rotation at a time.
+/// A position and a rotation at a time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PoseAt {
     /// Time (s).
     pub t: f64,
-    /// The place (m) of the instrument's own origin.
+    /// The position (m) of the instrument's own origin.
     pub position: [f64; 3],
     /// Its rotation vector (rad).
     pub rotation: [f64; 3],
@@ -32,7 +32,7 @@ pub(super) fn at(poses: &[PoseAt], t: f64) -> Option<PoseAt> {
 }
 
 /// The poses of an instrument of this name in the text of `tools.csv`. Without columns of its rotation, all poses have
-/// the given one. `None` if the table lacks its columns, or a row lacks their numbers.
+/// the given rotation. `None` if the table lacks its columns, or a row lacks their numbers.
 #[must_use]
 pub fn poses_of_table(text: &str, name: &str, rotation: [f64; 3]) -> Option<Vec<PoseAt>> {
     let mut lines = text.lines().filter(|line| !line.starts_with('#'));

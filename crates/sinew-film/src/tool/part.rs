@@ -7,7 +7,7 @@ use crate::vector::{V3, add, turned};
 pub struct Part {
     /// Its shape.
     pub shape: Shape,
-    /// The place (m) of its middle in the instrument's own frame.
+    /// The position (m) of its middle in the instrument's own frame.
     pub at: [f64; 3],
     /// Its rotation vector (rad) in the instrument's own frame.
     pub rotation: [f64; 3],
@@ -35,7 +35,7 @@ pub enum Shape {
     },
     /// The half-space below a plane with the normal +z, shown as a plate somewhat larger than the body.
     Plane,
-    /// A blade whose edge lies along z; its back is in the direction `back`, at right angles to z.
+    /// A blade whose edge lies along z; its back is in the direction `back`, perpendicular to z.
     Blade {
         /// Length (m) of the edge.
         length: f64,

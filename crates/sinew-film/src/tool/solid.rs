@@ -51,7 +51,7 @@ pub(crate) fn solid(shape: &Shape, radius: f32) -> Solid {
     }
 }
 
-/// All points within a distance of a box about the origin with these half edges.
+/// The surface around all points within a distance of a box about the origin with these half edges.
 fn rounded(core: V3, round: f32) -> Solid {
     let mut solid = Solid::default();
     let side = |quarter: usize| if matches!(quarter, 0 | 3) { 1.0 } else { -1.0 };

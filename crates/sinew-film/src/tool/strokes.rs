@@ -19,8 +19,8 @@ struct Row {
     ends: [[f64; 3]; 2],
 }
 
-/// The blades of a table of strokes, one for each. A blade is visible from the end of the previous stroke, waits at the
-/// beginning of its own, and disappears at the end of its own. `None` for another table.
+/// The blades of a table of strokes, one for each stroke. A blade is visible from the end of the previous stroke, waits
+/// at the beginning of its own stroke, and disappears at its end. `None` for another table.
 #[must_use]
 pub fn blades_of_strokes(text: &str) -> Option<Vec<Tool>> {
     let mut lines = text.lines().map(str::trim);
@@ -91,7 +91,7 @@ fn blade(rows: &[Row], from: f64) -> Tool {
     }
 }
 
-/// The direction in a blade's own frame from which it comes: that of its back.
+/// The direction in a blade's own frame opposite to its motion: that of its back.
 #[must_use]
 pub fn back_of(poses: &[PoseAt]) -> [f64; 3] {
     let (Some(first), Some(last)) = (poses.first(), poses.last()) else {

@@ -60,7 +60,7 @@ pub(crate) fn sphere(radius: f64, around: usize) -> (Vec<[f64; 3]>, Vec<[u32; 3]
     (points, triangles)
 }
 
-/// A square across the view from the front, at a place along y, as two triangles.
+/// A square across the view from the front, at a position along y, as two triangles.
 pub(crate) fn square(y: f64, half: f64) -> Vec<[f64; 3]> {
     vec![
         [-half, y, -half],
@@ -75,7 +75,7 @@ pub(crate) fn of_square(first: u32) -> [[u32; 3]; 2] {
     [[first, first + 1, first + 2], [first, first + 2, first + 3]]
 }
 
-/// A cube with corners at 0 and 0.1 m, as two frames: at rest, and sheared by so much after a second.
+/// A cube with corners at 0 and 0.1 m, as two frames: at rest, and sheared by `by` after a second.
 pub(crate) fn sheared_cube(by: f32) -> Clip {
     let corners: Vec<[f64; 3]> = (0..8)
         .map(|corner| [0, 1, 2].map(|axis| 0.1 * f64::from((corner >> axis) & 1)))

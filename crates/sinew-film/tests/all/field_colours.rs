@@ -11,7 +11,7 @@ fn field(range: Option<[f64; 2]>) -> Look {
     }
 }
 
-/// A square whose values go from the first at the left to the second at the right.
+/// A square whose values increase from the first on the left to the second on the right.
 fn slope(left: f32, right: f32, range: Option<[f64; 2]>) -> Picture {
     let values = vec![left, right, right, left];
     picture(
@@ -20,7 +20,7 @@ fn slope(left: f32, right: f32, range: Option<[f64; 2]>) -> Picture {
     )
 }
 
-/// The colours beside the left and the right edge of the square.
+/// The colours next to the left and the right edge of the square.
 fn ends(picture: &Picture) -> [[u8; 3]; 2] {
     let row = 120;
     let background = picture.at(0, row).expect("a pixel");

@@ -1,4 +1,4 @@
-//! Files of pictures and films, read again by another program's reader.
+//! Files of pictures and films, read by another program's reader.
 
 use std::io::Cursor;
 
@@ -40,13 +40,13 @@ fn bytes(film: &Film, timing: Timing) -> Vec<u8> {
     film.animation(timing, &mut |_| true).expect("a film")
 }
 
-/// A picture of a film as a reader shows it, and for how many milliseconds.
+/// A picture of a film from a reader, and its duration in milliseconds.
 struct Shown {
     pixels: Vec<[u8; 3]>,
     delay: u16,
 }
 
-/// All pictures of a film, each laid over the one before as the standard says.
+/// All pictures of a film, each drawn over the one before, according to the standard.
 fn pictures(file: &[u8]) -> Vec<Shown> {
     let mut decoder = Decoder::new(Cursor::new(file));
     decoder.set_transformations(Transformations::EXPAND);

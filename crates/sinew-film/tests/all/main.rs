@@ -1,4 +1,4 @@
-//! Pictures and films, as users see them.
+//! Pictures and films.
 
 #![cfg(test)]
 

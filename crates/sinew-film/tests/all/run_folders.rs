@@ -1,4 +1,4 @@
-//! Frames as a run leaves them.
+//! Frames in the folder of a run.
 
 use std::collections::HashMap;
 use std::io;
@@ -31,12 +31,13 @@ fn said(folder: &Folder, colour: &str) -> String {
         .expect_err("nothing to show")
 }
 
-/// A folder with frames of these bodies at t = 0, 1, and so on, each displaced by so much (m) along x from the one before.
+/// A folder with frames of these bodies at t = 0, 1, and so on, each displaced by `apart` (m) along x from the one
+/// before.
 fn folder(bodies: &[TetMesh], apart: f64) -> Folder {
     folder_of(bodies, |frame, _| [apart * frame as f64, 0.0, 0.0])
 }
 
-/// A folder with frames of these bodies, with the displacement (m) of each place (m).
+/// A folder with frames of these bodies, with the displacement (m) of each position (m).
 fn folder_of(bodies: &[TetMesh], u: impl Fn(usize, [f64; 3]) -> [f64; 3]) -> Folder {
     let mut folder = Folder::new();
     let mut series = Vec::new();

@@ -1,4 +1,4 @@
-//! What covers which pixels.
+//! Pixels covered by shapes.
 
 use std::f64::consts::PI;
 
@@ -6,7 +6,7 @@ use sinew_film::{Colouring, Picture};
 
 use crate::common::{film, look, of_square, picture, sphere, square, still};
 
-/// Pixels that are not of the background, those at an edge as half ones, in the rows between the labels.
+/// Number of pixels that are not background, with pixels at an edge counted as half, in the rows between the labels.
 fn covered(picture: &Picture) -> f64 {
     let (width, height) = (picture.size().width(), picture.size().height());
     let background = picture.at(0, height / 2).expect("a pixel");

@@ -1,4 +1,4 @@
-//! The stiffness that a simulation tells of, against forces at rest.
+//! The published stiffness of a simulation, compared with forces at rest.
 
 use crate::common::tissue;
 
@@ -11,13 +11,13 @@ const LINEAR: &str = "model = \"linear\"";
 /// Step (s).
 const DT: f64 = 2e-3;
 
-/// Iterations that find the stiffness.
+/// Number of iterations that is sufficient for the stiffness.
 const ENOUGH: usize = 200;
 
-/// A tool above the block that goes straight down to a depth (m) in half a second.
+/// A tool above the block that moves straight down to a depth (m) in half a second.
 struct Press {
     simulation: ToolSimulation,
-    /// The tool's position (m) at no depth, and its rotation vector (rad).
+    /// The tool's position (m) at depth 0, and its rotation vector (rad).
     top: [f64; 3],
     rotation_vector: [f64; 3],
     depth: f64,
@@ -72,7 +72,7 @@ impl Press {
         self.simulation.step(&device).unwrap()
     }
 
-    /// The stiffness (N/m) at a depth (m) by the difference of forces at rest next to it, and what is published.
+    /// The stiffness (N/m) at a depth (m) from the difference of forces at rest next to it, and the published result.
     fn at(&mut self, depth: f64, by: f64) -> (f64, Published) {
         let places = [depth - by, depth, depth + by];
         let [below, here, above] = places.map(|depth| self.to(depth, ENOUGH));

@@ -1,11 +1,11 @@
 //! Energy that a device takes out of couplings and of simulations that are late or wrong, in simulated time.
-//! Simulations that are neither are part of the verification.
+//! Simulations that are on time and correct are part of the verification.
 
 use std::f64::consts::TAU;
 
 use sinew_haptics::{Coupling, Device, Lockstep, Published, RigidWall, Simulated, SoftwareDevice};
 
-/// Energy (J) that a device may take out: that of no path, with a margin for motion that its encoder does not see.
+/// Energy (J) that a device may take out: 0, with a margin for motion that its encoder does not resolve.
 const MOST: f64 = 1e-6;
 
 /// Peak force (N) and energy (J) in a run, from the view of the hand.
@@ -19,7 +19,7 @@ fn size(a: [f64; 3]) -> f64 {
     a.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
-/// A hand that presses, lets go and moves aside, in and out of what lies at a height (m).
+/// The path of a hand that presses, releases and moves aside, in and out of an obstacle at a height (m).
 fn path(height: f64, depth: f64) -> impl Fn(f64) -> [f64; 3] + Send + 'static {
     move |t| {
         [
@@ -51,7 +51,7 @@ where
     felt
 }
 
-/// A generator of Lehmer (MINSTD): numbers from 0 to 1 that look random and are the same in each run.
+/// A generator of Lehmer (MINSTD): pseudo-random numbers from 0 to 1, the same in each run.
 struct Random(u64);
 
 impl Random {
@@ -83,7 +83,7 @@ fn steps_that_come_late_or_not_at_all_give_no_energy() {
     }
 }
 
-/// A simulation that says anything.
+/// A simulation that publishes random data.
 struct Nonsense(Random);
 
 impl Simulated for Nonsense {
@@ -123,7 +123,7 @@ fn nothing_that_a_simulation_says_gives_energy() {
 }
 
 /// The energy (J) that a device takes out of a coupling to a tool that is extrapolated from its last position and
-/// velocity, without regard to energy: the method that the loop of this crate avoids.
+/// velocity, without regard to energy: the method that the loop of this crate does not use.
 fn taken_out_of_a_plain_coupling<S: Simulated>(
     mut simulation: S,
     coupling: Coupling,

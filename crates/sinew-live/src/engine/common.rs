@@ -49,7 +49,7 @@ impl Common {
     }
 
     /// The largest component of a displacement (m) of the first body, and the largest distance (m) along an axis
-    /// between places of both; `None` if the bodies have no common cells left.
+    /// between positions of both; `None` if the bodies have no common cells left.
     pub(super) fn largest(&self, own: impl Fn(usize) -> f64, other: &[f64]) -> Option<[f64; 2]> {
         let mut largest = [0.0_f64; 2];
         for Pair { cells, apart } in &self.pairs {

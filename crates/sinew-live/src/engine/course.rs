@@ -46,7 +46,7 @@ impl Course {
         self.corners.push_back((arrival, pose));
     }
 
-    /// Drops the path before `t` (s).
+    /// Discards the path before `t` (s).
     pub(crate) fn forget_before(&mut self, t: f64) {
         while self.corners.get(1).is_some_and(|(time, _)| *time <= t) {
             self.corners.pop_front();

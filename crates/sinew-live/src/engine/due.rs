@@ -32,7 +32,7 @@ impl Due {
         self.0.pop_front().map(|(_, command)| command)
     }
 
-    /// Cuts that wait.
+    /// Number of cuts that wait.
     pub(super) fn cuts(&self) -> usize {
         let commands = self.0.iter();
         let cuts = commands.filter(|(_, command)| matches!(command, Command::Cut { .. }));

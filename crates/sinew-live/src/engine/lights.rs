@@ -8,13 +8,13 @@ pub(crate) enum Colour {
     Grey,
     /// Good.
     Green,
-    /// With a reservation.
+    /// Acceptable with restrictions.
     Amber,
     /// Bad.
     Red,
 }
 
-/// A light with the number of its reason, which the page puts into words (`page/src/lights.js`).
+/// A light with the number of its reason, for which the page has a text (`page/src/lights.js`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Light {
     pub(crate) colour: Colour,
@@ -30,8 +30,8 @@ impl Light {
     pub(crate) const GREY: Self = Self::new(Colour::Grey, 0);
 }
 
-/// Energy beyond the supplied energy, over the largest energy so far, that counts as rounding and as the difference
-/// between energies half a step apart.
+/// Tolerance of energy above the supplied energy, over the largest energy so far: rounding, and the difference between
+/// energies half a step apart.
 const SLACK: f64 = 0.05;
 
 /// Data from which the light for a bounded motion is derived.
@@ -41,11 +41,11 @@ pub(crate) struct Bounds {
     pub(crate) stopped: bool,
     /// True if velocities were at their limit.
     pub(crate) is_saturated: bool,
-    /// Tetrahedra inside out.
+    /// Number of inverted tetrahedra.
     pub(crate) inverted: u32,
     /// True if parts or surfaces of the body overlap.
     pub(crate) overlaps: bool,
-    /// Energy less the supplied energy (J), NaN if unknown, and the largest energy or work so far (J).
+    /// Energy minus the supplied energy (J), NaN if unknown, and the largest energy or work so far (J).
     pub(crate) balance: f64,
     pub(crate) scale: f64,
 }
@@ -105,7 +105,7 @@ impl Settling {
         };
     }
 
-    /// A step of `dt` that ended at `t` (s) with a kinetic energy (J).
+    /// Records a step of `dt` that ended at `t` (s) with a kinetic energy (J).
     pub(crate) fn step(&mut self, t: f64, dt: f64, kinetic: f64) {
         self.sum += dt * kinetic;
         self.time += dt;
@@ -272,7 +272,7 @@ mod tests {
         watched(decay).colour
     }
 
-    /// The light of a motion whose energy goes with this exponent.
+    /// The light of a motion whose energy decays with this exponent.
     fn watched(decay: f64) -> Light {
         let mut settling = Settling::default();
         let mut t = 0.0;

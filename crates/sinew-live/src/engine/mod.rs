@@ -36,10 +36,10 @@ use crate::protocol::{Event, Field, FrameHead, FrameWriter, Order, Shape};
 use crate::scene_values::SceneValues;
 use crate::server::Shared;
 
-/// Simulated time (s) in which a tool moves to the user's tool pose: a jump within one step would be a blow.
+/// Simulated time (s) in which a tool moves to the user's tool pose: a jump within one step would be an impact.
 const GLIDE: f64 = 0.004;
 
-/// Time for which it steps before it checks commands and pictures again.
+/// Time of stepping before commands and pictures are checked again.
 const LOOK: Duration = Duration::from_millis(10);
 
 /// Shortest time between two pictures, for any requests of pages.
@@ -60,11 +60,11 @@ const CALM: Duration = Duration::from_millis(500);
 /// Time between two checks of missing journal entries.
 const BETWEEN_ENTRIES: Duration = Duration::from_secs(1);
 
-/// Most cuts that wait for a step, which takes all of them: a blade that moves while the simulation is paused would
-/// add cuts without limit.
+/// Largest number of cuts that wait for a step, which makes all of them: a blade that moves while the simulation is
+/// paused would add cuts without limit.
 const MOST_CUTS: usize = 256;
 
-/// Most panes.
+/// Largest number of panes.
 const MOST_PANES: usize = 2;
 
 /// The sessions and their control.
@@ -85,13 +85,13 @@ pub(crate) struct Engine {
     cut_at: Option<Instant>,
     /// True if the known stable steps belong to a cut body.
     knows_cut: bool,
-    /// The fields that the body has, and the one that colours show.
+    /// The fields of the body, and the one shown as colours.
     fields: Vec<Field>,
     field: Field,
     repaint: bool,
     trusted: Option<Trusted>,
     paused: bool,
-    /// Simulated time up to which all panes have stepped, rounded as theirs.
+    /// Simulated time up to which all panes have stepped, with the same rounding.
     clock: Clock,
     /// Span that the panes are stepping through.
     ahead: Option<Span>,
@@ -198,13 +198,13 @@ impl Engine {
         Ok(engine)
     }
 
-    /// Keeps files up to date with the logs of the panes, beginning with their headers.
+    /// Writes the logs of the panes to files, beginning with their headers.
     pub(crate) fn keep_logs(&mut self, journals: Vec<Journal>) -> Result<(), JournalError> {
         self.journals = journals;
         self.keep_up()
     }
 
-    /// Simulates until it is asked to end.
+    /// Simulates until the end is requested.
     pub(crate) fn run(mut self, shared: &Arc<Shared>, mut survey: Survey) -> Ended {
         let (mut waiting, mut is_done) = (Waiting::default(), true);
         self.pace = Pace::new(self.t());
@@ -243,7 +243,7 @@ impl Engine {
         }
     }
 
-    /// Brings the files of the logs up to date.
+    /// Updates the files of the logs.
     fn keep_up(&mut self) -> Result<(), JournalError> {
         let mut journals = self.journals.iter_mut().zip(&self.panes);
         journals.try_for_each(|(journal, pane)| journal.keep_up(pane.log()))
@@ -299,7 +299,7 @@ impl Engine {
         self.ahead.map_or(self.t(), |span| span.until)
     }
 
-    /// Steps up to wall time, but not for longer than commands may wait.
+    /// Steps up to wall time, but not longer than commands may wait.
     fn advance(&mut self, shared: &Shared) {
         let begun = Instant::now();
         let may = || begun.elapsed() < LOOK;
@@ -354,7 +354,7 @@ impl Engine {
         self.tell_applied(shared);
     }
 
-    /// Tells clients of commands that steps have taken.
+    /// Notifies clients of commands that steps have taken.
     fn tell_applied(&mut self, shared: &Shared) {
         let t = self.t();
         self.under_way.retain(|command| {
@@ -366,7 +366,7 @@ impl Engine {
         });
     }
 
-    /// Keeps a command of a client until steps have taken it, in place of commands that are taken no sooner: a client
+    /// Keeps a command of a client until steps have taken it; it replaces commands that are not taken earlier. A client
     /// is notified of its last one only.
     fn is_under_way(&mut self, client: u32, id: u32, arrival: f64) {
         self.under_way
@@ -378,7 +378,7 @@ impl Engine {
         });
     }
 
-    /// Time at which the next picture is to be made, if there is something new and a client to see it.
+    /// Time at which the next picture must be made, if there is a change and a client to show it to.
     fn next_picture(&self, shared: &Shared) -> Option<Instant> {
         let due = shared.clients.next_picture(self.changes)?;
         let due = match due <= self.newest_until() {
@@ -444,7 +444,7 @@ impl Engine {
         self.last_picture = Some(Instant::now());
     }
 
-    /// Requests the stable steps on changed bodies, once nothing cuts any more.
+    /// Requests the stable steps on changed bodies, after cutting has ended.
     fn learn_after_cuts(&mut self, shared: &Arc<Shared>, survey: &mut Survey) {
         let is_calm = self.cut_at.is_some_and(|last| last.elapsed() >= CALM);
         let Some(first) = self
@@ -465,7 +465,7 @@ impl Engine {
         self.news.settings = true;
     }
 
-    /// Executes the requests of pages, but not for longer than pictures may wait; returns true if none is left.
+    /// Executes the requests of pages, but not longer than pictures may wait; returns true if none remains.
     fn obey(&mut self, waiting: &mut Waiting, shared: &Shared) -> bool {
         let begun = Instant::now();
         waiting.forget(|client| !shared.clients.is_here(client));
@@ -684,7 +684,7 @@ impl Engine {
         Ok(())
     }
 
-    /// Refuses a command that the panes would refuse when its time comes.
+    /// Refuses a command that the panes would refuse at its time.
     fn check(&self, command: &Command) -> Result<(), String> {
         let mut panes = self.panes.iter();
         panes
@@ -733,14 +733,14 @@ impl Engine {
         Ok(())
     }
 
-    /// Takes all back to the beginning, the trusted run as well.
+    /// Resets all panes and the trusted run to the beginning.
     fn restart(&mut self) -> Result<(), String> {
         let trusted = self.trusted.take().map(|_| self.begin_trusted());
         let trusted = trusted.transpose().map(|trusted| self.trusted = trusted);
         self.go_back().and(trusted)
     }
 
-    /// Takes all panes back to the beginning; an error message if one continues with another method there.
+    /// Resets all panes to the beginning; returns an error message if one continues with another method there.
     fn go_back(&mut self) -> Result<(), String> {
         let mut outcome = Ok(());
         for pane in &mut self.panes {
@@ -766,7 +766,7 @@ impl Engine {
         (self.news.settings, self.news.went_back) = (true, true);
     }
 
-    /// The factors of loads as all panes have them at the beginning.
+    /// Sets the factors of loads to those of all panes at the beginning.
     fn take_first_factors(&mut self) {
         let first = &self.scene.first_factors;
         let factor_of = |load: &String| first.iter().find(|(name, _)| **name == **load);

@@ -11,14 +11,14 @@ use crate::protocol::{NumberFacts, OptionFacts};
 /// Largest count that a user is offered: larger ones do not help any method.
 const LARGEST_COUNT: u32 = 64;
 
-/// Ends of a number above 0 without an end, a speed among others (m/s).
+/// Limits of the offered values for a number above 0 without limits, such as a speed (m/s).
 const ABOVE_ZERO: [f64; 2] = [1e-3, 1e2];
 
 /// Smallest part of 1 that a user is offered.
 const SMALLEST_PART: f64 = 1e-8;
 
-/// The options of an integrator that have a value by default, with their current values. Options of machines change
-/// no motion.
+/// The options of an integrator that have a value by default, with their current values. Options of machines do not
+/// change the motion and are left out.
 pub(super) fn facts(id: &str, options: &Options) -> Vec<OptionFacts> {
     let Some(entry) = sinew_integrators::entry(id) else {
         return Vec::new();
@@ -46,7 +46,7 @@ pub(super) fn facts(id: &str, options: &Options) -> Vec<OptionFacts> {
     facts.collect()
 }
 
-/// The value that an option has by a word, a number, or both.
+/// The value of an option from a word, a number, or both.
 pub(super) fn value_of(
     (id, options): (&str, &Options),
     key: &str,
@@ -154,7 +154,7 @@ fn parts_of(value: &OptionValue) -> (Option<String>, Option<f64>) {
     }
 }
 
-/// The parts of a value as a scene writes it.
+/// The parts of a value in the form of scenes.
 fn parts_of_text(text: &str, words: &[&'static str]) -> (Option<String>, Option<f64>) {
     let is_in = |word: &&&str| text.contains(&format!("\"{word}\""));
     let word = words.iter().find(is_in).map(|word| (*word).to_owned());

@@ -1,15 +1,15 @@
-//! Simulated time against the time on the wall.
+//! Simulated time relative to wall time.
 
 use std::time::{Duration, Instant};
 
-/// Time (s) by which the simulation may be behind its next step before that time is given up.
+/// Largest delay (s) of the next step; a longer delay is discarded.
 const GIVEN_UP: f64 = 0.05;
 
 /// Time (s) over which the pace is a mean.
 const MEAN_OVER: f64 = 1.0;
 
-/// Keeps simulated time at that of the wall. What a simulation cannot follow is dropped, and shows as a pace below 1: the step never
-/// grows instead.
+/// Synchronises simulated time with wall time. If a simulation is too slow, the lost time is discarded and the pace is
+/// below 1; the step is never increased.
 #[derive(Debug)]
 pub(crate) struct Pace {
     /// Instant at which simulated time was `t`.
@@ -31,7 +31,7 @@ impl Pace {
         }
     }
 
-    /// The simulated time (s) that it should be now.
+    /// The current target of the simulated time (s).
     pub(crate) fn target(&self) -> f64 {
         self.t + self.since.elapsed().as_secs_f64()
     }
@@ -41,8 +41,8 @@ impl Pace {
         Duration::try_from_secs_f64(t - self.target()).unwrap_or_default()
     }
 
-    /// Records the simulated time (s), and drops a delay that cannot be caught up. A next step of `tick` (s) is not
-    /// due before that time has gone by.
+    /// Records the simulated time (s), and discards a delay that cannot be recovered. The next step of `tick` (s) is
+    /// not due before that time has passed.
     pub(crate) fn note(&mut self, t: f64, tick: f64) {
         if self.target() - t > tick + GIVEN_UP {
             (self.since, self.t) = (Instant::now(), t);
@@ -55,7 +55,7 @@ impl Pace {
         }
     }
 
-    /// Simulated time over the time on the wall, the mean of the last second.
+    /// Simulated time over wall time, the mean of the last second.
     pub(crate) fn mean(&self) -> f64 {
         self.mean
     }

@@ -34,28 +34,28 @@ pub(crate) struct Pane {
     due: Due,
     /// Loads whose factors are other than 1 at the beginning.
     first_factors: Vec<(Arc<str>, f64)>,
-    /// The integrator and the step that it was given, which a reset keeps.
+    /// The requested integrator and step, which a reset keeps.
     method: (String, Options, f64),
     /// Reason for which it cannot continue.
     pub(crate) stopped: Option<String>,
-    /// Error of the trusted run, and time (s) by which that is behind.
+    /// Error relative to the trusted run, and time (s) by which the trusted run is behind.
     pub(crate) error: f64,
     pub(crate) lag: f64,
-    /// The integrator and the options that the session was given last.
+    /// The last integrator and options of the session.
     given: (String, Options),
     step_facts: StepFacts,
     options: Vec<OptionFacts>,
-    /// The body as pages see it; `None` before the first picture.
+    /// The body in the form for pages; `None` before the first picture.
     shown: Option<Shown>,
     measured: Budget,
     looked: Budget,
     /// True if parts or surfaces of the body overlapped at the last check.
     overlaps: bool,
-    /// Displacement (m) before the last step, behind a cut at its beginning, and half way through it.
+    /// Displacement (m) before the last step, after a cut at its beginning, and halfway through the step.
     before: Vec<f64>,
     middle: Vec<f64>,
     force: Vec<f64>,
-    /// The last pose that each tool was given.
+    /// The last commanded pose of each tool.
     led: Vec<Option<[f64; 6]>>,
     /// The impulse (N s) that each tool had received before the last step.
     received: Vec<[f64; 3]>,
@@ -66,7 +66,7 @@ pub(crate) struct Pane {
     steps: u64,
     has_stepped: bool,
     ms_per_step: f64,
-    /// Kinetic energy now, and the work of loads since the beginning (J).
+    /// Current kinetic energy, and the work of loads since the beginning (J).
     kinetic: f64,
     load_work: f64,
     energies: Energies,
@@ -89,21 +89,21 @@ struct Energies {
 }
 
 impl Energies {
-    /// Energy less that at the beginning, the work since, and the energy added by cuts.
+    /// Energy minus that at the beginning, the work since then, and the energy added by cuts.
     fn balance(&self) -> f64 {
         self.kinetic + self.elastic - self.first - self.loads - self.tools - self.cuts
     }
 }
 
 impl Pane {
-    /// A scene of its own.
+    /// A pane with its own session of a scene.
     pub(crate) fn of(scene: &SceneValues) -> Result<Self, LiveError> {
         let session = World::new(scene.scene.clone())?.with_values(&scene.values);
         scene.check_files(session.log())?;
         Self::new(session, scene)
     }
 
-    /// A pane with a session of this scene that has taken no command yet.
+    /// A pane with a session of this scene that has not taken a command yet.
     pub(crate) fn new(session: World, scene: &SceneValues) -> Result<Self, LiveError> {
         let body = body(&session).ok_or(LiveError::NoBody)?;
         let tools = body.tools.as_ref().map_or(0, |tools| tools.tools().len());
@@ -148,7 +148,7 @@ impl Pane {
         Ok(pane)
     }
 
-    /// A pane of another scene at its beginning, by the same method.
+    /// A pane of another scene at its beginning, with the same method.
     pub(crate) fn on(&self, scene: &SceneValues) -> Result<Self, String> {
         let mut pane = Self::of(scene).map_err(|error| error.to_string())?;
         let switched = pane.switch(self.method.clone());
@@ -168,7 +168,8 @@ impl Pane {
         (settings.integrator.clone(), settings.options.clone())
     }
 
-    /// Switches to another integrator. The scene's options and limit of velocities apply if it is the scene's own.
+    /// Switches to another integrator. The scene's options and limit of velocities apply if it is the integrator of the
+    /// scene.
     pub(crate) fn use_integrator(&mut self, name: &str) -> Result<(), CommandError> {
         let settings = self.session.scene().settings();
         let own = &settings.options;
@@ -197,13 +198,13 @@ impl Pane {
         Err(refused)
     }
 
-    /// Another step (s).
+    /// Sets another step (s).
     pub(crate) fn use_step(&mut self, dt: f64) -> Result<(), CommandError> {
         let (id, options, _) = self.method.clone();
         self.switch((id, options, dt))
     }
 
-    /// Another option of the integrator: a word, a number, or both.
+    /// Sets another value of an option of the integrator: a word, a number, or both.
     pub(crate) fn use_option(
         &mut self,
         key: &str,
@@ -217,7 +218,7 @@ impl Pane {
             .map_err(|error| error.to_string())
     }
 
-    /// Switches to another integrator, with its own options, and to another step (s) together.
+    /// Switches to another integrator with its own options, and at the same time to another step (s).
     pub(crate) fn use_method(&mut self, name: &str, dt: f64) -> Result<(), CommandError> {
         self.switch((name.to_owned(), Options::new(), dt))
     }
@@ -232,7 +233,7 @@ impl Pane {
         })
     }
 
-    /// Continues with another method; one that stopped starts from the beginning, as its session takes no other
+    /// Continues with another method; a stopped pane starts from the beginning, since its session takes no other
     /// command.
     fn switch(&mut self, method: (String, Options, f64)) -> Result<(), CommandError> {
         if self.stopped.is_some() {
@@ -247,7 +248,7 @@ impl Pane {
         Ok(())
     }
 
-    /// Gives the session a method.
+    /// Sets the method of the session.
     fn apply(&mut self, (id, options, dt): &(String, Options, f64)) -> Result<(), CommandError> {
         let integrator = Command::Integrator {
             id: id.clone(),
@@ -264,7 +265,7 @@ impl Pane {
         Ok(())
     }
 
-    /// Asks for the stable step of the integrator, and for its options.
+    /// Determines the stable step of the integrator, and its options.
     pub(crate) fn learn(&mut self) {
         let (system, integrator) = (self.session.body().system(), self.session.integrator());
         let found = integrator.stable_step(system);
@@ -312,7 +313,7 @@ impl Pane {
         applied
     }
 
-    /// Gives loads the factors that they have at the beginning: before a method is chosen, which has to take them.
+    /// Sets the initial factors of loads. This is done before a method is chosen, which must support them.
     fn give_first_factors(&mut self) -> Result<(), CommandError> {
         let mut factors = self.first_factors.iter().cloned();
         factors.try_for_each(|(load, factor)| {
@@ -338,14 +339,15 @@ impl Pane {
         }
     }
 
-    /// A command that takes effect with the first step from a simulated time (s) on. One that stopped takes no more steps.
+    /// Adds a command that takes effect with the first step from a simulated time (s) on. A stopped pane takes no more
+    /// steps.
     pub(crate) fn command_at(&mut self, t: f64, command: Command) {
         if self.stopped.is_none() {
             self.due.add(t, command);
         }
     }
 
-    /// Cuts that wait for a step.
+    /// Number of cuts that wait for a step.
     pub(crate) fn waiting_cuts(&self) -> usize {
         self.due.cuts()
     }
@@ -462,7 +464,7 @@ impl Pane {
         self.settling.step(state.t(), dt, kinetic);
     }
 
-    /// Computes the energies; the elastic one half way through the last step, the time of its velocity.
+    /// Computes the energies; the elastic one halfway through the last step, the time of its velocity.
     fn measure(&mut self) {
         if !self.measured.is_due() {
             return;
@@ -495,7 +497,7 @@ impl Pane {
         }
     }
 
-    /// Checks if its body differs from the one that pages have; a new one then has to be sent.
+    /// True if its body differs from the one that pages have received, so that a new one must be sent.
     pub(crate) fn see_body(&mut self, uncut: &Surface) -> bool {
         let Some(body) = body(&self.session) else {
             return false;
@@ -512,7 +514,7 @@ impl Pane {
         body(&self.session).is_some_and(|body| body.cut.is_some())
     }
 
-    /// Its body with the surface that pages are shown of it.
+    /// Its body with the surface shown on pages.
     pub(crate) fn seen_body(&self) -> Option<(&BodyModel, &Surface)> {
         Some((body(&self.session)?, &self.shown.as_ref()?.surface))
     }

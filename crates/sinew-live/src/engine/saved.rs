@@ -1,4 +1,4 @@
-//! A moment that is saved.
+//! Saving the current state.
 
 use std::ffi::OsString;
 use std::path::{Component, Path, PathBuf};
@@ -10,7 +10,7 @@ use super::pane::Pane;
 use crate::protocol::Event;
 use crate::scene_values::SceneValues;
 
-/// Most folders that are checked for a free name.
+/// Largest number of folders that are checked for a free name.
 const MOST: u32 = 10_000;
 
 /// Reasons for which nothing is saved.
@@ -33,13 +33,13 @@ pub(crate) enum SaveError {
     /// A state that cannot be written.
     #[error(transparent)]
     State(#[from] BytesError),
-    /// The folder that this program works in is gone.
+    /// The working folder of this program no longer exists.
     #[error("no folder to save in: {0}")]
     Folder(#[from] std::io::Error),
 }
 
-/// Writes the scene with all that it reads, and state and commands of each pane, into a new folder of the current one. The files lie to each other as they
-/// do where the scene is, so that the scene finds them.
+/// Writes the scene with all that it reads, and state and commands of each pane, into a new folder of the current one.
+/// The files have the same relative positions as the original files, so that the scene finds them.
 pub(crate) fn save(scene: &SceneValues, panes: &[Pane]) -> Result<Event, SaveError> {
     let here = std::env::current_dir()?;
     let mut names = (1..=MOST).map(|number| here.join(format!("live-{number}")));
@@ -84,7 +84,8 @@ pub(crate) fn save(scene: &SceneValues, panes: &[Pane]) -> Result<Event, SaveErr
     })
 }
 
-/// The places of files in a folder, with `/` between the parts of each, in which they lie to each other as they do now: from the folder on that is above all of them.
+/// Paths of files in a new folder that keep their relative positions, with `/` between the parts: relative to the
+/// folder that contains all of them.
 fn places(files: &[PathBuf]) -> Vec<String> {
     let whole: Vec<Vec<OsString>> = files.iter().map(|file| parts(file)).collect();
     let folders = whole
@@ -119,7 +120,7 @@ fn parts(path: &Path) -> Vec<OsString> {
     parts
 }
 
-/// A word as a shell takes it.
+/// A word quoted for a shell.
 fn word(text: &str) -> String {
     let is_plain = |letter: char| letter.is_alphanumeric() || "_-./=+:,@%".contains(letter);
     match text.chars().all(is_plain) {

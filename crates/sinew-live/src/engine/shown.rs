@@ -1,4 +1,4 @@
-//! A body as pages see it.
+//! A body in the form for pages.
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -11,10 +11,10 @@ use sinew_world::World;
 use crate::picture::{Colours, Seen, Surface, twins};
 use crate::protocol::{Field, NONE};
 
-/// Colours and energies take at most one part in `SHARE` of the time.
+/// Divisor of time: colours and energies take at most one part in `SHARE` of the time.
 const SHARE: u32 = 5;
 
-/// Checks for overlap take at most one part in `SHARE_OF_OVERLAP` of the time, so they may be rare.
+/// Divisor of time: checks for overlap take at most one part in `SHARE_OF_OVERLAP` of the time, so they may be rare.
 const SHARE_OF_OVERLAP: u32 = 50;
 
 /// A task that is done as often as its share of time allows.
@@ -58,12 +58,12 @@ pub(super) struct Shown {
     colours: Colours,
     coloured: Budget,
     displacement: Vec<[f64; 3]>,
-    /// Pieces of the body.
+    /// Number of pieces of the body.
     pub(super) pieces: usize,
 }
 
 impl Shown {
-    /// A body, of which this was the surface before all cuts.
+    /// A body, with its surface before all cuts.
     pub(super) fn of(session: &World, body: &BodyModel, uncut: &Surface) -> Self {
         let surface = uncut.after_cuts(body);
         Self {
@@ -81,7 +81,7 @@ impl Shown {
         Arc::ptr_eq(&self.mesh, &body.mesh)
     }
 
-    /// Takes displacements of all nodes and, if there is time for it or if the choice of colours changed, colours.
+    /// Updates displacements of all nodes and, if there is time or if the choice of colours changed, colours.
     pub(super) fn paint(
         &mut self,
         session: &World,
@@ -115,7 +115,7 @@ impl Shown {
         }
     }
 
-    /// Tetrahedra inside out.
+    /// Number of inverted tetrahedra.
     pub(super) fn inverted(&self) -> u32 {
         self.colours.inverted
     }

@@ -12,7 +12,7 @@ use super::{options, stability};
 use crate::protocol::{Event, IntegratorFacts, StepFacts};
 use crate::server::Shared;
 
-/// Survey of the integrators' capabilities, on a thread of its own.
+/// Survey of the integrators' capabilities, on a separate thread.
 #[derive(Debug)]
 pub(crate) struct Survey(JoinHandle<()>);
 
@@ -38,7 +38,7 @@ impl Survey {
     }
 }
 
-/// An integrator, set up on a scene if it is to be tried, or the reason why it cannot be.
+/// An integrator, set up on a scene if it must be tried, or the reason why it cannot be set up.
 fn set_up(
     entry: &Entry,
     options: &Options,
@@ -54,7 +54,7 @@ fn set_up(
     Ok(integrator)
 }
 
-/// Finds the stable step of every integrator, or its refusal of the scene. Those that factorise are not set up,
+/// Finds the stable step of every integrator, or its error for the scene. Integrators that factorise are not set up,
 /// unless there are tools, which they refuse before they factorise.
 fn survey(scene: &Simulation, system: &dyn System) -> Vec<IntegratorFacts> {
     let has_tools = system.needs_contact();

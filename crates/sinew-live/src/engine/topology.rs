@@ -7,7 +7,7 @@ use super::shown::twin_points;
 use crate::picture::Surface;
 use crate::protocol::{NONE, SurfaceShape, topology};
 
-/// The surfaces of all panes as pages have them. A picture names their epoch.
+/// The surfaces of all panes in the form for pages. A picture names their epoch.
 #[derive(Debug, Default)]
 pub(super) struct Topology {
     /// Number of changes, the first surfaces among them.

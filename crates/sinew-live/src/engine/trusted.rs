@@ -14,17 +14,17 @@ use super::due::Due;
 use super::pane::Pane;
 use crate::scene_values::SceneValues;
 
-/// The method that is trusted, in steps that are short for it.
+/// The method of the trusted run, which takes short steps.
 const METHOD: &str = "central-difference";
 
-/// Share of the stable step.
+/// Step as a share of the stable step.
 const SHARE: f64 = 0.9;
 
-/// Spans by which it may be behind.
+/// Largest number of spans by which it may be behind.
 const MOST_BEHIND: usize = 1024;
 
-/// Most displacements of a pane that wait for comparison: those of a body of 20,000 nodes take half a megabyte, and a
-/// delayed trusted run would keep a thousand of them.
+/// Largest number of displacements of a pane that wait for comparison: those of a body of 20,000 nodes take half a
+/// megabyte, and a delayed trusted run would keep a thousand of them.
 const MOST_LOOKS: usize = 8;
 
 /// Decay factor of the shown error per span: a recent maximum is shown.
@@ -57,14 +57,14 @@ struct Known {
     failure: Option<String>,
 }
 
-/// A session on a thread of its own, which takes the same commands.
+/// A session on a separate thread, which takes the same commands.
 pub(crate) struct Trusted {
     spans: SyncSender<Span>,
     known: Arc<Mutex<Known>>,
     /// Simulated time (s), as bits.
     t: Arc<AtomicU64>,
     commands: Due,
-    /// Buffers for displacements, which come back when they have been compared.
+    /// Buffers for displacements, which are returned after the comparison.
     spare: Receiver<Vec<f64>>,
     /// True if the run is no longer needed.
     is_over: Arc<AtomicBool>,
@@ -124,17 +124,17 @@ impl Trusted {
         })
     }
 
-    /// A command that the panes were given for a simulated time (s).
+    /// Adds a command that the panes received for a simulated time (s).
     pub(crate) fn command_at(&mut self, t: f64, command: Command) {
         self.commands.add(t, command);
     }
 
-    /// Cuts that wait for the end of a span.
+    /// Number of cuts that wait for the end of a span.
     pub(crate) fn waiting_cuts(&self) -> usize {
         self.commands.cuts()
     }
 
-    /// The panes have stepped to the end (s) of a span; a sentence if the trusted run cannot follow.
+    /// Notifies the run that the panes have stepped to the end (s) of a span; returns a sentence if it cannot follow.
     pub(crate) fn span(
         &mut self,
         until: f64,
@@ -181,7 +181,7 @@ impl Trusted {
         }
     }
 
-    /// The error of a pane, and the time (s) by which it is old.
+    /// The error of a pane, and the age (s) of this value.
     pub(crate) fn error(&self, pane: usize, t: f64) -> (f64, f64) {
         let known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
         let error = known.errors.get(pane).copied().unwrap_or(f64::NAN);
@@ -189,7 +189,7 @@ impl Trusted {
     }
 }
 
-/// The longest step (s) of which a whole number make a span and that is short for the trusted method.
+/// The longest step (s) that divides a span into a whole number of steps and is short for the trusted method.
 fn step_within(span: f64, stable_step: f64) -> f64 {
     span / (span / (SHARE * stable_step)).ceil().max(1.0)
 }

@@ -8,15 +8,15 @@ use sinew_tools::{SurfacePressures, Tools};
 use super::surface::Surface;
 use crate::protocol::Field;
 
-/// The value of a point at tetrahedra that are inside out: the page shows it in a colour of its own.
+/// The value of a point at inverted tetrahedra: the page shows it in a separate colour.
 const INSIDE_OUT: f32 = f32::NAN;
 
 /// Values of a field at the points of a surface.
 #[derive(Debug)]
 pub(crate) struct Colours {
-    /// The value of each point; NaN at tetrahedra that are inside out.
+    /// The value of each point; NaN at inverted tetrahedra.
     pub(crate) values: Vec<f32>,
-    /// Number of tetrahedra that are inside out.
+    /// Number of inverted tetrahedra.
     pub(crate) inverted: u32,
     sums: Vec<f64>,
     weights: Vec<f64>,
@@ -27,7 +27,7 @@ pub(crate) struct Colours {
     pressures: SurfacePressures,
 }
 
-/// Share of a limit at which a velocity counts as clamped, which leaves it there but for rounding.
+/// Share of a limit above which a velocity counts as clamped: clamped velocities are at the limit except for rounding.
 const AT_LIMIT: f64 = 1.0 - 1e-9;
 
 /// Data from which a field is computed.
@@ -39,7 +39,7 @@ pub(crate) struct Seen<'a> {
     pub(crate) surface: &'a Surface,
     /// The state.
     pub(crate) state: &'a State,
-    /// Displacement (m) of each node of the mesh then.
+    /// Displacement (m) of each node of the mesh in this state.
     pub(crate) displacement: &'a [[f64; 3]],
     /// The tools.
     pub(crate) tools: Option<&'a Tools>,
@@ -64,7 +64,7 @@ impl Colours {
         }
     }
 
-    /// The fields that a body has.
+    /// The fields of a body.
     pub(crate) fn fields_of(model: &Model, laws: &[&Law], has_tools: bool) -> Vec<Field> {
         let mut fields = vec![Field::Strain, Field::Displacement];
         let has_stress = laws.iter().all(|law| !matches!(law, Law::Springs { .. }));
@@ -167,7 +167,7 @@ impl Colours {
         }
     }
 
-    /// The largest of the tetrahedra at each point.
+    /// The largest value over the tetrahedra at each point.
     fn step_limit(&mut self, seen: &Seen<'_>) {
         self.values.fill(0.0);
         let (model, surface) = (seen.model, seen.surface);
@@ -184,7 +184,7 @@ impl Colours {
         }
     }
 
-    /// The pressure of contact, as the fields of a run have it.
+    /// The pressure of contact, the same as in the fields of a run.
     fn pressure(&mut self, seen: &Seen<'_>) {
         self.values.fill(0.0);
         let Some(tools) = seen.tools else { return };

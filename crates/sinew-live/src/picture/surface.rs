@@ -96,7 +96,7 @@ impl Surface {
         depths.fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// The distance (m) of a place from the surface at rest, negative within the body.
+    /// The distance (m) of a position from the surface at rest, negative inside the body.
     fn distance(&self, place: [f64; 3]) -> f64 {
         let mut nearest = (f64::INFINITY, 1.0);
         for triangle in &self.triangles {

@@ -64,7 +64,7 @@ mod tests {
         session
     }
 
-    /// Pairs of nodes with the places of both at rest.
+    /// Pairs of nodes with the positions of both at rest.
     fn pairs(own: &World, other: &World) -> Vec<(usize, usize)> {
         let [own, other] = [own, other].map(|session| session.body().model().body().unwrap());
         let twins = twins(own, other);

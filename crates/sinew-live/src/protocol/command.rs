@@ -5,7 +5,8 @@ use serde::Deserialize;
 /// A command with the page's own number.
 #[derive(Clone, Debug, Deserialize, PartialEq)]
 pub(crate) struct Said {
-    /// The number, which rises from command to command; pictures name the last one that they contain.
+    /// The number, which increases from command to command; pictures contain the number of the last command included in
+    /// them.
     pub(crate) id: u32,
     /// The command.
     #[serde(flatten)]
@@ -16,7 +17,7 @@ pub(crate) struct Said {
 #[derive(Clone, Debug, Deserialize, PartialEq)]
 #[serde(tag = "do", rename_all = "snake_case")]
 pub(crate) enum Order {
-    /// A tool shall be there.
+    /// A target pose of a tool.
     Pose {
         /// Number of the tool.
         tool: usize,
@@ -32,7 +33,7 @@ pub(crate) enum Order {
         /// The factor.
         factor: f64,
     },
-    /// A cut by the sheet that a blade sweeps, as the body lies then.
+    /// A cut by the sheet that a blade sweeps, in the body's configuration at that time.
     Cut {
         /// Both ends (m) of the blade before.
         from: [[f64; 3]; 2],
@@ -71,14 +72,14 @@ pub(crate) enum Order {
         /// The number.
         number: Option<f64>,
     },
-    /// Time stops or continues.
+    /// Pauses or continues simulated time.
     Pause {
-        /// True if it stops.
+        /// True to pause.
         on: bool,
     },
-    /// One step while time stops.
+    /// One step while time is paused.
     Step,
-    /// Back to the beginning.
+    /// A reset to the beginning.
     Reset,
     /// One pane or two.
     Panes {
@@ -90,7 +91,7 @@ pub(crate) enum Order {
         /// The field.
         name: Field,
     },
-    /// Starts or ends a trusted run, from which the error is known.
+    /// Starts or ends a trusted run, which gives the error.
     Trusted {
         /// True if there is one.
         on: bool,
@@ -99,7 +100,7 @@ pub(crate) enum Order {
     Save,
 }
 
-/// The shape of a tool, as scenes have it.
+/// The shape of a tool, the same as in scenes.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Shape {
@@ -155,7 +156,7 @@ pub(crate) enum Field {
     Saturated,
     /// The pressure of tools (Pa).
     Pressure,
-    /// The inverse (1/s) of the largest step that central difference bears on single tetrahedra at rest.
+    /// The inverse (1/s) of the largest stable step of central difference on single tetrahedra at rest.
     StepLimit,
 }
 

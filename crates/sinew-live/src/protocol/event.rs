@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::command::Field;
 
-/// Something that happened.
+/// An event.
 #[derive(Debug, Serialize)]
 #[serde(tag = "event", rename_all = "snake_case")]
 pub(crate) enum Event {
@@ -14,7 +14,7 @@ pub(crate) enum Event {
     Settings {
         /// Each pane.
         panes: Vec<PaneFacts>,
-        /// True if time stops.
+        /// True if time is paused.
         paused: bool,
         /// Field shown as colours.
         field: Field,
@@ -28,7 +28,7 @@ pub(crate) enum Event {
         /// Each of them.
         list: Vec<IntegratorFacts>,
     },
-    /// A command that is refused, or a message that is no command.
+    /// A command that is refused, or a message that is not a command.
     Refused {
         /// The reason.
         reason: String,
@@ -45,14 +45,14 @@ pub(crate) enum Event {
         /// All of them.
         tools: Vec<ToolFacts>,
     },
-    /// All went back to the beginning.
+    /// A reset of everything to the beginning.
     Reset,
     /// A trusted run that ended.
     TrustedEnded {
         /// The reason.
         reason: String,
     },
-    /// A moment that was saved.
+    /// A state that was saved.
     Saved {
         /// The folder.
         folder: String,
@@ -80,7 +80,7 @@ pub(crate) struct Scenery {
     pub(crate) tets: usize,
     /// True if the body may be cut.
     pub(crate) cuts: bool,
-    /// Fields that this body has.
+    /// Fields of this body.
     pub(crate) fields: Vec<Field>,
     /// The largest of Young's moduli (Pa), a scale for stress.
     pub(crate) youngs_modulus: f64,
@@ -88,7 +88,7 @@ pub(crate) struct Scenery {
     pub(crate) tools: Vec<ToolFacts>,
     /// The loads that can be scaled.
     pub(crate) loads: Vec<LoadFacts>,
-    /// Three loads by which the user pulls.
+    /// Three loads with which the user pulls.
     pub(crate) hand: Option<HandFacts>,
     /// Material parameters for Hertz's formula, if the body is of one isotropic material.
     pub(crate) hertz: Option<Hertz>,
@@ -127,14 +127,14 @@ pub(crate) struct LoadFacts {
     pub(crate) what: String,
 }
 
-/// Three loads along x, y and z by which the user pulls at a place.
+/// Three loads along x, y and z with which the user pulls at a point.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct HandFacts {
-    /// The loads, by their places in the list of loads.
+    /// The loads, by their indices in the list of loads.
     pub(crate) loads: [usize; 3],
     /// Force (N) of each for a factor of 1.
     pub(crate) unit: f64,
-    /// Point of the surface, by its place, at which it pulls.
+    /// Index of the point of the surface at which it pulls.
     pub(crate) point: usize,
     /// Sentence about it.
     pub(crate) note: String,
@@ -184,7 +184,7 @@ pub(crate) struct IntegratorFacts {
 pub(crate) struct StepFacts {
     /// Kind of stability.
     pub(crate) stability: Stability,
-    /// The largest stable step (s), if any: 0 for none at all.
+    /// The largest stable step (s), if any: 0 if no step is stable.
     pub(crate) stable_step: Option<f64>,
 }
 
@@ -195,15 +195,15 @@ pub(crate) enum Stability {
     /// Unknown.
     #[default]
     Unknown,
-    /// Every step.
+    /// Every step is stable.
     Any,
-    /// Every step for small motions about rest of a body that is not linear.
+    /// Every step is stable for small motions about rest of a body that is not linear.
     AtRest,
-    /// Steps up to the stable one.
+    /// Steps up to the given one are stable.
     UpTo,
-    /// Steps up to the stable one for small motions about rest of a body that is not linear.
+    /// Steps up to the given one are stable for small motions about rest of a body that is not linear.
     AtRestUpTo,
-    /// Each step is cut into parts by the current stiffness.
+    /// Each step has substeps that follow the current stiffness.
     Cut,
 }
 
@@ -214,11 +214,11 @@ pub(crate) struct OptionFacts {
     pub(crate) key: &'static str,
     /// Its effect.
     pub(crate) help: &'static str,
-    /// The words that it takes.
+    /// The words that it accepts.
     pub(crate) words: Vec<&'static str>,
-    /// The numbers that it takes.
+    /// The numbers that it accepts.
     pub(crate) number: Option<NumberFacts>,
-    /// True if it takes a word and a number together.
+    /// True if it accepts a word and a number together.
     pub(crate) has_both: bool,
     /// The current word.
     pub(crate) word: Option<String>,
@@ -226,7 +226,7 @@ pub(crate) struct OptionFacts {
     pub(crate) value: Option<f64>,
 }
 
-/// Numbers that a user is offered.
+/// Range of numbers offered to the user.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub(crate) struct NumberFacts {
     /// The least of them.

@@ -14,16 +14,16 @@ pub(crate) fn is_frame(message: &[u8]) -> bool {
     message.starts_with(&PICTURE.to_le_bytes())
 }
 
-/// Place of the last command that a picture contains, which is other for each client.
+/// Offset of the number of the last command in a picture, which differs for each client.
 pub(crate) const APPLIED_AT: usize = 8;
 
-/// Bytes of the head of a picture.
+/// Number of bytes of the head of a picture.
 const HEAD: usize = 32;
 
-/// Bytes of the numbers of a pane.
+/// Number of bytes of the numbers of a pane.
 const PANE: usize = 176;
 
-/// Bytes of a tool.
+/// Number of bytes of a tool.
 const TOOL: usize = 136;
 
 /// The surface of a pane's body at rest.
@@ -35,11 +35,11 @@ pub(crate) struct SurfaceShape<'a> {
     pub(crate) triangles: &'a [[u32; 3]],
     /// Number of triangles, the first ones, that belong to the body before all cuts.
     pub(crate) outer: usize,
-    /// The point of the other pane's surface that is each point, or [`NONE`].
+    /// Corresponding point of the other pane's surface for each point, or [`NONE`].
     pub(crate) twins: &'a [u32],
 }
 
-/// Marks a node or a point that another body or surface does not have.
+/// Marks a node or a point without a counterpart in another body or surface.
 pub(crate) const NONE: u32 = u32::MAX;
 
 /// The surfaces of all panes for the pictures of this epoch.
@@ -78,20 +78,20 @@ pub(crate) fn topology(epoch: u32, surfaces: &[SurfaceShape<'_>]) -> Vec<u8> {
 pub(crate) struct FrameHead {
     /// Number of the picture.
     pub(crate) frame: u32,
-    /// Topology that its points belong to.
+    /// Topology to which its points belong.
     pub(crate) epoch: u32,
-    /// Panes in it.
+    /// Number of panes.
     pub(crate) panes: u32,
     /// Field shown as colours.
     pub(crate) field: u32,
-    /// Simulated time over the time on the wall.
+    /// Simulated time over wall time.
     pub(crate) pace: f64,
 }
 
 /// Numbers of a pane.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct PaneHead {
-    /// Steps so far.
+    /// Number of steps so far.
     pub(crate) step: u64,
     /// Simulated time (s).
     pub(crate) t: f64,
@@ -113,18 +113,18 @@ pub(crate) struct PaneHead {
     pub(crate) lag: f64,
     /// Share of velocities at their limit since the last picture.
     pub(crate) saturated: f64,
-    /// Kinetic energy of the last quarter of a second over that of the quarter before; NaN right after a
-    /// disturbance, as while a tool is steered.
+    /// Kinetic energy of the last quarter of a second over that of the quarter before; NaN right after a disturbance,
+    /// for example while a tool is steered.
     pub(crate) settling: f64,
     /// Colours of the three lights, two bits each.
     pub(crate) lights: u32,
     /// Reasons of the three lights, eight bits each.
     pub(crate) reasons: u32,
-    /// Tetrahedra inside out.
+    /// Number of inverted tetrahedra.
     pub(crate) inverted: u32,
-    /// Points at which tools press.
+    /// Number of points at which tools press.
     pub(crate) contacts: u32,
-    /// Energy less that at the beginning and the work since (J); NaN if the energy is unknown.
+    /// Energy minus that at the beginning and the work since then (J); NaN if the energy is unknown.
     pub(crate) balance: f64,
     /// Nodes and tetrahedra of the current body.
     pub(crate) nodes: u32,
@@ -146,7 +146,7 @@ pub(crate) struct CutHead {
     pub(crate) new_nodes: u32,
     /// Pieces of the body.
     pub(crate) pieces: u32,
-    /// Tetrahedra that were taken away.
+    /// Number of tetrahedra that were removed.
     pub(crate) removed: u32,
     /// Number of changes of the body.
     pub(crate) changes: u32,
@@ -167,12 +167,13 @@ pub(crate) struct ToolHead {
     pub(crate) hand: [f64; 6],
 }
 
-/// Writes a picture.
+/// A writer of a picture.
 #[derive(Debug)]
 pub(crate) struct FrameWriter(Vec<u8>);
 
 impl FrameWriter {
-    /// A picture of `points` points in each pane, and `tools` tools in all of them, whose length is known beforehand.
+    /// Begins a picture of `points` points in each pane, and `tools` tools in all of them, whose length is known in
+    /// advance.
     pub(crate) fn new(head: &FrameHead, points: &[usize], tools: usize) -> Self {
         let of_pane = |points: &usize| PANE + TOOL * tools + rounded_up(16 * points);
         let mut out = Vec::with_capacity(HEAD + points.iter().map(of_pane).sum::<usize>());
@@ -183,7 +184,7 @@ impl FrameWriter {
         Self(out)
     }
 
-    /// The numbers of a pane.
+    /// Writes the numbers of a pane.
     pub(crate) fn pane(&mut self, head: &PaneHead, points: usize, tools: usize) {
         let begins = self.0.len();
         self.0.extend(head.step.to_le_bytes());
@@ -247,7 +248,7 @@ impl FrameWriter {
         self.0.resize(rounded_up(self.0.len()), 0);
     }
 
-    /// The message.
+    /// Returns the message.
     pub(crate) fn finish(self) -> Vec<u8> {
         self.0
     }

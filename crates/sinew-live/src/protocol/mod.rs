@@ -1,8 +1,8 @@
 //! Messages between a page and the simulation.
 //!
-//! A page sends text, a JSON object for each command, and four bytes of credit for each picture that it has drawn: the microseconds
-//! until it draws again, little-endian. It gets text, a JSON object for each event, and binary pictures, with the surfaces that they
-//! belong to before the first of them.
+//! A page sends text, a JSON object for each command, and four bytes of credit for each picture that it has drawn: the
+//! microseconds until it draws again, little-endian. It receives text, a JSON object for each event, and binary
+//! pictures; the surfaces of pictures are sent before the first of them.
 
 mod command;
 mod event;

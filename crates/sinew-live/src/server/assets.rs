@@ -70,7 +70,7 @@ mod tests {
         assert!(bundle.contains("Permission is hereby granted"));
     }
 
-    /// Test against the hashes that `npm run build` wrote, of the sources and of the bundle made from them.
+    /// Compares with the hashes that `npm run build` wrote, of the sources and of the bundle made from them.
     #[test]
     fn the_bundle_is_built_from_the_sources() {
         let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("page");

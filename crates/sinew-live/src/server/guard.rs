@@ -1,14 +1,15 @@
-//! Checks of requests: only pages of this server may talk to it.
+//! Checks of requests: only pages of this server may connect to it.
 //!
-//! It listens to this computer alone. A page of a stranger that runs in the browser here reaches it, too, either directly, and then its
-//! `Origin` is the stranger's, or under a name of the stranger's that was bent to this computer (DNS rebinding), and then `Host` is
-//! that name. So `Host` must be a name of this computer, with any port, since a forwarded one may be another, and a
-//! connection must come from a page of that very host and port.
+//! The server listens on this computer only. A foreign page in a browser of this computer can reach it too: either
+//! directly, and then its `Origin` is foreign, or under a foreign name that was redirected to this computer (DNS
+//! rebinding), and then `Host` is that name. So `Host` must be a name of this computer, with any port, since a
+//! forwarded port may differ, and a connection must come from a page of exactly this host and port.
 
 use axum::http::HeaderMap;
 use axum::http::header::{HOST, ORIGIN};
 
-/// Names of this computer. With a dot at its end a name is the same one, written out; letters are of any size (RFC 9110, section 4.2.3).
+/// Names of this computer. A name with a dot at its end is the same name in absolute form; upper and lower case are
+/// equal (RFC 9110, section 4.2.3).
 const NAMES: [&str; 4] = ["localhost", "localhost.", "127.0.0.1", "[::1]"];
 
 /// True if a request names this computer.

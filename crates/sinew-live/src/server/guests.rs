@@ -1,4 +1,4 @@
-//! Connections to the server: not too many, and none that is silent for long.
+//! Connections to the server: limits of their number and of their idle time.
 
 use std::collections::VecDeque;
 use std::io::{self, ErrorKind};
@@ -16,17 +16,17 @@ use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
 use tokio::net::{TcpListener, TcpStream};
 use tokio::time::{Instant, Sleep, sleep_until};
 
-/// Most simultaneous connections: each page needs a few while it loads, and one from then on.
+/// Largest number of simultaneous connections: each page needs a few while it loads, and one afterwards.
 const MOST: usize = 64;
 
 /// Time after which a connection without a page ends if it reads no response.
 const PATIENCE: Duration = Duration::from_secs(10);
 
-/// Most simultaneous connections that have not named the secret of the page's address. One more dismisses the oldest
-/// of them, so that those who know it are always served.
+/// Largest number of simultaneous connections that have not sent the secret of the page's address. A further one
+/// dismisses the oldest of them, so that connections with the secret are always served.
 const MOST_STRANGERS: usize = 16;
 
-/// Time that a connection has to name the secret.
+/// Time limit for a connection to send the secret.
 const PATIENCE_WITH_STRANGERS: Duration = Duration::from_secs(3);
 
 /// A listener whose connections are counted and timed, so that idle ones leave capacity for pages.
@@ -34,7 +34,7 @@ const PATIENCE_WITH_STRANGERS: Duration = Duration::from_secs(3);
 pub(crate) struct Guests {
     listener: TcpListener,
     open: Arc<AtomicUsize>,
-    /// Connections that have not named the secret, the oldest first.
+    /// Connections that have not sent the secret, the oldest first.
     strangers: VecDeque<Standing>,
     limits: Limits,
 }
@@ -115,14 +115,14 @@ impl Drop for Seat {
     }
 }
 
-/// The status of a connection: a stranger, one that has named the secret, a page, or a dismissed one.
+/// The status of a connection: a stranger, one that has sent the secret, a page, or a dismissed one.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Standing(Arc<Inner>);
 
 #[derive(Debug, Default)]
 struct Inner {
     rank: AtomicU8,
-    /// Whoever waits for the connection.
+    /// The task that waits for the connection.
     waker: AtomicWaker,
 }
 
@@ -132,7 +132,7 @@ const PAGE: u8 = 2;
 const DISMISSED: u8 = 3;
 
 impl Standing {
-    /// It has named the secret.
+    /// Marks the connection as one that has sent the secret.
     pub(crate) fn know(&self) {
         let _ = self.raise(STRANGER, KNOWN);
     }
@@ -148,7 +148,7 @@ impl Standing {
         }
     }
 
-    /// Changes the rank from one to another; returns true if it had the first.
+    /// Changes the rank from one to another; returns true if the connection had the first rank.
     fn raise(&self, from: u8, to: u8) -> bool {
         let raised = self
             .0
@@ -161,7 +161,7 @@ impl Standing {
         self.0.rank.load(Ordering::Acquire)
     }
 
-    /// True if the connection is open and has not named the secret.
+    /// True if the connection is open and has not sent the secret.
     fn is_stranger(&self) -> bool {
         // Its connection has the other half.
         Arc::strong_count(&self.0) > 1 && self.rank() == STRANGER

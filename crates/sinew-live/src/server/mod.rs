@@ -1,4 +1,4 @@
-//! The server of the page, for this computer alone.
+//! The server of the page, for this computer only.
 
 mod assets;
 mod guard;

@@ -19,8 +19,8 @@ use super::{assets, guard, socket};
 /// Longest message of a page (bytes): commands take some hundred.
 const LONGEST_MESSAGE: usize = 16 * 1024;
 
-/// Most bytes that wait for a page which does not read: enough for a picture of a large body and its topology, but a
-/// limit for responses to pings.
+/// Largest number of bytes that wait for a page which does not read: enough for a picture of a large body and its
+/// topology, but a limit for responses to pings.
 const MOST_UNREAD: usize = 64 << 20;
 
 /// Content security policy: sources that the page may load; framing it is forbidden.

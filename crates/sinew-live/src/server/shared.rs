@@ -11,14 +11,14 @@ use crate::protocol::{Event, Scenery, ToolFacts};
 pub(crate) struct Shared {
     /// The queue of commands.
     pub(crate) inbox: Inbox,
-    /// Pictures come from there.
+    /// The connected pages, which receive pictures.
     pub(crate) clients: Clients,
     scenery: Mutex<Scenery>,
     integrators: Mutex<Option<Arc<Event>>>,
 }
 
 impl Shared {
-    /// Nobody has come yet.
+    /// Shared data without pages.
     pub(crate) fn new(scenery: Scenery) -> Self {
         Self {
             inbox: Inbox::default(),
@@ -34,26 +34,26 @@ impl Shared {
         scenery.unwrap_or_else(PoisonError::into_inner).clone()
     }
 
-    /// True if there is a tool of this number.
+    /// True if there is a tool with this number.
     pub(crate) fn has_tool(&self, tool: usize) -> bool {
         let scenery = self.scenery.lock();
         tool < scenery.unwrap_or_else(PoisonError::into_inner).tools.len()
     }
 
-    /// Sends the new tools to all pages, and to those that come later.
+    /// Sends the new tools to all pages, and to those that connect later.
     pub(crate) fn tell_of_tools(&self, tools: Vec<ToolFacts>) {
         let scenery = self.scenery.lock();
         scenery.unwrap_or_else(PoisonError::into_inner).tools = tools.clone();
         self.clients.tell_all(&Event::Tools { tools });
     }
 
-    /// The event about the integrators, once they are known.
+    /// The event about the integrators, if they are known.
     pub(crate) fn integrators(&self) -> Option<Arc<Event>> {
         let known = self.integrators.lock();
         known.unwrap_or_else(PoisonError::into_inner).clone()
     }
 
-    /// Sends the integrators to all pages, and to those that come later.
+    /// Sends the integrators to all pages, and to those that connect later.
     pub(crate) fn tell_of_integrators(&self, event: Event) {
         let event = Arc::new(event);
         let known = self.integrators.lock();

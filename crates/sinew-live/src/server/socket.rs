@@ -19,7 +19,7 @@ use crate::protocol::{Event, Order, Said, is_frame};
 /// Time for which a page may read nothing while a message is sent to it.
 const PATIENCE: Duration = Duration::from_secs(10);
 
-/// Longest time until its next draw that a page is believed.
+/// Longest accepted time until the next draw of a page.
 const LONGEST_FRAME: Duration = Duration::from_millis(250);
 
 /// Serves a page until it leaves, breaks the protocol, or reads nothing while messages accumulate.

@@ -10,7 +10,7 @@ const BYTES: usize = 16;
 pub(crate) struct Token(String);
 
 impl Token {
-    /// A new one.
+    /// A new random token.
     pub(crate) fn random() -> Result<Self, getrandom::Error> {
         let mut bytes = [0; BYTES];
         getrandom::fill(&mut bytes)?;

@@ -1,4 +1,4 @@
-//! A page as a browser talks to it.
+//! A page, with requests like those of a browser.
 
 use std::io::{ErrorKind, Read, Write};
 use std::net::TcpStream;
@@ -35,7 +35,7 @@ group = "bottom"
 /// Points of its surface.
 pub(crate) const POINTS: usize = 56;
 
-/// A scene on a free port, whose second pane is the one with any step.
+/// Settings for a scene on a free port, whose second pane is the one with any step.
 pub(crate) fn settings(text: &str) -> Settings {
     Settings {
         scene: Scene::parse(SceneSource::new("cube.toml", text)).unwrap(),
@@ -50,7 +50,7 @@ pub(crate) fn settings(text: &str) -> Settings {
     }
 }
 
-/// Place of the first pane in a picture, and the size of its numbers and of a tool.
+/// Offset of the first pane in a picture, and the size of its numbers and of a tool.
 pub(crate) const PANE: usize = 32;
 pub(crate) const NUMBERS: usize = 176;
 pub(crate) const TOOL: usize = 136;
@@ -133,7 +133,7 @@ impl Drop for Page {
 
 pub(crate) struct Connection {
     pub(crate) socket: WebSocket<TcpStream>,
-    /// The surfaces that came last.
+    /// The last surfaces received.
     pub(crate) topology: Vec<u8>,
 }
 
@@ -174,7 +174,7 @@ impl Connection {
         }
     }
 
-    /// The next event of this kind; pictures on the way are paid for.
+    /// The next event of this kind; pictures before it are acknowledged with credits.
     pub(crate) fn event(&mut self, kind: &str) -> Value {
         let begun = Instant::now();
         let mut others = Vec::new();

@@ -23,7 +23,7 @@ start = [0.05, 0.05, 0.145]
 hold = true
 "#;
 
-/// Places in a picture: the tool of the first pane, the second pane.
+/// Offsets in a picture: the tool of the first pane, the second pane.
 const TOOL: usize = PANE + NUMBERS;
 const SECOND: usize = TOOL + common::TOOL + 16 * POINTS;
 

@@ -1,4 +1,4 @@
-//! Bodies that are cut while a page looks on.
+//! Bodies that are cut while a page is connected.
 
 use std::path::PathBuf;
 
@@ -18,7 +18,7 @@ traction = [20.0, 0.0, 0.0]
 toughness = 100.0
 "#;
 
-/// Along the cells' faces at a third of the cube, two thirds down.
+/// A cut along the cells' faces at a third of the cube, two thirds down.
 const CUT: &str = r#""do":"cut","from":[[0.03333333333333333,-0.05,0.12],[0.03333333333333333,0.15,0.12]],"to":[[0.03333333333333333,-0.05,0.03],[0.03333333333333333,0.15,0.03]]"#;
 
 /// Area of that cut (m2): two cells deep, three long.
@@ -32,7 +32,7 @@ fn open(text: &str) -> Page {
     Page::of(settings(text))
 }
 
-/// A surface as pages get it.
+/// A surface in the form that pages receive.
 struct Surface {
     points: Vec<[f32; 3]>,
     triangles: Vec<[u32; 3]>,
@@ -105,7 +105,7 @@ fn epoch(bytes: &[u8], at: usize) -> u32 {
     u32_at(bytes, at)
 }
 
-/// The next picture for which this holds, each of which belongs to the surfaces before it.
+/// The next picture for which this holds; checks that each picture belongs to the surfaces before it.
 fn picture(client: &mut Connection, holds: impl Fn(&[u8]) -> bool) -> Vec<u8> {
     loop {
         let picture = client.picture(|_| true);

@@ -1,4 +1,4 @@
-//! Loads and methods that have to know them beforehand.
+//! Loads, and methods that must know them in advance.
 
 use sinew_live::{Hand, Live, PaneChoice, Settings};
 
@@ -26,7 +26,7 @@ fn modal() -> PaneChoice {
     }
 }
 
-/// Two panes that a hand pulls at, the second of which is this.
+/// Two panes at which the user pulls, with this second pane.
 fn pulled(second: PaneChoice) -> Settings {
     Settings {
         panes: vec![PaneChoice::default(), second],

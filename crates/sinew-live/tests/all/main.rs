@@ -1,4 +1,4 @@
-//! The live page as a browser talks to it.
+//! The live page, with requests like those of a browser.
 
 #![cfg(test)]
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may end so")]

@@ -1,4 +1,4 @@
-//! Commands that arrive while time stops.
+//! Commands that arrive while time is paused.
 
 use crate::common::{CUBE, Page, applied, settings, time};
 

@@ -1,4 +1,5 @@
-//! From any bytes the reader makes a mesh or an error, and every mesh can be checked, repaired and written.
+//! Fuzz target: for any bytes the reader returns a mesh or an error, and every mesh can be checked, repaired and
+//! written.
 //!
 //! ```text
 //! cargo install cargo-fuzz

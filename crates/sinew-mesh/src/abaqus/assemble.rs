@@ -1,4 +1,4 @@
-//! The mesh of the one part that a file's bodies are made of.
+//! The mesh of the only part of a file's bodies.
 
 use super::keywords::Model;
 use super::part::Part;
@@ -77,7 +77,7 @@ fn sum(point: &[f64; 3], translation: &[f64; 3], axis: usize) -> f64 {
     point.copied().unwrap_or(0.0) + translation.copied().unwrap_or(0.0)
 }
 
-/// The part that is the body, and its place.
+/// The part that is the body, and its position.
 struct Body<'m> {
     part: &'m Part,
     /// Sets that are defined in the instance of the part.
@@ -142,7 +142,7 @@ impl<'m> Body<'m> {
 const ONE: &str =
     "a body is one part with one instance: in Abaqus/CAE, Merge/Cut Instances makes one of several";
 
-/// The index of labels. A label that occurs again is refused unless `is_same` of both places.
+/// The index of labels. A label that occurs again is refused unless `is_same` is true for both indices.
 fn index(
     labels: &[u64],
     offsets: &[usize],

@@ -8,12 +8,12 @@ type Family = (&'static [&'static str], &'static [(u32, CellType)]);
 /// Treatment of elements of a type.
 pub(super) enum Kind {
     Read(CellType),
-    /// Elements without extent, and so without a place in a mesh.
+    /// Elements without extent, which are left out of a mesh.
     LeftOut,
     Unknown,
 }
 
-/// The kind of a type of elements, in letters of any case.
+/// The kind of a type of elements, upper or lower case.
 pub(super) fn kind_of(name: &str) -> Kind {
     let upper = name.to_ascii_uppercase();
     let is_left_out = [

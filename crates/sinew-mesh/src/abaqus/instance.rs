@@ -11,14 +11,14 @@ pub(super) struct Instance {
     pub(super) part: String,
     pub(super) offset: usize,
     pub(super) translation: [f64; 3],
-    /// Lines of data that have been read: the first one is a translation, the second a turn.
+    /// Lines of data that have been read: the first one is a translation, the second a rotation.
     pub(super) lines: usize,
     /// Nodes, elements and sets that are defined inside the instance.
     pub(super) own: Part,
 }
 
 impl Instance {
-    /// Reads a line of data behind `*INSTANCE`.
+    /// Reads a line of data after `*INSTANCE`.
     pub(super) fn data(&mut self, data: Data<'_>) -> Result<(), Fault> {
         self.lines += 1;
         if self.lines == 1 {

@@ -1,4 +1,4 @@
-//! Keywords and the data behind them.
+//! Keywords and the data after them.
 
 use super::elements::{Kind, kind_of};
 use super::instance::Instance;
@@ -18,7 +18,7 @@ pub(super) struct Model {
     pub(super) instances: Vec<Instance>,
     /// Sets and surfaces of the assembly that name its instance.
     pub(super) of_assembly: Part,
-    /// A part without anything.
+    /// An empty part.
     pub(super) nothing: Part,
     /// Keywords without contents of a mesh.
     pub(super) skipped: Vec<String>,
@@ -26,7 +26,7 @@ pub(super) struct Model {
     has_told_nodes: bool,
 }
 
-/// The keyword whose block a line belongs to.
+/// The keyword to whose block a line belongs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Place {
     Outside,
@@ -417,7 +417,7 @@ impl Model {
     }
 }
 
-/// Names of keywords that are kept at most.
+/// Largest number of names of keywords that are kept.
 const MOST_SKIPPED: usize = 200;
 
 fn node(part: &mut Part, set: Option<&str>, data: Data<'_>) -> Result<(), Fault> {

@@ -13,7 +13,7 @@ pub(super) enum Line<'a> {
 
 /// `*NAME, PARAMETER=VALUE, ..`.
 pub(super) struct Keyword {
-    /// In capitals, with single blanks.
+    /// The name in capitals, with single blanks.
     pub(super) name: String,
     pub(super) offset: usize,
     /// Names in capitals, values as written.
@@ -27,7 +27,7 @@ impl Keyword {
         given.map(|(_, value)| value.as_str())
     }
 
-    /// The value of a parameter that must be there.
+    /// The value of a required parameter.
     pub(super) fn needed(&self, name: &str) -> Result<&str, Fault> {
         let value = self.parameter(name).filter(|value| !value.is_empty());
         value.ok_or_else(|| {
@@ -49,7 +49,7 @@ pub(super) struct Data<'a> {
 }
 
 impl<'a> Data<'a> {
-    /// The fields, without blanks around them. What a comma at the end separates is none.
+    /// The fields, without blanks around them. An empty text after a comma at the end is not a field.
     pub(super) fn fields(self) -> impl Iterator<Item = Token<'a>> {
         let mut rest = Some(self.text);
         let mut offset = self.offset;
@@ -80,7 +80,7 @@ impl<'a> Data<'a> {
     }
 }
 
-/// A whole number above 0, by which nodes and elements are called.
+/// A whole number above 0: the label of a node or an element.
 pub(super) fn label(field: Token<'_>, what: &str) -> Result<u64, Fault> {
     match number::unsigned(field, what)? {
         0 => {
@@ -164,7 +164,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// A keyword's line, and those on which it continues behind a comma.
+    /// A keyword's line, and those on which it continues after a comma.
     fn keyword(&mut self, text: &[u8], offset: usize) -> Keyword {
         let mut text = text.to_vec();
         while text.ends_with(b",") && !self.cursor.is_at_end() {

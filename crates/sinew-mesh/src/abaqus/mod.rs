@@ -45,7 +45,7 @@ use crate::reading::remarks::Remarks;
 ///
 /// # Errors
 ///
-/// If the bytes are no such file, are inconsistent, or describe more than the mesh of one part; the error names the
+/// If the bytes are not such a file, are inconsistent, or describe more than the mesh of one part; the error names the
 /// place and the expected content.
 ///
 /// ```

@@ -16,7 +16,7 @@ pub(super) struct Part {
     pub(super) surfaces: Vec<Surface>,
 }
 
-/// The elements behind one keyword.
+/// The elements after one keyword.
 pub(super) struct Elements {
     pub(super) kind: CellType,
     pub(super) labels: Vec<u64>,
@@ -38,7 +38,7 @@ pub(super) struct Set {
 /// Some members of a set.
 #[derive(Debug, Clone)]
 pub(super) enum Member {
-    /// From the first label to the second, in steps.
+    /// The labels from the first to the second, in steps.
     Labels([u64; 3]),
     /// All members of another set.
     Set { name: String, offset: usize },
@@ -62,7 +62,7 @@ pub(super) struct SurfaceRow {
 }
 
 impl Part {
-    /// Adds members to the set of elements with this name, which is new if absent.
+    /// Adds members to the set of elements with this name, which is created if absent.
     pub(super) fn add_to_element_set(
         &mut self,
         name: &str,
@@ -72,7 +72,7 @@ impl Part {
         add(&mut self.element_sets, name, is_internal, members);
     }
 
-    /// Adds members to the set of nodes with this name, which is new if absent.
+    /// Adds members to the set of nodes with this name, which is created if absent.
     pub(super) fn add_to_node_set(&mut self, name: &str, is_internal: bool, members: Vec<Member>) {
         add(&mut self.node_sets, name, is_internal, members);
     }
@@ -83,7 +83,7 @@ impl Part {
     }
 }
 
-/// The place of the set of a name, which is added if absent.
+/// The index of the set with a name, which is created if absent.
 fn place_of(sets: &mut Vec<Set>, name: &str) -> usize {
     // Successive lines often continue the same set.
     let last = sets.len().saturating_sub(1);
@@ -112,7 +112,7 @@ fn add(sets: &mut Vec<Set>, name: &str, is_internal: bool, members: Vec<Member>)
 }
 
 impl Set {
-    /// Adds a member, to the last range if it continues it.
+    /// Adds a member; it extends the last range if it continues it.
     fn add(&mut self, member: Member) {
         match (self.members.last_mut(), member) {
             (Some(Member::Labels([_, last, 1])), Member::Labels([first, next, 1]))

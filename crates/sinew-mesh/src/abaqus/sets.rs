@@ -18,7 +18,7 @@ pub(super) struct Groups<'a> {
     /// The parts whose sets may be named.
     parts: &'a [&'a Part],
     remarks: &'a mut Remarks,
-    /// The tags of each element, by its place among all.
+    /// The tags of each element, by its index among all.
     of_elements: BTreeMap<u32, Vec<i32>>,
     of_nodes: BTreeMap<u32, Vec<i32>>,
     /// The faces of surfaces in the order in which they occur, and their tags.
@@ -162,7 +162,7 @@ impl<'a> Groups<'a> {
         }
     }
 
-    /// The tag of the group of a name and dimension, which is new if absent.
+    /// The tag of the group with a name and dimension, which is created if absent.
     fn tag_of(&mut self, mesh: &mut Mesh, dim: u8, name: &str) -> i32 {
         let known = mesh.physical_names.iter();
         let known =
@@ -179,7 +179,7 @@ impl<'a> Groups<'a> {
         tag
     }
 
-    /// The places of elements among all.
+    /// The indices of elements among all.
     fn elements(
         &mut self,
         part: &Part,
@@ -204,7 +204,7 @@ impl<'a> Groups<'a> {
         Ok(resolver.found)
     }
 
-    /// The places of nodes among all.
+    /// The indices of nodes among all.
     fn nodes(&mut self, part: &Part, mesh: &Mesh, members: &[Member]) -> Result<Vec<u32>, Fault> {
         let tags = || mesh.node_tags.iter().copied();
         let mut resolver = Resolver {
@@ -283,7 +283,7 @@ fn place_of_added(mesh: &Mesh, kind: CellType) -> usize {
     }
 }
 
-/// Adds a tag that is not there yet.
+/// Adds a tag if it is absent.
 fn add_tag(tags: &mut Vec<i32>, tag: i32) {
     if !tags.contains(&tag) {
         tags.push(tag);
@@ -307,7 +307,7 @@ impl Places {
         }
     }
 
-    /// The block and the nodes of an element by its place among all.
+    /// The block and the nodes of an element, by its index among all.
     fn cell<'m>(&self, mesh: &'m Mesh, element: u32) -> Option<(&'m CellBlock, &'m [u32])> {
         let element = element as usize;
         let block = self

@@ -178,7 +178,7 @@ pub struct MeshCheck {
 }
 
 impl Mesh {
-    /// Checks for problems that make a simulation fail or mislead. Changes nothing.
+    /// Checks for problems that make a simulation fail or give wrong results. Changes nothing.
     ///
     /// Nodes at the same place within a part are not reported, because cuts and contact surfaces consist of them.
     ///
@@ -199,7 +199,7 @@ impl Mesh {
         self.check_against(&CheckLimits::default())
     }
 
-    /// Does the same as [`Mesh::check`], with other limits.
+    /// Same as [`Mesh::check`], with other limits.
     #[must_use]
     pub(crate) fn check_against(&self, limits: &CheckLimits) -> MeshCheck {
         let mut check = MeshCheck::default();
@@ -292,7 +292,7 @@ impl MeshCheck {
 }
 
 impl fmt::Display for MeshCheck {
-    /// One line for each fact; lines that need attention start with `!`.
+    /// Writes one line for each fact; lines that need attention start with `!`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(
             f,

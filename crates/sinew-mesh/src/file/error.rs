@@ -24,7 +24,7 @@ pub enum MeshFileError {
     NotAFile {
         /// The path.
         path: PathBuf,
-        /// The kind of thing that it is.
+        /// The kind of the target.
         what: &'static str,
     },
     /// The file contains something other than a mesh of tetrahedra.
@@ -32,7 +32,7 @@ pub enum MeshFileError {
     NotAMesh {
         /// The file.
         path: PathBuf,
-        /// The kind of file that it is.
+        /// The kind of file.
         kind: NotAMesh,
     },
     /// The contents are wrong.
@@ -46,7 +46,7 @@ pub enum MeshFileError {
 }
 
 impl MeshFileError {
-    /// Advice, if any: the conversion of a file of another kind or format to one that is read.
+    /// Advice, if any: the conversion of a file of another kind or format to a supported one.
     #[must_use]
     pub fn advice(&self) -> Option<String> {
         match self {

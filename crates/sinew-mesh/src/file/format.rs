@@ -19,7 +19,7 @@ pub enum MeshFormat {
 }
 
 impl MeshFormat {
-    /// The format of a file by the extension of its name, in letters of any case.
+    /// The format of a file by the extension of its name, upper or lower case.
     #[must_use]
     pub fn of_path(path: &Path) -> Option<MeshFormat> {
         let extension = path.extension()?.to_str()?.to_ascii_lowercase();

@@ -27,7 +27,7 @@ use crate::vtu::read_vtu;
 ///
 /// # Errors
 ///
-/// If the bytes are no such file, or are inconsistent; the error names the place and the expected content.
+/// If the bytes are not such a file, or are inconsistent; the error names the place and the expected content.
 pub fn read_mesh(bytes: &[u8], format: MeshFormat) -> Result<Mesh, MeshError> {
     match format {
         MeshFormat::Msh => read_msh(bytes),
@@ -50,8 +50,8 @@ pub fn read_mesh_file(path: impl AsRef<Path>) -> Result<Mesh, MeshFileError> {
     read_mesh_of(path, &bytes_of(path)?)
 }
 
-/// Reads the bytes of a mesh file like [`read_mesh_file`], without opening it: its path determines the format, and is
-/// named in messages.
+/// Reads the bytes of a mesh file in the same way as [`read_mesh_file`], without opening it: its path determines the
+/// format, and is named in messages.
 ///
 /// # Errors
 ///
@@ -74,7 +74,7 @@ pub fn read_mesh_of(path: impl AsRef<Path>, bytes: &[u8]) -> Result<Mesh, MeshFi
 ///
 /// # Errors
 ///
-/// As [`read_mesh_file`].
+/// Same as [`read_mesh_file`].
 pub fn read_msh_file(path: impl AsRef<Path>) -> Result<Mesh, MeshFileError> {
     let path = path.as_ref();
     read_as(path, &bytes_of(path)?, MeshFormat::Msh)

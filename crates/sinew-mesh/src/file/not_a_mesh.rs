@@ -1,4 +1,4 @@
-//! Files that are often given where a mesh is wanted, and have no tetrahedra.
+//! Files without tetrahedra that are often given instead of a mesh.
 
 use std::fmt;
 use std::path::Path;
@@ -16,7 +16,7 @@ pub enum NotAMesh {
 }
 
 impl NotAMesh {
-    /// The kind of a file, identified by its first bytes or else by its name.
+    /// The kind of a file, identified by its first bytes, otherwise by its name.
     pub(super) fn of(path: &Path, bytes: &[u8]) -> Option<NotAMesh> {
         told_by_bytes(bytes).or_else(|| told_by_name(path))
     }

@@ -11,12 +11,13 @@ const READ_BY_MESHIO: [&str; 17] = [
     "dat", "tec", "ele", "node", "ugrid",
 ];
 
-/// Extensions of such formats that meshio reads by the packages of `meshio[all]`.
+/// Extensions of such formats that meshio reads with the packages of `meshio[all]`.
 const READ_BY_ALL_OF_MESHIO: [&str; 9] = [
     "xdmf", "xmf", "cgns", "h5m", "e", "exo", "ex2", "hmf", "med",
 ];
 
-/// Extensions of mesh formats that are not read, but for which an error names the command of meshio that makes a .msh file.
+/// Extensions of mesh formats that are not read, but for which the error message contains the command of meshio that
+/// makes a .msh file.
 pub fn converted_extensions() -> impl Iterator<Item = &'static str> {
     READ_BY_MESHIO.into_iter().chain(READ_BY_ALL_OF_MESHIO)
 }

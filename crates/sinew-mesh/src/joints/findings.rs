@@ -18,7 +18,7 @@ pub enum JointFinding {
 }
 
 impl Joints {
-    /// True if tetrahedra are connected wherever they seem to be.
+    /// True if all tetrahedra that seem to be connected are connected.
     #[must_use]
     pub fn is_clean(&self) -> bool {
         self.findings().is_empty()

@@ -4,20 +4,20 @@ use std::collections::HashMap;
 
 use crate::vector::{cross, dot, sub};
 
-/// Farthest that a face is outside another which it lies on, as a share of its longest edge; and how deep inside.
+/// Largest distance of a face outside, or inside, another face on which it lies, as a share of its longest edge.
 const OUTSIDE: f64 = 1e-3;
 const INSIDE: f64 = 1e-6;
 
-/// Least part of two normals that is opposed.
+/// Least opposed component of two normals.
 const OPPOSED: f64 = 0.999;
 
-/// Least edge of a cell of the grid, as a share of the longest edge of a face: a large face is in few of them.
+/// Least edge of a cell of the grid, as a share of the longest edge of a face: so that a large face is in few cells.
 const COARSEST: f64 = 0.02;
 
 /// Rounding of barycentric coordinates.
 const ROUNDING: f64 = 1e-6;
 
-/// Points of a face that are sought on others, by barycentric coordinates.
+/// Points of a face that are searched on others, in barycentric coordinates.
 const SAMPLES: [[f64; 3]; 4] = {
     const THIRD: f64 = 1.0 / 3.0;
     const FAR: f64 = 2.0 / 3.0;
@@ -33,7 +33,7 @@ const SAMPLES: [[f64; 3]; 4] = {
 /// A face in space: its corners (m), counter-clockwise from outside.
 pub(super) type Corners = [[f64; 3]; 3];
 
-/// Pairs (face, other) of faces that turn their outsides to each other, of which some point of the first lies on the other.
+/// Pairs (face, other) of faces with opposite outward normals, with a point of the first on the other.
 pub(super) fn pairs(faces: &[Corners]) -> Vec<[usize; 2]> {
     let lengths = faces.iter().map(longest_edge);
     let edge = lengths.clone().fold(0.0, f64::max);
@@ -60,7 +60,7 @@ pub(super) fn pairs(faces: &[Corners]) -> Vec<[usize; 2]> {
     pairs
 }
 
-/// True if a point of a face lies on another face that turns its outside to it.
+/// True if a point of a face lies on another face with an opposite outward normal.
 fn lies_on(face: &Corners, point: [f64; 3], reach: f64, other: &Corners) -> bool {
     let (Some(own), Some(normal)) = (normal(face), normal(other)) else {
         return false;
@@ -95,7 +95,7 @@ pub(super) fn longest_edge([a, b, c]: &Corners) -> f64 {
     squares.into_iter().fold(0.0, f64::max).sqrt()
 }
 
-/// Faces by the cells of a grid that their boxes meet.
+/// Faces, sorted into the cells of a grid that their boxes overlap.
 struct Grid {
     cell: f64,
     faces: HashMap<[i64; 3], Vec<u32>>,

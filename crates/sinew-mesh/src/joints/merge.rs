@@ -7,7 +7,8 @@ use super::surfaces::{Contacts, Surfaces};
 use crate::linearise::middle_nodes;
 use crate::mesh::Mesh;
 
-/// Pairs (node, into) of nodes of faces that touch and are at the place of a node of another part, into which they would be merged. Nodes of one part are never merged with each other.
+/// Pairs (node, into): a node of a touching face, and the node of another part at the same position, into which it
+/// would be merged. Nodes of one part are never merged with each other.
 pub(super) fn merged_nodes(surfaces: &mut Surfaces<'_>, contacts: &Contacts) -> Vec<[u32; 2]> {
     let mut of_place: HashMap<u32, BTreeSet<u32>> = HashMap::new();
     let pairs: Vec<[usize; 2]> = contacts
@@ -49,9 +50,10 @@ fn sorted(mut edge: [u32; 2]) -> [u32; 2] {
 }
 
 impl Mesh {
-    /// Merges nodes of parts that touch: nodes of faces on a face of another part, at the place of one of its nodes.
-    /// Nodes of one part are never merged with each other, so that cuts stay.
-    /// Nodes on edges of cells of second order follow the corners. Values are those of the first node. Returns the number of nodes that were merged into others.
+    /// Merges nodes of parts that touch: nodes of faces on a face of another part, at the position of one of its nodes.
+    /// Nodes of one part are never merged with each other, so that cuts stay. Nodes on edges of cells of second order
+    /// follow the corners. Values are those of the first node. Returns the number of nodes that were merged into
+    /// others.
     pub fn merge_nodes(&mut self) -> usize {
         let tets = self.corners_of_tets();
         let mut surfaces = Surfaces::of(&self.points, &tets);
@@ -78,7 +80,7 @@ impl Mesh {
         self.drop_nodes(&is_used)
     }
 
-    /// Joins the nodes in the middle of edges that became one.
+    /// Joins the nodes in the middle of edges that were merged.
     fn join_nodes_on_edges(&self, sets: &mut Sets) {
         let is_known = |node: &&u32| (**node as usize) < self.points.len();
         let mut on_edge: HashMap<[u32; 2], Vec<([u32; 2], u32)>> = HashMap::new();

@@ -27,29 +27,33 @@ use surfaces::{middle, parts};
 pub struct Joints {
     /// Number of parts.
     pub parts: usize,
-    /// Number of parts if touching parts were joined.
+    /// Number of parts after joining touching parts.
     pub parts_apart: usize,
-    /// Faces of a part that lie on one of another node by node, without common nodes; each pair once, by its middle.
+    /// Faces of a part that coincide with faces of another part node by node, without common nodes; each pair once,
+    /// given by its middle.
     pub touching: Places,
-    /// Faces of a part that touch a face of another part without matching it, by their middles.
+    /// Faces of a part that touch a face of another part without matching it, given by their middles.
     pub touching_partly: Places,
     /// Number of nodes that [`crate::Mesh::merge_nodes`] would merge into others: nodes of touching faces, at the
-    /// place of a node of another part.
+    /// position of a node of another part.
     pub mergeable: usize,
-    /// Faces within a part that lie on others which have other corners, by their middles: faces that are split along different diagonals, or have nodes of others inside.
+    /// Faces within a part that lie on others with different corners, given by their middles: faces that are split
+    /// along different diagonals, or have nodes of others inside.
     pub mismatched: Places,
-    /// Nodes inside a face or an edge of another face that lies on theirs, without being its corners: they move apart from it.
+    /// Hanging nodes: nodes inside a face or an edge of another face on which their face lies, without being its
+    /// corners. They can move away from it.
     pub hanging: Places,
     /// Nodes that join blocks of tetrahedra without a common face: hinges.
     pub hinges: Places,
-    /// Blocks that hang by hinges alone.
+    /// Blocks that are connected by hinges only.
     pub hinged_blocks: usize,
-    /// Faces of which both tetrahedra are on the same side, by their middles: the mesh is tangled there.
+    /// Faces with both tetrahedra on the same side, given by their middles: the mesh is tangled there.
     pub tangled: Places,
 }
 
 impl TetMesh {
-    /// The part of each node, counted from 0 in the order of their lowest nodes, and their number: tetrahedra that share a node belong to one part.
+    /// The part of each node, counted from 0 in the order of their lowest nodes, and the number of parts: tetrahedra
+    /// that share a node belong to one part.
     #[must_use]
     pub fn part_of_nodes(&self) -> (Vec<u32>, usize) {
         let mut sets = parts(&self.points, &self.tets);
@@ -136,7 +140,7 @@ impl Surfaces<'_> {
         joints
     }
 
-    /// Adds nodes of a face that lie on another one, at the place of none of its corners.
+    /// Adds nodes of a face that lie on another one, but not at one of its corners.
     fn add_hanging(&self, face: usize, other: usize, hanging: &mut BTreeSet<u32>) {
         let corners = self.corners(other);
         let places = self.boundary[other].0.map(|node| self.place(node));

@@ -1,8 +1,8 @@
-//! Nodes at the same place.
+//! Nodes at the same position.
 
 use std::collections::HashMap;
 
-/// For each node, the first one at its place, or the node itself if there is no other: no coordinate differs by more
+/// For each node, the first one at its position, or the node itself if there is no other: no coordinate differs by more
 /// than `rounding` (m). Nodes that are not `wanted` map to themselves.
 pub(crate) fn same_places(points: &[[f64; 3]], wanted: &[bool], rounding: f64) -> Vec<u32> {
     let cell = 4.0 * rounding;

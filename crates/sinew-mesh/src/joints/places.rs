@@ -1,14 +1,14 @@
-//! Places of findings.
+//! Positions of findings.
 
 use std::fmt;
 
 /// Number of examples that are kept of each finding.
 const EXAMPLES: usize = 10;
 
-/// Number of places, and the first ten.
+/// Number of positions, and the first ten.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Places {
-    /// Number of places.
+    /// Number of positions.
     pub total: usize,
     /// The first ten, in the unit of the mesh.
     pub first: Vec<[f64; 3]>,
@@ -22,7 +22,7 @@ impl Places {
         }
     }
 
-    /// True if there are no places.
+    /// True if there are no positions.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.total == 0

@@ -14,7 +14,7 @@ impl Sets {
         }
     }
 
-    /// The number that represents the set of another: the least of it.
+    /// The number that represents the set of another number: the least of the set.
     pub(crate) fn root(&mut self, mut of: u32) -> u32 {
         while self.parent[of as usize] != of {
             let above = self.parent[of as usize];
@@ -25,7 +25,7 @@ impl Sets {
         of
     }
 
-    /// Makes one set of two.
+    /// Joins two sets.
     pub(crate) fn join(&mut self, a: u32, b: u32) {
         let (a, b) = (self.root(a), self.root(b));
         self.parent[a.max(b) as usize] = a.min(b);

@@ -1,4 +1,4 @@
-//! The faces that bound tetrahedra, and how they lie on each other.
+//! The boundary faces of tetrahedra, and pairs of faces that lie on each other.
 
 use std::collections::HashMap;
 
@@ -10,7 +10,7 @@ use crate::bounds::Bounds;
 use crate::tet_mesh::faces::{Owner, for_each_face, is_sound};
 use crate::tet_shape::TetShape;
 
-/// Distance of places that are one but for rounding, as a share of the width of the mesh.
+/// Distance within which positions are equal except for rounding, as a share of the width of the mesh.
 const ROUNDING: f64 = 1e-9;
 
 /// Volume of a flat tetrahedron, as a share of the cube of its longest edge.
@@ -23,20 +23,20 @@ pub(crate) struct Surfaces<'a> {
     /// Parts of nodes, and blocks of tetrahedra with common faces.
     pub(super) parts: Sets,
     pub(super) blocks: Sets,
-    /// Faces of one tetrahedron, counter-clockwise from outside, with it.
+    /// Faces of only one tetrahedron, counter-clockwise from outside, with this tetrahedron.
     pub(super) boundary: Vec<([u32; 3], u32)>,
     pub(super) tangled: Places,
-    /// Faces of more than two tetrahedra, their nodes in ascending order, with these.
+    /// Faces of more than two tetrahedra, their nodes in ascending order, with these tetrahedra.
     pub(crate) crowded: Vec<([u32; 3], Vec<u32>)>,
-    /// For each node of the boundary, the first one at its place.
+    /// For each node of the boundary, the first one at its position.
     pub(super) same: Vec<u32>,
 }
 
 /// Pairs of boundary faces that lie on each other.
 pub(crate) struct Contacts {
-    /// Pairs of faces with the same places and other nodes.
+    /// Pairs of faces with the same positions but different nodes.
     pub(super) matched: Vec<[usize; 2]>,
-    /// Pairs (face, other) of which the first lies on the other otherwise.
+    /// Other pairs (face, other) of which the first lies on the other.
     pub(super) lying: Vec<[usize; 2]>,
 }
 
@@ -157,7 +157,7 @@ fn orientation(points: &[[f64; 3]], tet: &[u32; 4]) -> i8 {
     }
 }
 
-/// 1 where three numbers are in ascending order but for a rotation, else -1.
+/// 1 if three numbers are in ascending order up to a cyclic permutation, otherwise -1.
 fn parity([a, b, c]: [u32; 3]) -> i8 {
     let inversions = u8::from(a > b) + u8::from(b > c) + u8::from(a > c);
     if inversions % 2 == 0 { 1 } else { -1 }

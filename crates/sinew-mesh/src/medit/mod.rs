@@ -35,7 +35,7 @@ const REFERENCES: &str = "medit:ref";
 ///
 /// # Errors
 ///
-/// If the bytes are no such file, or are inconsistent; the error names the place and the expected content.
+/// If the bytes are not such a file, or are inconsistent; the error names the place and the expected content.
 ///
 /// ```
 /// let file = "MeshVersionFormatted 2 Dimension 3
@@ -312,7 +312,7 @@ enum Cells {
     HigherOrder,
 }
 
-/// The cells behind a keyword in small letters.
+/// The cells of a keyword in lower case.
 fn cells_of(keyword: &str) -> Option<Cells> {
     Some(Cells::Read(match keyword {
         "edges" => CellType::Line,

@@ -190,7 +190,7 @@ fn drop_repeated(
     Ok(())
 }
 
-/// The part of a mesh's extent by which rounding may take the places of one node apart.
+/// The share of a mesh's extent by which rounding may change the position of a node.
 const ROUNDING: f64 = 1e-9;
 
 /// The longest side of the box about points.
@@ -387,7 +387,7 @@ struct Groups {
     entities: Option<Entities>,
     /// In a partitioned mesh, blocks refer to these first.
     parts: Option<Entities>,
-    /// Entities that were remarked upon.
+    /// Entities with a remark.
     unlisted: HashSet<Entity>,
 }
 

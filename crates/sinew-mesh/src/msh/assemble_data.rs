@@ -1,4 +1,4 @@
-//! Brings values under tags into the order of points and cells.
+//! Sorts values with tags into the order of points and cells.
 
 use std::ops::Range;
 
@@ -79,8 +79,8 @@ pub(super) fn add(
     Ok(())
 }
 
-/// A few rows of a large mesh are filled up with NaN. Many such sections could ask for far more memory than the file has
-/// bytes, and are refused.
+/// Refuses data that are too sparse. Missing rows are filled with NaN; many such sections could need far more memory
+/// than the file has bytes.
 fn refuse_if_too_sparse(
     sections: &[RawData],
     mesh: &Mesh,

@@ -12,7 +12,7 @@ use crate::mesh::PeriodicLink;
 pub(super) struct Contents {
     pub(super) physical_names: PhysicalNames,
     pub(super) names_without_dim: NamesWithoutDim,
-    /// `None` if the file has no such section.
+    /// The entities; `None` if the file has no such section.
     pub(super) entities: Option<Entities>,
     /// The entities of a partitioned mesh, if it is one.
     pub(super) parts: Option<Entities>,

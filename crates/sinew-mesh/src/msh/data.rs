@@ -25,7 +25,7 @@ pub(super) struct RawData {
     pub(super) time: f64,
     pub(super) components: usize,
     pub(super) tags: Vec<u64>,
-    /// For nodes of elements: how many nodes each row has.
+    /// Number of nodes of each row, for values at nodes of elements.
     pub(super) node_counts: Vec<u32>,
     pub(super) values: Vec<f64>,
     /// Offset of the section's first number.
@@ -168,7 +168,8 @@ fn read_numbers<'a>(cursor: &mut Cursor<'a>) -> Result<[Token<'a>; 3], Fault> {
     Ok(numbers)
 }
 
-/// Tags are ints in practice, other than gmsh's manual says. Files that follow the manual are read as well.
+/// Reads binary rows. In practice tags are ints, in contrast to gmsh's manual; files that follow the manual are read as
+/// well.
 fn read_binary_rows(
     cursor: &mut Cursor<'_>,
     binary: Binary,

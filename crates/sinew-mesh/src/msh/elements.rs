@@ -30,12 +30,12 @@ pub(super) struct RawBlock {
     pub(super) place: BlockPlace,
 }
 
-/// The groups of a block's elements, as the file gives them.
+/// The groups of a block's elements, in the form of the file.
 #[derive(Debug)]
 pub(super) enum RawGroups {
-    /// Version 4: by the entity of the block, which is at `offset`.
+    /// Version 4: the groups of the entity of the block, which is at `offset`.
     OfEntity { entity: Entity, offset: usize },
-    /// Versions 1 and 2: each by its own row.
+    /// Versions 1 and 2: the groups in each element's row.
     OfEach {
         physical: PhysicalTags,
         geometrical: Vec<i32>,
@@ -253,7 +253,7 @@ fn read_v2_text_row(
 }
 
 /// The section of version 2 as bytes, without its last line, and the number of elements it declares. The number of
-/// elements is text all the same.
+/// elements is text even in this case.
 pub(super) fn read_v2_bytes(
     cursor: &mut Cursor<'_>,
     format: Format,

@@ -112,7 +112,7 @@ impl Rows {
         Ok(())
     }
 
-    /// Numbers of a bounding box: version 4.1 gives a point once.
+    /// Number of values of a bounding box: in version 4.1 a point is given once.
     fn bounds(&self, dim: u8) -> u64 {
         if dim == 0 && self.version != Version::V40 {
             3

@@ -5,7 +5,7 @@ use crate::reading::fault::Fault;
 use crate::reading::number;
 use crate::reading::remarks::Remarks;
 
-/// A count on a line of its own, as text even in binary files.
+/// A count on a separate line, as text even in binary files.
 pub(super) fn count_line(cursor: &mut Cursor<'_>, what: &str) -> Result<u64, Fault> {
     let count = number::unsigned(cursor.token(what)?, what)?;
     cursor.line_end(what)?;
@@ -25,7 +25,7 @@ pub(super) fn end_section(
     end_line(cursor, &format!("$End{name}"), after, remarks)
 }
 
-/// Like [`end_section`], with the whole line given in `end`.
+/// Same as [`end_section`], with the whole line given in `end`.
 pub(super) fn end_line(
     cursor: &mut Cursor<'_>,
     end: &str,

@@ -85,7 +85,7 @@ pub(super) fn refuse_other_formats(bytes: &[u8]) -> Result<(), Fault> {
     }
 }
 
-/// The refusal of a file of Fluent, the format that meshio takes for names that end in .msh.
+/// The error for a file of Fluent, the format that meshio assumes for names that end in .msh.
 fn of_fluent(text: &[u8]) -> Fault {
     let line = Cursor::new(text).line();
     let is_of_meshio = line.windows(6).any(|word| word == b"meshio");
@@ -208,7 +208,7 @@ fn byte_order(cursor: &mut Cursor<'_>) -> Result<ByteOrder, Fault> {
     }
 }
 
-/// The meaning of a bare `4`: version 4.1 if the first line of `$Nodes` has four numbers, else 4.0.
+/// The meaning of a bare `4`: version 4.1 if the first line of `$Nodes` has four numbers, otherwise 4.0.
 fn version_of_text(cursor: &Cursor<'_>) -> Version {
     let mut ahead = cursor.clone();
     while !ahead.is_at_end() {

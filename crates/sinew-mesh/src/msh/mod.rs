@@ -1,8 +1,8 @@
 //! gmsh's .msh format: reading versions 1 and 2.0 to 4.1, writing 2.2 and 4.1, as text and as bytes.
 //!
 //! The reader walks over the bytes once. A cursor knows offsets, [`source`] turns bytes into numbers, `section` finds
-//! sections, and one module for each section decodes its rows per format version into raw tables with the file's
-//! tags. [`assemble`] then turns tags into indices, when all sections are known, in whatever order they came.
+//! sections, and one module for each section decodes its rows per format version into raw tables with the file's tags.
+//! [`assemble`] then turns tags into indices, after all sections were read, in any order.
 //!
 //! The reader's choices in cases that the format leaves open:
 //!
@@ -79,15 +79,15 @@ use header::Version;
 
 /// Reads the bytes of a .msh file: version 1 as text, 2.0, 2.1, 2.2, 4.0 or 4.1 as text or as bytes of either order.
 ///
-/// Points, cells, names and their order are those that meshio 5.3.5 gives, wherever meshio reads a file as it is meant. Beyond
-/// that, every cell has its groups in every version, data rows go by their tags, and files that meshio refuses are
+/// Points, cells, names and their order are the same as in meshio 5.3.5, if meshio reads a file correctly. In addition,
+/// every cell has its groups in every version, data rows are assigned by their tags, and files that meshio refuses are
 /// read.
 ///
 /// [`Mesh::warnings`] lists what was tolerated.
 ///
 /// # Errors
 ///
-/// If the bytes are no such file, or are inconsistent; the error names the place and the expected content.
+/// If the bytes are not such a file, or are inconsistent; the error names the place and the expected content.
 ///
 /// ```
 /// let file = b"$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n1\n7 0 0 zero\n$EndNodes\n";

@@ -18,7 +18,7 @@ pub(super) struct RawNodes {
     pub(super) points: Vec<[f64; 3]>,
     /// The place of each node's tag in the file.
     pub(super) places: RowPlaces,
-    /// Empty in versions 1 and 2, except for nodes with parametric coordinates.
+    /// The entity of each node; empty in versions 1 and 2, except for nodes with parametric coordinates.
     pub(super) entities: Vec<Entity>,
 }
 
@@ -50,7 +50,7 @@ pub(super) fn read_rows(cursor: &mut Cursor<'_>, nodes: &mut RawNodes) -> Result
     Ok(total)
 }
 
-/// The section of version 2 as bytes, without its last line. Its count is text all the same.
+/// The section of version 2 as bytes, without its last line. Its count is text even in this case.
 pub(super) fn read_v2_bytes(
     cursor: &mut Cursor<'_>,
     format: Format,
@@ -88,7 +88,7 @@ fn read_tagged_points(
     Ok(())
 }
 
-/// `$ParametricNodes` of version 2, without its last line: nodes with the entity they are on, and where on it.
+/// `$ParametricNodes` of version 2, without its last line: nodes with their entity, and their parameters on it.
 pub(super) fn read_v2_parametric(
     source: &mut impl Source,
     total: u64,

@@ -15,7 +15,7 @@ pub(super) type PhysicalNames = BTreeMap<(u8, i32), String>;
 /// Names by tag alone: version 2.0 has no column for the dimension.
 pub(super) type NamesWithoutDim = BTreeMap<i32, String>;
 
-/// The tables that names are stored in.
+/// The tables in which names are stored.
 pub(super) struct Names<'n> {
     pub(super) version: Version,
     pub(super) names: &'n mut PhysicalNames,

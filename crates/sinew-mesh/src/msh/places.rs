@@ -27,7 +27,7 @@ pub(super) enum Layout {
 }
 
 impl RowPlaces {
-    /// From row `first_row` on, rows are at `offset` and after it.
+    /// Adds rows from `first_row` on, at `offset` and after it.
     pub(super) fn add_run(&mut self, first_row: usize, offset: usize, layout: Layout) {
         self.runs.push(Run {
             first_row,

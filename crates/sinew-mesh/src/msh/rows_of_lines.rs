@@ -6,8 +6,8 @@ use crate::reading::fault::Fault;
 /// Reads row `number` (from 1) of `total`.
 ///
 /// Several rows on a line and a row over several lines are both fine. But a row that crosses a line break without
-/// beginning and ending with a line took a number from the row after it, or was left one by the row before: it is refused,
-/// because the following rows can look valid and mean something else.
+/// beginning and ending with a line contains a number of the row after it, or of the row before. It is refused, because
+/// the following rows can look valid but have a different meaning.
 pub(super) fn read_row<'a>(
     cursor: &mut Cursor<'a>,
     (record, number, total): (&str, u64, u64),

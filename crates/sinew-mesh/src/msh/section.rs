@@ -126,7 +126,7 @@ const IN_VERSION_1: Reason = (
     "one version in a file",
 );
 
-/// Skips a section that means nothing here, such as comments; refuses one whose contents depend on the version.
+/// Skips a section without meaning here, such as comments; refuses one whose contents depend on the version.
 fn skip_unless_known(
     cursor: &mut Cursor<'_>,
     offset: usize,
@@ -269,8 +269,8 @@ fn read_elements(
     Ok((section, format!("the declared {total} elements")))
 }
 
-/// Sections without meaning for a mesh. gmsh writes its own schemes of interpolation, by which it draws elements,
-/// before every view, and the parameters of surfaces that it has made of an STL.
+/// Sections without meaning for a mesh. Before every view gmsh writes its interpolation schemes, with which it draws
+/// elements; it also writes the parameters of surfaces made from an STL.
 const WITHOUT_MEANING: [&str; 3] = ["Comments", "InterpolationScheme", "Parametrizations"];
 
 fn skip(

@@ -1,7 +1,8 @@
-//! The sources that section decoders take their numbers from.
+//! The sources of numbers for section decoders.
 //!
 //! A decoder names the kind of each number, and the source knows how that kind is encoded. So the text and the binary
-//! form of a version share one decoder. Each long table has a method of its own, which the two sources implement differently.
+//! form of a version share one decoder. Each long table has a separate method, which the two sources implement
+//! differently.
 
 use super::places::Layout;
 use super::tag_list::TagList;
@@ -19,7 +20,7 @@ pub(super) trait Source {
     fn size(&mut self, what: &str) -> Result<u64, Fault>;
     /// The format's `double`; may be infinite or NaN.
     fn double(&mut self, what: &str) -> Result<f64, Fault>;
-    /// The least number of bytes that a record takes.
+    /// The least number of bytes of a record.
     fn least_bytes(&self, record: Record) -> u64;
     /// Bytes left in the file.
     fn bytes_left(&self) -> u64;
@@ -125,7 +126,7 @@ fn negative(offset: usize, what: &str, value: i32) -> Fault {
     Fault::new(offset, problem, "a non-negative whole number")
 }
 
-/// The encoding of a tag in binary files. In text all tags look alike.
+/// The encoding of a tag in binary files. In text all tags have the same form.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum TagKind {
     Int,
@@ -183,7 +184,8 @@ impl<'c, 'a> Text<'c, 'a> {
         }
     }
 
-    /// The offset of the first number that is spelled as Python shows those of NumPy 2, if there is one: `np.float64(0.5)`.
+    /// The offset of the first number in the form in which Python shows those of NumPy 2, if there is one:
+    /// `np.float64(0.5)`.
     pub(super) fn first_of_numpy(&self) -> Option<usize> {
         self.first_of_numpy
     }
@@ -239,7 +241,7 @@ impl Source for Text<'_, '_> {
         }
     }
 
-    /// In text all tags are spelled alike, however large.
+    /// Reads a tag; in text all tags have the same form, for any size.
     #[inline]
     fn tag(&mut self, _: TagKind, what: &str) -> Result<u64, Fault> {
         self.size(what)

@@ -1,4 +1,4 @@
-//! A list of tags that takes four bytes for each as long as all of them fit.
+//! A list of tags that needs four bytes per tag as long as all of them fit.
 
 /// Node tags of elements. At most one of the two lists has entries.
 #[derive(Debug, Default)]

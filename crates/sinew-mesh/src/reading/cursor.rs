@@ -9,7 +9,7 @@ pub(crate) const LONGEST: usize = 4096;
 pub(crate) struct Cursor<'a> {
     bytes: &'a [u8],
     offset: usize,
-    /// Offset behind the last line break that was passed.
+    /// Offset after the last line break that was passed.
     line_start: usize,
 }
 
@@ -98,7 +98,7 @@ impl<'a> Cursor<'a> {
         found
     }
 
-    /// True if nothing but blanks is left on this line.
+    /// True if only blanks remain on this line.
     pub(crate) fn is_at_line_end(&self) -> bool {
         let next = self
             .rest()
@@ -130,7 +130,7 @@ impl<'a> Cursor<'a> {
         Ok(Token { text, offset })
     }
 
-    /// The next token, if it is a number of at most 19 decimal digits. Otherwise nothing is taken but blanks.
+    /// The next token, if it is a number of at most 19 decimal digits. Otherwise only blanks are skipped.
     #[inline]
     pub(crate) fn plain_number(&mut self) -> Option<u64> {
         self.skip_blanks();
@@ -183,8 +183,8 @@ impl<'a> Cursor<'a> {
     }
 }
 
-/// The digits that eight bytes start with, read as a number, and how many there are. All bytes are processed together
-/// (Lemire 2018, "Quickly parsing eight digits").
+/// The digits at the start of eight bytes, as a number, and their count. All bytes are processed together (Lemire 2018,
+/// "Quickly parsing eight digits").
 #[inline]
 fn short_number(bytes: [u8; 8]) -> (u64, usize) {
     const EACH: u64 = 0x0101_0101_0101_0101;
@@ -205,7 +205,7 @@ fn short_number(bytes: [u8; 8]) -> (u64, usize) {
     (all, length)
 }
 
-/// The number that up to 19 digits at the start of the bytes spell, and how many digits there are.
+/// The number of up to 19 digits at the start of the bytes, and the count of digits.
 fn long_number(bytes: &[u8]) -> Option<(u64, usize)> {
     let length = bytes
         .iter()
@@ -224,7 +224,7 @@ fn is_blank(byte: u8) -> bool {
     matches!(byte, b' ' | b'\t' | b'\r' | b'\n' | b'\x0b' | b'\x0c')
 }
 
-/// Bytes of the file as a message can show them: short, printable, in quotes.
+/// Bytes of the file for a message: short, printable, in quotes.
 pub(crate) fn quoted(bytes: &[u8]) -> String {
     const SHOWN: usize = 40;
     let text = String::from_utf8_lossy(bytes.get(..SHOWN).unwrap_or(bytes));

@@ -2,7 +2,7 @@
 
 use crate::warning::Position;
 
-/// Error of bytes that are no readable mesh file of their format.
+/// Error of bytes that are not a readable mesh file of their format.
 ///
 /// The message is `place in the file: section, block, row: what is wrong; expected ...`.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -17,7 +17,7 @@ pub enum MeshError {
         place: String,
         /// The problem.
         problem: String,
-        /// The contents that would be right there.
+        /// The contents that are expected there.
         expected: String,
     },
     /// The file may be valid, but uses a feature that this reader does not support.

@@ -3,14 +3,14 @@
 use super::error::MeshError;
 use crate::warning::Position;
 
-/// An error as the decoders report it. Boxed, because it is returned from the innermost loops.
+/// An error of the decoders. It is boxed, because it is returned from the innermost loops.
 #[derive(Debug)]
 pub(crate) struct Fault(Box<Details>);
 
 #[derive(Debug)]
 struct Details {
     offset: usize,
-    /// Innermost first.
+    /// The places, innermost first.
     places: Vec<String>,
     problem: String,
     expected: String,
@@ -34,7 +34,7 @@ impl Fault {
         }))
     }
 
-    /// An error of data that end too early. The place of the record will add how many were declared.
+    /// An error of data that end too early. The place of the record adds the declared number.
     pub(crate) fn shortage(
         offset: usize,
         problem: impl Into<String>,
@@ -65,7 +65,7 @@ impl Fault {
         self
     }
 
-    /// `number` counts from 1.
+    /// Adds the place of a record, whose `number` counts from 1.
     pub(crate) fn in_record(self, record: &str, number: u64, of: u64) -> Fault {
         if self.0.is_shortage {
             self.inside(format!("{record} {number} of {of}"))
@@ -103,7 +103,7 @@ impl Fault {
 pub(crate) enum Lines {
     #[default]
     Count,
-    /// The file is binary.
+    /// No line numbers: the file is binary.
     DoNot,
 }
 

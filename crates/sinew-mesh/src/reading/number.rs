@@ -1,4 +1,4 @@
-//! Numbers as text, also as Python shows those of NumPy 2: `np.float64(0.5)`.
+//! Numbers as text, also in the form in which Python shows those of NumPy 2: `np.float64(0.5)`.
 
 use super::cursor::{Token, quoted};
 use super::fault::Fault;
@@ -55,14 +55,14 @@ pub(crate) fn double(token: Token<'_>, what: &str) -> Result<f64, Fault> {
         })
 }
 
-/// The start of a number as Python shows those of NumPy 2.
+/// The start of a number in the form in which Python shows those of NumPy 2.
 pub(crate) const NUMPY: &[u8] = b"np.";
 
 fn text_of(token: Token<'_>) -> Option<&str> {
     std::str::from_utf8(without_numpy(token.text)).ok()
 }
 
-/// The text inside `np.NAME(...)`, or the whole text if it is no such call.
+/// The text inside `np.NAME(...)`, or the whole text if it is not such a call.
 #[inline]
 fn without_numpy(text: &[u8]) -> &[u8] {
     let inside = || {

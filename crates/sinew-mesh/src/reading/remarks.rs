@@ -31,7 +31,7 @@ impl Remarks {
         self.add(Some(offset), message.into());
     }
 
-    /// Adds a remark if no line break closes the last line of a text, which may have been cut inside a number then.
+    /// Adds a remark if no line break closes the last line of a text, which may then have been cut inside a number.
     pub(crate) fn open_end(&mut self, bytes: &[u8]) {
         if bytes.last().is_some_and(|byte| !byte.is_ascii_whitespace()) {
             self.at(

@@ -18,7 +18,7 @@ enum Lookup {
 }
 
 impl TagIndex {
-    /// An index of the tags if they are consecutive, otherwise one that has none of them yet.
+    /// An index of the tags if they are consecutive, otherwise an index without tags yet.
     pub(crate) fn of_range(tags: &[u64]) -> TagIndex {
         let least = tags.iter().min().copied().unwrap_or(0);
         let greatest = tags.iter().max().copied().unwrap_or(0);
@@ -65,7 +65,7 @@ impl TagIndex {
         }
     }
 
-    /// The tag must be in the range the index was made for.
+    /// Inserts a tag, which must be in the range of the index.
     pub(crate) fn insert(&mut self, tag: u64, index: u32) {
         match &mut self.lookup {
             Lookup::Consecutive => {}

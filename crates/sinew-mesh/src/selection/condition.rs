@@ -1,35 +1,35 @@
-//! One condition on the place of a node.
+//! One condition on the position of a node.
 
 use std::fmt;
 
 use super::data_values::{DataValues, WithData};
 
-/// A condition on the place of a node at rest. Lengths are in the mesh's unit (metres in a scene).
+/// A condition on the position of a node at rest. Lengths are in the mesh's unit (metres in a scene).
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Condition {
-    /// In a box along the axes; a bound that is infinite bounds nothing.
+    /// A position in a box along the axes; an infinite bound has no effect.
     Box {
         /// Least coordinates.
         low: [f64; 3],
         /// Greatest coordinates.
         high: [f64; 3],
     },
-    /// In a sphere.
+    /// A position in a sphere.
     Sphere {
         /// Its centre.
         center: [f64; 3],
         /// Its radius.
         radius: f64,
     },
-    /// In a straight cylinder with flat ends.
+    /// A position in a straight cylinder with flat ends.
     Cylinder {
         /// The ends of its axis, which differ.
         axis: [[f64; 3]; 2],
         /// Its radius.
         radius: f64,
     },
-    /// Near a plane.
+    /// A position near a plane.
     Plane {
         /// A point of the plane.
         point: [f64; 3],
@@ -48,8 +48,8 @@ pub enum Condition {
     },
     /// One of these nodes, by their tags in the mesh file.
     Tags(Vec<u64>),
-    /// A value of the mesh's data. Nodes are selected by data at nodes, or else by tetrahedra with such a value;
-    /// tetrahedra and triangles of the boundary are selected by data of tetrahedra, or else if all their nodes have
+    /// A value of the mesh's data. Nodes are selected by data at nodes, otherwise by tetrahedra with such a value;
+    /// tetrahedra and triangles of the boundary are selected by data of tetrahedra, otherwise if all their nodes have
     /// such values.
     Data {
         /// Name of the data.
@@ -60,14 +60,14 @@ pub enum Condition {
 }
 
 impl Condition {
-    /// Coordinates of at most these; an infinite one bounds nothing.
+    /// Coordinates of at most these; an infinite bound has no effect.
     #[must_use]
     pub fn below(high: [f64; 3]) -> Self {
         let low = [f64::NEG_INFINITY; 3];
         Self::Box { low, high }
     }
 
-    /// Coordinates of at least these; an infinite one bounds nothing.
+    /// Coordinates of at least these; an infinite bound has no effect.
     #[must_use]
     pub fn above(low: [f64; 3]) -> Self {
         let high = [f64::INFINITY; 3];

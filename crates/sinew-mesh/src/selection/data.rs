@@ -1,4 +1,4 @@
-//! Conditions on the data of a mesh: which nodes and which tetrahedra meet them.
+//! Conditions on the data of a mesh, and the nodes and tetrahedra that meet them.
 
 use std::collections::BTreeSet;
 
@@ -84,7 +84,7 @@ fn unknown(mesh: &TetMesh, name: &str) -> SelectionError {
     }
 }
 
-/// The values that there are: all of a few, or the least and the greatest.
+/// The existing values: all if there are few, otherwise the least and the largest.
 fn in_words(numbers: &[f64]) -> String {
     const SHOWN: usize = 12;
     let mut different: Vec<f64> = Vec::new();

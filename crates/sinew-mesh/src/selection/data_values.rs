@@ -1,13 +1,13 @@
-//! Values of data that are chosen, and their words.
+//! Values of data that are chosen, and their description.
 
 use std::fmt;
 
 /// Values of data that are chosen.
 #[derive(Debug, Clone, PartialEq)]
 pub enum DataValues {
-    /// One of these values exactly, as labels have.
+    /// Exactly one of these values, for labels.
     Equal(Vec<f64>),
-    /// From the first value to the second, both among them.
+    /// A value from the first to the second, both included.
     Between([f64; 2]),
 }
 
@@ -20,7 +20,7 @@ impl DataValues {
     }
 }
 
-/// Values of the data of a name, in the words of a condition.
+/// The description of values of the data with a name.
 pub(super) struct WithData<'a>(pub(super) &'a str, pub(super) &'a DataValues);
 
 impl fmt::Display for WithData<'_> {

@@ -1,4 +1,4 @@
-//! Selections that hit nothing.
+//! Selections without members.
 
 use super::data_values::{DataValues, WithData};
 
@@ -45,10 +45,10 @@ pub enum SelectionError {
     UnknownData {
         /// The requested name.
         name: String,
-        /// The names that there are.
+        /// The existing names.
         known: Vec<String>,
     },
-    /// Several have it.
+    /// Several data have the name.
     #[error(
         "{} data are named \"{name}\" (time steps {steps:?}): keep one of them, or give each a name of its own", steps.len()
     )]

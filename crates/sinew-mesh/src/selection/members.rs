@@ -1,4 +1,4 @@
-//! The nodes, triangles and tetrahedra that a selection hits.
+//! The nodes, triangles and tetrahedra of a selection.
 
 use std::collections::{HashMap, HashSet};
 
@@ -38,7 +38,7 @@ impl Selection {
         Ok(nodes)
     }
 
-    /// The triangles of the mesh's boundary, turned outward, of which all nodes meet all conditions.
+    /// The triangles of the mesh's boundary, turned outward, whose nodes all meet all conditions.
     ///
     /// # Errors
     ///
@@ -69,7 +69,7 @@ impl Selection {
         Ok(triangles)
     }
 
-    /// The tetrahedra (0-based) of which all nodes meet all conditions, ascending.
+    /// The tetrahedra (0-based) whose nodes all meet all conditions, ascending.
     ///
     /// # Errors
     ///

@@ -65,8 +65,8 @@ impl TetMesh {
     /// Adds a group of tetrahedra, triangles, lines or nodes, and returns it.
     ///
     /// Its dimension is that of the members, its tag the lowest above 0 that is free among groups of that dimension.
-    /// Members that repeat another are left out; tetrahedra are sorted. A name that any group has, of whatever
-    /// dimension, is refused: [`TetMesh::group`] would find only one of the two.
+    /// Members that repeat another are left out; tetrahedra are sorted. A name of an existing group of any dimension is
+    /// refused: [`TetMesh::group`] would find only one of the two.
     ///
     /// # Errors
     ///

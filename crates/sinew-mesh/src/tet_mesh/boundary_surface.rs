@@ -1,8 +1,8 @@
-//! The boundary with points of its own.
+//! The boundary with its own points.
 
 use super::TetMesh;
 
-/// The boundary of a body, with points of its own: for drawing and writing it without inner nodes.
+/// The boundary of a body with its own points, for drawing and writing it without inner nodes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BoundarySurface {
     /// Node of the mesh (0-based) of each point, increasing.
@@ -14,7 +14,7 @@ pub struct BoundarySurface {
 }
 
 impl TetMesh {
-    /// The triangles of [`TetMesh::boundary`] of the whole mesh, in its order, with the nodes on them alone.
+    /// The triangles of [`TetMesh::boundary`] of the whole mesh, in its order, with the nodes on them only.
     #[must_use]
     pub fn boundary_surface(&self) -> BoundarySurface {
         let boundary = self.boundary(None);

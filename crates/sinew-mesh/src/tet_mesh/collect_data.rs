@@ -7,8 +7,8 @@ use crate::cell_type::CellType;
 use crate::mesh::{CellData, Mesh};
 
 impl Mesh {
-    /// The values of this mesh's cell data in its tetrahedra, without those that are `copies`: pairs (first, copy) of places among all
-    /// tetrahedra. The first gives the value, or a copy if the first has none.
+    /// The values of this mesh's cell data in its tetrahedra, without those that are `copies`: pairs (first, copy) of
+    /// indices among all tetrahedra. The first gives the value, or a copy if the first has none.
     ///
     /// Files of several partitions write a view in parts, which are put together again. Data without a value in any
     /// tetrahedron are left out.

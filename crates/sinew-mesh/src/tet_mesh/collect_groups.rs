@@ -46,7 +46,7 @@ struct Collector {
 
 struct Collected {
     group: Group,
-    /// The nodes of each member so far, filled up to three with its first and in ascending order.
+    /// The nodes of each member so far, padded to three with its first node and in ascending order.
     node_sets: HashSet<[u32; 3]>,
     on_dropped_nodes: usize,
     repeated: usize,

@@ -6,16 +6,16 @@ use super::{Group, GroupMembers, TetData, TetMesh};
 /// Marks a node or a tetrahedron that is absent.
 const NONE: u32 = u32::MAX;
 
-/// The mesh of a body that was cut, and where its parts come from.
+/// The mesh of a body that was cut, and the origin of its parts.
 #[derive(Clone, Debug)]
 pub struct CutMesh {
-    /// The mesh: nodes and tetrahedra that are left, in the body's order.
+    /// The mesh: the remaining nodes and tetrahedra, in the body's order.
     pub mesh: TetMesh,
-    /// The node of the body that each node of the mesh is.
+    /// Node of the body for each node of the mesh.
     pub nodes: Vec<u32>,
-    /// The node of the uncut mesh that each node of the mesh is, or is a copy of.
+    /// Node of the uncut mesh for each node of the mesh: the node itself, or the original of a copy.
     pub origins: Vec<u32>,
-    /// The tetrahedron of the uncut mesh that each one is.
+    /// Tetrahedron of the uncut mesh for each tetrahedron.
     pub tets: Vec<u32>,
 }
 
@@ -24,18 +24,18 @@ pub struct CutMesh {
 pub struct MovedNode {
     /// The node.
     pub node: u32,
-    /// The nodes of the tetrahedron in which it came to lie, itself among them at its old place.
+    /// The nodes of the tetrahedron that contains its new position, among them the node itself at its old position.
     pub nodes: [u32; 4],
-    /// Their shares in its new place: fields at the node take this mean.
+    /// Their weights at the new position: fields at the node become this mean.
     pub shares: [f64; 4],
 }
 
-/// A mesh's body as cuts left it, in its own numbers.
+/// A mesh's body after cuts, in its own numbers.
 #[derive(Clone, Copy, Debug)]
 pub struct CutBody<'a> {
     /// Positions of the nodes: those of the mesh, then copies.
     pub points: &'a [[f64; 3]],
-    /// The node of the mesh that each node is, or is a copy of.
+    /// Node of the mesh for each node: the node itself, or the original of a copy.
     pub origins: &'a [u32],
     /// The nodes of each tetrahedron of the mesh.
     pub tets: &'a [[u32; 4]],
@@ -44,14 +44,14 @@ pub struct CutBody<'a> {
 }
 
 impl TetMesh {
-    /// The mesh of a body that was cut, with the groups and the data of this mesh, of which it was made.
+    /// The mesh of a body that was cut, with the groups and the data of this mesh, from which it was made.
     ///
     /// Groups of triangles and lines follow the first tetrahedron that has them, groups of nodes have all copies, and
     /// members that lost their tetrahedra are removed. Copies have tags beyond the last one.
     ///
     /// # Panics
     ///
-    /// If the body is none of this mesh.
+    /// If the body was not made from this mesh.
     #[must_use]
     pub fn after_cuts(&self, body: CutBody<'_>) -> CutMesh {
         let left = || (0..body.tets.len()).filter(|tet| !body.is_removed[*tet]);
@@ -125,7 +125,7 @@ impl TetMesh {
 }
 
 impl CutMesh {
-    /// The triangles of the uncut mesh that are left, each following the first tetrahedron that has it.
+    /// The remaining triangles of the uncut mesh, each following the first tetrahedron that has it.
     #[must_use]
     pub fn triangles(&self, uncut: &TetMesh, triangles: &[[u32; 3]]) -> Vec<[u32; 3]> {
         let owners = Owners::new(uncut, triangles.iter().map(|part| part_key(part)));
@@ -210,13 +210,13 @@ impl TetData {
 
 /// The first tetrahedron that has each of some triangles and lines.
 pub(super) struct Owners {
-    /// The parts by their nodes, increasing.
+    /// The parts, given by their nodes, increasing.
     parts: Vec<PartKey>,
     /// The tetrahedron that has each, or [`NONE`].
     owners: Vec<u32>,
 }
 
-/// The nodes of a triangle or a line in ascending order; of a line the third one is [`NONE`].
+/// The nodes of a triangle or a line in ascending order; for a line the third one is [`NONE`].
 pub(super) type PartKey = [u32; 3];
 
 impl Owners {

@@ -7,8 +7,8 @@ use super::CutMesh;
 use super::surface::OUTWARD_FACES;
 
 impl CutMesh {
-    /// Pairs of cut faces: the nodes of one, counter-clockwise as seen from outside its tissue, and those of the
-    /// other that came from the same places, in the same order. Faces of removed tetrahedra are left out.
+    /// Pairs of cut faces: the nodes of one, counter-clockwise as seen from outside its tissue, and those of the other
+    /// face that come from the same nodes, in the same order. Faces of removed tetrahedra are left out.
     #[must_use]
     pub fn cut_faces(&self) -> Vec<[[u32; 3]; 2]> {
         let copied = self.is_copied();

@@ -12,7 +12,7 @@ pub enum TetMeshError {
     /// There are no tetrahedra.
     #[error("the mesh has no tetrahedra (it has {found}); a simulation needs 4-node tetrahedra")]
     NoTetrahedra {
-        /// The cells that there are, as text.
+        /// The existing cells, as text.
         found: String,
         /// True if there are surface cells.
         is_surface: bool,

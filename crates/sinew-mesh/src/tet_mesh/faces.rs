@@ -1,8 +1,8 @@
-//! Faces of tetrahedra, each with all that have it.
+//! Faces of tetrahedra, each with all its tetrahedra.
 
 use super::surface::OUTWARD_FACES;
 
-/// A face as one of its tetrahedra has it.
+/// A face as a part of one of its tetrahedra.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Owner {
     /// The tetrahedron (0-based).
@@ -19,7 +19,8 @@ impl Owner {
     }
 }
 
-/// Shows each face once, its nodes in ascending order, with its owners in ascending order. Tetrahedra that name a node twice, or one from `nodes` on, have none.
+/// Calls a function for each face once, with its nodes in ascending order and its owners in ascending order. Tetrahedra
+/// that name a node twice, or a node from `nodes` on, have no faces.
 ///
 /// Faces are sorted by their smallest node by counting, which takes time in proportion to their number.
 pub(crate) fn for_each_face(

@@ -16,7 +16,7 @@ pub enum TetDataError {
         /// Name and number of components of all data.
         known: Vec<(String, usize)>,
     },
-    /// Several have it.
+    /// Several data have the name.
     #[error(
         "{} data of tetrahedra are named \"{name}\" (time steps {}): keep one of them, or give each a name of its own",
         steps.len(), in_words(steps)

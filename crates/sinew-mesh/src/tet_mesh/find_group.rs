@@ -64,11 +64,11 @@ impl TetMesh {
             .ok_or_else(|| self.unknown_group(name, Some(dim)))
     }
 
-    /// The group with this name, preferably of this dimension: for uses that need groups of one dimension.
+    /// The group with this name, preferably of this dimension: for functions that need groups of one dimension.
     ///
     /// # Errors
     ///
-    /// As for [`TetMesh::group`].
+    /// Same as [`TetMesh::group`].
     pub fn group_for(&self, name: &str, dim: u8) -> Result<&Group, FindGroupError> {
         match self.named(name).find(|group| group.dim == dim) {
             Some(group) => Ok(group),

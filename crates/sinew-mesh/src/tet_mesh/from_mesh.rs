@@ -18,7 +18,8 @@ impl Mesh {
     /// * Nodes at the same place stay separate: cuts and contact surfaces have them.
     /// * A group without a name is called `"dim:tag"`. Groups of one dimension with the same name become one.
     /// * Flat and inverted tetrahedra are kept as they are.
-    /// * Cell data that some tetrahedron has stay, those of the parts of a partitioned file put together, and data at nodes.
+    /// * Cell data with a value in some tetrahedron are kept, merged over the parts of a partitioned file, and so are
+    ///   data at nodes.
     ///
     /// [`TetMesh::notes`] lists the changes made.
     ///
@@ -91,7 +92,7 @@ fn cell_counts(mesh: &Mesh) -> String {
     listed.join(", ")
 }
 
-/// Refuses blocks of other kinds than this crate simulates, among those that `matters` chooses.
+/// Refuses blocks of other kinds than this crate simulates, among those for which `matters` is true.
 fn refuse_unsupported_cells(
     mesh: &Mesh,
     matters: impl Fn(&CellBlock) -> bool,
@@ -142,7 +143,7 @@ struct MergedTets {
     tags: Vec<u64>,
     /// Physical tags (absolute, ascending) of each tetrahedron.
     groups: Vec<Vec<i32>>,
-    /// Pairs (first, copy) of places among the tetrahedra of all blocks.
+    /// Pairs (first, copy) of indices among the tetrahedra of all blocks.
     copies: Vec<(usize, usize)>,
 }
 

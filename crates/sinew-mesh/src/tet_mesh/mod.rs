@@ -200,9 +200,9 @@ impl TetMesh {
         (nearest.0, nearest.1.sqrt())
     }
 
-    /// The tetrahedron (0-based) that contains a point, and the point's barycentric coordinates in it; if none
-    /// contains it, the one in whose coordinates it is least outside, with a coordinate below 0. Of several with
-    /// equal coordinates, the first.
+    /// The tetrahedron (0-based) that contains a point, and the point's barycentric coordinates in it; if none contains
+    /// it, the tetrahedron in whose coordinates the point is least outside, with a coordinate below 0. If several have
+    /// equal coordinates, the first one.
     ///
     /// Checks every tetrahedron. `None` in a mesh without tetrahedra, and for a point that is not finite.
     #[must_use]

@@ -1,6 +1,6 @@
 //! Values at nodes.
 
-/// Values at the nodes, by one array of the file (`$NodeData` of gmsh, point data of VTK).
+/// Values at the nodes, from one array of the file (`$NodeData` of gmsh, point data of VTK).
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct NodeData {
     /// Name of the array.

@@ -1,4 +1,4 @@
-//! The volume in which the faces of cuts overlap.
+//! The volume in which cut faces overlap.
 
 use super::CutMesh;
 use crate::vector::{cross, dot, sub};
@@ -6,10 +6,10 @@ use crate::vector::{cross, dot, sub};
 type Corners = [[f64; 3]; 4];
 
 impl CutMesh {
-    /// The volume (m^3) in which tetrahedra at the faces of cuts overlap, with the nodes of the mesh at these places
-    /// (m): the sum over pairs of tetrahedra. Those that are turned inside out count nothing.
+    /// The volume (m^3) in which tetrahedra at the faces of cuts overlap, with the nodes of the mesh at these positions
+    /// (m): the sum over pairs of tetrahedra. Inverted tetrahedra do not count.
     ///
-    /// Of two tetrahedra one is cut by the planes of the other (Sutherland and Hodgman 1974).
+    /// One of two tetrahedra is cut by the planes of the other (Sutherland and Hodgman 1974).
     #[must_use]
     pub fn overlap_of_lips(&self, places: &[[f64; 3]]) -> f64 {
         let is_copied = self.is_copied();
@@ -70,7 +70,7 @@ impl Boxed {
     }
 }
 
-/// Volume (m^3) of a tetrahedron, negative inside out.
+/// Volume (m^3) of a tetrahedron, negative if it is inverted.
 fn volume([a, b, c, d]: &Corners) -> f64 {
     dot(sub(*b, *a), cross(sub(*c, *a), sub(*d, *a))) / 6.0
 }

@@ -11,11 +11,11 @@ impl TetMesh {
         }
     }
 
-    /// Turns the mesh about an axis through the origin by an angle (degrees), counter-clockwise as seen from the axis's tip, by
-    /// the formula of Rodrigues (1840). Multiples of 90 degrees about a coordinate axis are exact. Data of three components are
-    /// vectors, such as directions, and turn with it.
+    /// Rotates the mesh about an axis through the origin by an angle (degrees), counter-clockwise as seen from the
+    /// axis's tip, with the formula of Rodrigues (1840). Multiples of 90 degrees about a coordinate axis are exact.
+    /// Data of three components are vectors, such as directions, and are rotated with it.
     ///
-    /// The length of `axis` does not matter; an axis of no length, or one that is not finite, turns nothing.
+    /// The length of `axis` does not matter; an axis of length 0, or one that is not finite, causes no rotation.
     ///
     /// ```
     /// use sinew_mesh::structured::{Split, block};

@@ -39,8 +39,9 @@ const IS_TURNED: [bool; 8] = [false, false, false, false, false, true, false, tr
 /// The edges with midpoints 4 to 9.
 const MIDPOINTS: [[usize; 2]; 6] = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]];
 
-/// The orders of a parent's corners that put each of the three diagonals of its inner octahedron between the midpoints of the
-/// edges 0-2 and 1-3, which [`CHILDREN`] cuts along; and whether the order turns the parent round.
+/// The orders of a parent's corners that put each of the three diagonals of its inner octahedron between the midpoints
+/// of the edges 0-2 and 1-3, along which [`CHILDREN`] cuts; with a flag, true if the order reverses the parent's
+/// orientation.
 const ORDERS: [([usize; 4], bool); 3] = [
     ([0, 1, 2, 3], false),
     ([0, 2, 1, 3], true),
@@ -50,16 +51,16 @@ const ORDERS: [([usize; 4], bool); 3] = [
 impl TetMesh {
     /// This mesh with each tetrahedron cut into eight at the midpoints of its edges.
     ///
-    /// The four at the corners have the shape of the whole. The octahedron between them is cut along that of its diagonals which
-    /// makes the best shapes. With any diagonal, one of the three for each part makes parts of no other shapes than the parts have
-    /// (Bey 1995), so refining again makes no worse shapes than refining once. A cube of
+    /// The four at the corners have the shape of the whole. The octahedron between them is cut along the diagonal that
+    /// gives the best shapes. In the next refinement, each part has a diagonal that gives only parts of the shapes that
+    /// exist already (Bey 1995), so further refinement gives no worse shapes than the first one. A cube of
     /// [`Split::Kuhn`](crate::structured::Split::Kuhn) becomes the one with twice as many cells.
     ///
-    /// Old nodes come first and keep their tags; tetrahedra are renumbered, the eight of tetrahedron `t` being
-    /// `8 t..8 t + 8`. The eight have the data of the one, and new nodes the mean of those at the ends of their edge,
+    /// Old nodes come first and keep their tags; tetrahedra are renumbered, the eight of tetrahedron `t` being `8 t..8
+    /// t + 8`. The eight have the data of their parent, and new nodes the mean of the data at the ends of their edge,
     /// or none if these are different labels. All groups stay: tetrahedra become eight, triangles four, lines two.
-    /// Triangles and lines whose edges are none of the tetrahedra are unchanged, as [`TetMesh::notes`] reports.
-    /// Curved surfaces stay as flat as they were.
+    /// Triangles and lines with edges that do not belong to a tetrahedron are unchanged, as [`TetMesh::notes`] reports.
+    /// New nodes on curved surfaces lie on the straight edges.
     ///
     /// # Errors
     ///
@@ -115,7 +116,7 @@ impl TetMesh {
         })
     }
 
-    /// The eight tetrahedra of one, with its orientation.
+    /// The eight tetrahedra of a parent, with its orientation.
     fn cut(&self, tet: &[u32; 4], midpoints: &Midpoints) -> [[u32; 4]; 8] {
         let (order, is_turned) = self.best_order(tet);
         let corners = order.map(|i| tet[i]);
@@ -137,10 +138,10 @@ impl TetMesh {
         children
     }
 
-    /// The order of a tetrahedron's corners by which the worst of its inner parts is best.
+    /// The order of a tetrahedron's corners for which the worst of its inner parts is best.
     ///
-    /// The measure is the mean ratio of Liu and Joe (1994) ("Relationship between tetrahedron shape measures", BIT 34); as the
-    /// parts have one volume, the best have the least sum of squared edges.
+    /// The measure is the mean ratio of Liu and Joe (1994) ("Relationship between tetrahedron shape measures", BIT 34);
+    /// since the parts have equal volumes, the best ones have the least sum of squared edges.
     fn best_order(&self, tet: &[u32; 4]) -> ([usize; 4], bool) {
         /// Sums that differ by less than this share of them are equal up to rounding.
         const EQUAL: f64 = 1e-9;

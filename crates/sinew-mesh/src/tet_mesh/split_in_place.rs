@@ -1,14 +1,15 @@
-//! A mesh that follows splits of its body in its place.
+//! Updates of a mesh in place after splits of its body.
 
 use super::cut::{Owners, part_key};
 use super::{CutBody, CutMesh, Group, GroupMembers, MovedNode, TetMesh};
 
-/// The parts of a mesh's groups by the tetrahedra that they follow, for [`CutMesh::follow_split`]. Made of the uncut mesh.
+/// The parts of a mesh's groups, sorted by the tetrahedra that they follow, for [`CutMesh::follow_split`]. It is made
+/// from the uncut mesh.
 #[derive(Clone, Debug)]
 pub struct SplitFollower {
-    /// Triangles and lines, by increasing tetrahedron.
+    /// Triangles and lines, in the order of their tetrahedra.
     parts: Vec<FollowedPart>,
-    /// Nodes of the uncut mesh, and the largest tag of any.
+    /// Number of nodes of the uncut mesh, and the largest tag of a node.
     nodes: usize,
     last_tag: u64,
 }
@@ -18,25 +19,25 @@ pub struct SplitFollower {
 struct FollowedPart {
     tet: u32,
     group: u32,
-    /// Place in the group of those parts that some tetrahedron has.
+    /// Index among the parts of the group that belong to some tetrahedron.
     part: u32,
     /// The vertices of the tetrahedron at its corners; a line has two.
     corners: [u8; 3],
 }
 
-/// Changes that a split made to a body of which no tetrahedron was removed.
+/// Changes that a split made to a body without removed tetrahedra.
 #[derive(Clone, Copy, Debug)]
 pub struct Split<'a> {
     /// The current body.
     pub body: CutBody<'a>,
     /// Nodes that were moved at rest.
     pub moved: &'a [MovedNode],
-    /// Tetrahedra that have other nodes.
+    /// Tetrahedra whose nodes have changed.
     pub tets: &'a [u32],
 }
 
 impl SplitFollower {
-    /// For the body of this mesh, uncut.
+    /// The follower for the body of this uncut mesh.
     #[must_use]
     pub fn new(uncut: &TetMesh) -> Self {
         let parts = |group: &Group| match &group.members {
@@ -68,7 +69,7 @@ impl SplitFollower {
     }
 }
 
-/// Adds the parts of a group that some tetrahedron has.
+/// Adds the parts of a group that belong to some tetrahedron.
 fn add<const N: usize>(
     uncut: &TetMesh,
     owners: &Owners,
@@ -94,7 +95,8 @@ fn add<const N: usize>(
 }
 
 impl CutMesh {
-    /// Follows a split, to the result of [`TetMesh::after_cuts`], at the cost of what it changed.
+    /// Updates the mesh after a split: with the result of [`TetMesh::after_cuts`], at the cost of the changed parts
+    /// only.
     pub fn follow_split(&mut self, split: &Split<'_>, follower: &SplitFollower) {
         self.mesh.follow_split(split, follower);
         for node in self.nodes.len()..split.body.points.len() {
@@ -112,7 +114,7 @@ impl CutMesh {
 }
 
 impl TetMesh {
-    /// Follows a split of its body, as [`CutMesh::follow_split`] does for its mesh.
+    /// Updates this mesh after a split of its body, as [`CutMesh::follow_split`] does for a cut mesh.
     pub fn follow_split(&mut self, split: &Split<'_>, follower: &SplitFollower) {
         let body = split.body;
         for moved in split.moved {

@@ -1,4 +1,4 @@
-//! Surface triangles and the tetrahedra behind them.
+//! Surface triangles and their tetrahedra.
 
 use std::collections::HashMap;
 
@@ -51,13 +51,13 @@ impl TetMesh {
     ///
     /// # Errors
     ///
-    /// If a triangle is no face of a tetrahedron, or a face of more than one.
+    /// If a triangle is not a face of a tetrahedron, or a face of more than one.
     pub fn outward_triangles(&self, triangles: &[[u32; 3]]) -> Result<Vec<[u32; 3]>, SurfaceError> {
         let faces = self.outward_faces(triangles)?;
         Ok(faces.into_iter().map(|(triangle, _)| triangle).collect())
     }
 
-    /// The triangles of [`TetMesh::outward_triangles`], each with the tetrahedron (0-based) that it is a face of.
+    /// The triangles of [`TetMesh::outward_triangles`], each with its tetrahedron (0-based).
     ///
     /// # Errors
     ///

@@ -1,6 +1,6 @@
 //! Values in tetrahedra.
 
-/// Values in tetrahedra, by one view of the file (`$ElementData`).
+/// Values in tetrahedra, from one view of the file (`$ElementData`).
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct TetData {
     /// Name of the view.
@@ -41,7 +41,7 @@ impl TetData {
         true
     }
 
-    /// The same with the eight parts of each tetrahedron in its place.
+    /// The same data with each tetrahedron replaced by its eight parts.
     pub(super) fn refined(&self) -> TetData {
         let parts = self.rows().flat_map(|row| [row; 8]).flatten();
         TetData {

@@ -79,7 +79,7 @@ impl TetMesh {
         blocks
     }
 
-    /// The blocks of tetrahedra, and the tetrahedra of each.
+    /// The blocks of tetrahedra, and the tetrahedra of each block.
     fn tet_blocks(&self) -> (Vec<CellBlock>, Vec<Vec<usize>>) {
         let mut tags_of = vec![Vec::new(); self.tets.len()];
         for group in self.groups_of_dim(3) {
@@ -104,7 +104,8 @@ fn rows_of(members: &GroupMembers) -> Vec<Vec<u32>> {
     }
 }
 
-/// One block for each list of groups, in the order in which the lists first occur, and the places of its cells among all.
+/// One block for each list of groups, in the order in which the lists first occur, and the indices of its cells among
+/// all.
 fn blocks_by_groups<'a>(
     kind: CellType,
     rows: impl Iterator<Item = (&'a [u32], &'a Vec<i32>, Option<u64>)>,

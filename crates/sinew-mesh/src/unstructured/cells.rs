@@ -5,7 +5,7 @@ use crate::cell_type::CellType;
 use crate::mesh::CellBlock;
 use crate::reading::fault::Fault;
 
-/// The cells of one piece of a grid, as both of VTK's formats hold them.
+/// The cells of one piece of a grid, in the form of both of VTK's formats.
 pub(crate) struct Cells {
     /// The points of each cell in turn, counted from 0.
     pub(crate) connectivity: Vec<i64>,

@@ -1,4 +1,4 @@
-//! Pieces of a grid put together to a mesh.
+//! Pieces of a grid that are joined to a mesh.
 
 use super::cells::Cells;
 use super::labels;
@@ -16,7 +16,7 @@ pub(crate) struct Field {
     pub(crate) values: Vec<f64>,
 }
 
-/// A grid of which the pieces are added one after another.
+/// A grid whose pieces are added one after another.
 #[derive(Default)]
 pub(crate) struct GridBuilder {
     points: Vec<[f64; 3]>,
@@ -58,7 +58,7 @@ impl GridBuilder {
         self.blocks.iter().map(CellBlock::len).sum()
     }
 
-    /// The mesh: points and cells numbered from 1, and groups of the arrays that hold some.
+    /// The mesh: points and cells numbered from 1, and groups from the arrays that contain groups.
     pub(crate) fn finish(mut self, remarks: &mut Remarks) -> Mesh {
         self.dropped.sort_unstable();
         self.dropped.dedup();
@@ -105,8 +105,9 @@ impl GridBuilder {
     }
 }
 
-/// Adds the fields of a piece to those of the pieces before it, which had `before` points or cells of `after`. What not all pieces
-/// have is left out and named in `dropped`, as VTK does it: filled up, few bytes could become any amount.
+/// Adds the fields of a piece to those of the pieces before it, which had `before` points or cells of `after`. Fields
+/// that are missing in some pieces are left out and named in `dropped`, as in VTK: if they were filled up, a few bytes
+/// could need any amount of memory.
 fn add_fields(
     known: &mut Vec<Field>,
     mut added: Vec<Field>,
@@ -133,7 +134,7 @@ fn add_fields(
     dropped.extend(added.into_iter().map(|field| field.name));
 }
 
-/// Largest whole number up to which all are numbers of f64.
+/// Largest number up to which all whole numbers are exact in f64.
 const EXACT: f64 = 9_007_199_254_740_992.0;
 
 /// The values, with infinite ones replaced by NaN, which means no value.

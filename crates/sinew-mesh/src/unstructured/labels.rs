@@ -1,4 +1,4 @@
-//! Arrays that hold tags and groups of cells: those that [`write_vtu`](crate::vtu::write_vtu) writes, of which meshio writes the
+//! Arrays with tags and groups of cells: those that [`write_vtu`](crate::vtu::write_vtu) writes; meshio writes the
 //! first two as well.
 
 use std::collections::{BTreeMap, BTreeSet, HashSet};
@@ -10,10 +10,10 @@ const PHYSICAL: &str = "gmsh:physical";
 const GEOMETRICAL: &str = "gmsh:geometrical";
 const ELEMENT_TAG: &str = "gmsh:element_tag";
 const NODE_TAG: &str = "gmsh:node_tag";
-/// Begins the name of an array that is 1 in the cells of a group and 0 elsewhere.
+/// Beginning of the name of an array that is 1 in the cells of a group and 0 elsewhere.
 const GROUP: &str = "group ";
 
-/// Turns such arrays into tags and groups, in the place of data.
+/// Turns such arrays into tags and groups instead of data.
 pub(super) fn take(mesh: &mut Mesh) {
     take_node_tags(mesh);
     take_element_tags(mesh);
@@ -58,7 +58,7 @@ fn take_element_tags(mesh: &mut Mesh) {
     }
 }
 
-/// Takes away the cell data of a name, one whole number of 32 bits that fits for each cell.
+/// Removes and returns the cell data with a name: one whole number of 32 bits that fits for each cell.
 fn take_integers(mesh: &mut Mesh, name: &str, fits: impl Fn(i32) -> bool) -> Option<Vec<Vec<i32>>> {
     let as_integer = |x: &f64| {
         let is_integer = x.fract() == 0.0 && x.abs() <= f64::from(i32::MAX);
@@ -78,7 +78,7 @@ fn take_integers(mesh: &mut Mesh, name: &str, fits: impl Fn(i32) -> bool) -> Opt
     Some(integers)
 }
 
-/// A group: its name, and whether it has each cell of each block.
+/// A group: its name, and a flag for each cell of each block, true if the group contains it.
 struct Named {
     name: String,
     members: Vec<Vec<bool>>,
@@ -174,8 +174,8 @@ fn has(group: &Named, block: usize, cell: usize) -> bool {
         .unwrap_or(false)
 }
 
-/// The tag of each named group, `None` for one without cells: the first tag that its cells have and no others, else one that only
-/// cells of it have, else a free one.
+/// The tag of each named group, `None` for one without cells: the first tag that exactly its cells have, otherwise a
+/// tag that only some of its cells have, otherwise a free one.
 fn tags_of_groups(overlaps: &BTreeMap<i32, Overlap>, sizes: &[usize]) -> Vec<Option<i32>> {
     let mut tags: Vec<Option<i32>> = vec![None; sizes.len()];
     let mut free: BTreeSet<i32> = overlaps.keys().copied().collect();

@@ -1,4 +1,5 @@
-//! VTK's unstructured grids, which `.vtu` and `.vtk` files hold: types of cells, numbers as bytes, cells as blocks, arrays as data.
+//! VTK's unstructured grids in `.vtu` and `.vtk` files: types of cells, numbers as bytes, cells as blocks, arrays as
+//! data.
 
 #![deny(
     clippy::indexing_slicing,

@@ -22,7 +22,7 @@ pub(crate) enum Scalar {
     F64,
 }
 
-/// Reads all numbers of `N` bytes; bytes behind the last whole one are left out.
+/// Reads all numbers of `N` bytes; bytes after the last whole number are left out.
 fn all<const N: usize, T>(
     bytes: &[u8],
     order: ByteOrder,
@@ -79,7 +79,7 @@ impl Scalar {
         }
     }
 
-    /// Whole numbers; what is beyond 63 bits becomes the largest. `None` for types with fractions.
+    /// Whole numbers; a number beyond 63 bits becomes the largest one. `None` for types with fractions.
     pub(crate) fn integers(self, bytes: &[u8], order: ByteOrder) -> Option<Vec<i64>> {
         Some(match self {
             Scalar::I8 => read_all!(i8, bytes, order, i64::from),

@@ -7,7 +7,7 @@ use crate::reading::number;
 use crate::reading::remarks::Remarks;
 use crate::unstructured::{Field, Scalar};
 
-/// The part of a grid that data belong to.
+/// The part of a grid to which data belong.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Holder {
     Grid,
@@ -23,7 +23,7 @@ pub(super) fn is_one(keyword: &[u8]) -> bool {
     ) || fixed(keyword).is_some()
 }
 
-/// The numbers that each point or cell has by a keyword.
+/// Number of values per point or cell for a keyword.
 fn fixed(keyword: &[u8]) -> Option<u64> {
     Some(match keyword {
         b"VECTORS" | b"NORMALS" => 3,
@@ -34,7 +34,8 @@ fn fixed(keyword: &[u8]) -> Option<u64> {
     })
 }
 
-/// Reads the data behind a keyword. `holders` is the number of points or cells, `None` for data of the whole grid, which may have any.
+/// Reads the data after a keyword. `holders` is the number of points or cells; `None` for data of the whole grid, whose
+/// number is arbitrary.
 pub(super) fn read(
     keyword: &[u8],
     cursor: &mut Cursor<'_>,
@@ -117,7 +118,7 @@ fn colour(is_bytes: bool) -> ValueType {
     ValueType::Number(if is_bytes { Scalar::U8 } else { Scalar::F64 })
 }
 
-/// Moves past the line `LOOKUP_TABLE name` behind that of `SCALARS`, up to its end.
+/// Moves past the line `LOOKUP_TABLE name` after that of `SCALARS`, up to its end.
 fn skip_table_name(cursor: &mut Cursor<'_>) {
     let mut ahead = cursor.clone();
     if ahead.line().is_empty() {
@@ -193,7 +194,7 @@ fn field(
     Ok(fields)
 }
 
-/// Moves past the metadata of the array before, up to an empty line.
+/// Moves past the metadata of the previous array, up to an empty line.
 pub(super) fn skip_metadata(cursor: &mut Cursor<'_>) {
     let _ = cursor.line();
     while !cursor.is_at_end() && !cursor.line().is_empty() {}
@@ -214,7 +215,7 @@ fn count(cursor: &mut Cursor<'_>, what: &str) -> Result<u64, Fault> {
     number::unsigned(cursor.token(what)?, what)
 }
 
-/// A name, in which `%20` and its like encode the characters that a word cannot have.
+/// A name, in which `%20` and similar codes stand for the characters that a word cannot have.
 fn name(cursor: &mut Cursor<'_>) -> Result<String, Fault> {
     let word = cursor.token("the name of the data")?.text;
     let mut plain = Vec::with_capacity(word.len());

@@ -1,4 +1,4 @@
-//! The grid: points, cells, their types, and what is between them.
+//! The grid: points, cells, their types, and the parts between them.
 
 use super::attributes::{self, Holder};
 use super::numbers::{Numbers, ValueType, times};
@@ -19,7 +19,7 @@ pub(super) struct Dataset {
     pub(super) cell_fields: Vec<Field>,
 }
 
-/// The nodes of all cells, and the end of those of each.
+/// The nodes of all cells, and the end of each cell's nodes.
 struct Rows {
     connectivity: Vec<i64>,
     ends: Vec<i64>,
@@ -155,7 +155,7 @@ fn is_next(cursor: &Cursor<'_>, word: &[u8]) -> bool {
     next.is_some_and(|next| next.eq_ignore_ascii_case(word))
 }
 
-/// A list behind its name and type.
+/// A list after its name and type.
 fn list(
     cursor: &mut Cursor<'_>,
     numbers: Numbers,
@@ -220,7 +220,7 @@ fn types(
     once(&mut grid.types, types, offset)
 }
 
-/// Reads how many points or cells have data, which must be all.
+/// Reads the number of points or cells with data, which must be the number of all.
 fn holders(cursor: &mut Cursor<'_>, what: &str, count: usize) -> Result<(), Fault> {
     let token = cursor.token("a count")?;
     let given = number::unsigned(token, "the count")?;

@@ -36,7 +36,7 @@ use crate::reading::remarks::Remarks;
 ///
 /// # Errors
 ///
-/// If the bytes are no such file, or are inconsistent; the error names the place and what was expected there.
+/// If the bytes are not such a file, or are inconsistent; the error names the place and the expected content.
 pub fn read_vtk(bytes: &[u8]) -> Result<Mesh, MeshError> {
     let mut remarks = Remarks::default();
     let mut cursor = Cursor::new(bytes);

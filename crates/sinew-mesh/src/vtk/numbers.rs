@@ -1,4 +1,4 @@
-//! Numbers as text, or as bytes with the first byte the largest.
+//! Numbers as text, or as bytes, most significant first.
 
 use crate::reading::cursor::{Cursor, Token, quoted};
 use crate::reading::fault::Fault;
@@ -12,11 +12,11 @@ pub(super) enum Numbers {
     Bytes,
 }
 
-/// A type of values as the file calls it.
+/// A type of values, by its name in the file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum ValueType {
     Number(Scalar),
-    /// Eight in a byte.
+    /// Bits, eight in a byte.
     Bit,
     Text,
 }
@@ -115,7 +115,7 @@ impl Numbers {
         }
     }
 
-    /// Passes over `count` texts: one on each line, or bytes behind their length.
+    /// Skips `count` texts: one on each line, or bytes after their length.
     pub(super) fn skip_texts(self, cursor: &mut Cursor<'_>, count: u64) -> Result<(), Fault> {
         cursor.line_end("the type of texts")?;
         for _ in 0..count {
@@ -138,7 +138,7 @@ impl Numbers {
     }
 }
 
-/// Passes over a text: the first two bits give the number of bytes of its length.
+/// Skips a text: the first two bits give the number of bytes of its length.
 fn skip_text(cursor: &mut Cursor<'_>) -> Option<()> {
     let &[first] = cursor.take(1)? else {
         return None;

@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-/// Encodes what is written to it.
+/// A writer that encodes its input.
 pub(super) struct Base64<W> {
     to: W,
     /// Up to two bytes that wait for a third.

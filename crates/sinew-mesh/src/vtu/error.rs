@@ -8,7 +8,7 @@ use crate::cell_type::CellType;
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum WriteVtuError {
-    /// The destination refused.
+    /// The destination cannot be written.
     #[error("the .vtu file cannot be written: {0}")]
     Io(#[from] io::Error),
     /// VTK has no such cells, or an unknown numbering of their nodes.

@@ -1,4 +1,5 @@
-//! VTK's XML files, as ParaView and pyvista have them: `.vtu` for a mesh with data, read and written, `.pvd` for a series of them.
+//! VTK's XML files, for ParaView and pyvista: `.vtu` for a mesh with data, read and written, `.pvd` for a series of
+//! them.
 //!
 //! ```
 //! use sinew_mesh::vtu::{Array, Grid, VtuEncoding, write_pvd, write_vtu_grid};

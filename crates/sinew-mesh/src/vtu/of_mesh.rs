@@ -11,12 +11,11 @@ use crate::mesh::{CellBlock, Mesh};
 
 /// Writes a mesh with its data fields as .vtu.
 ///
-/// Arrays keep the names of their fields; of several fields of one name, all but the first get their
-/// time step appended. Cells have their first group as `gmsh:physical`, their entity as `gmsh:geometrical` and their
-/// tag as `gmsh:element_tag`; points have `gmsh:node_tag`. Each named group is an array of its own, `group NAME`, 1 in its cells and
-/// 0 elsewhere, so that names stay and groups may overlap; if groups of several dimensions share a name, they share
-/// the array.
-/// Values at the nodes of elements are not written.
+/// Arrays keep the names of their fields; of several fields of one name, all but the first get their time step
+/// appended. Cells have their first group as `gmsh:physical`, their entity as `gmsh:geometrical` and their tag as
+/// `gmsh:element_tag`; points have `gmsh:node_tag`. Each named group is a separate array, `group NAME`, 1 in its cells
+/// and 0 elsewhere, so that names stay and groups may overlap; if groups of several dimensions share a name, they share
+/// the array. Values at the nodes of elements are not written.
 ///
 /// # Errors
 ///

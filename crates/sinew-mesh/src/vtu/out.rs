@@ -86,7 +86,7 @@ impl Numbers<'_> {
     }
 }
 
-/// Writes numbers as bytes, some hundred at a time: one by one they would take longer than the disk.
+/// Writes numbers as bytes, some hundred at a time: writing them one by one would be slower than the disk.
 fn in_blocks<T: Copy, const N: usize>(
     values: &[T],
     bytes: impl Fn(T) -> [u8; N],
@@ -148,7 +148,7 @@ impl<'a, W: Write> Out<'a, W> {
         }
     }
 
-    /// Attributes of the file that say how its numbers are encoded.
+    /// Attributes of the file that state the encoding of its numbers.
     pub(super) fn attributes(&self) -> &'static str {
         match self.encoding {
             VtuEncoding::RawAppended | VtuEncoding::Base64 => "",
@@ -206,8 +206,8 @@ impl<'a, W: Write> Out<'a, W> {
     }
 }
 
-/// Numbers as VTK compresses them: the number of blocks, the size of a block before compression and that of the last one
-/// if it is smaller, the size of each after compression, then the blocks, each a zlib stream of its own
+/// Numbers in VTK's compressed form: the number of blocks, the size of a block before compression and that of the last
+/// one if it is smaller, the size of each after compression, then the blocks, each a separate zlib stream
 /// (vtkXMLWriter, "compressed data").
 #[cfg(feature = "compress")]
 fn compressed(numbers: Numbers<'_>) -> io::Result<Vec<u8>> {

@@ -34,7 +34,7 @@ fn enclosed_volume(mesh: &TetMesh, triangles: &[[u32; 3]]) -> f64 {
     fluxes.sum()
 }
 
-/// In a closed, consistently oriented surface each edge is run through once in each direction.
+/// Checks that a surface is closed and consistently oriented: each edge occurs once in each direction.
 fn assert_closed(triangles: &[[u32; 3]]) {
     let mut runs: HashMap<[u32; 2], i32> = HashMap::new();
     for &[a, b, c] in triangles {

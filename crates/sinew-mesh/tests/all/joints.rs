@@ -1,9 +1,9 @@
-//! Bodies that seem to hang together: parts that touch, hinges, faces that do not match, tangled tetrahedra.
+//! Bodies that seem to be connected: parts that touch, hinges, faces that do not match, tangled tetrahedra.
 
 use sinew_mesh::structured::{Split, block};
 use sinew_mesh::{CellBlock, CellType, Joints, Mesh, TetMesh};
 
-/// A block at a place, its axes turned by so many places.
+/// A block at a position, with its axes cyclically permuted by a number of places.
 fn block_at(cells: [usize; 3], size: [f64; 3], at: [f64; 3], split: Split, turn: usize) -> Mesh {
     let mut mesh = block(cells, size, split).expect("valid").to_mesh();
     for point in &mut mesh.points {
@@ -13,7 +13,7 @@ fn block_at(cells: [usize; 3], size: [f64; 3], at: [f64; 3], split: Split, turn:
     mesh
 }
 
-/// All of several meshes as one, without common nodes.
+/// Several meshes as one, without common nodes.
 fn beside(meshes: &[Mesh]) -> Mesh {
     let mut all = Mesh::default();
     let mut rows = Vec::new();
@@ -97,7 +97,7 @@ fn a_block_that_touches_a_larger_one_or_one_of_other_cells_touches_partly() {
     assert!(found.is_clean() && found.parts_apart == 2, "{found:?}");
 }
 
-/// The lips of a cut through a block lie on each other node by node, and the block hangs together beside them.
+/// The faces of a cut into a block coincide node by node, and the block is connected next to them.
 #[test]
 fn cuts_within_a_part_are_no_finding_and_stay() {
     let whole = block([4, 2, 2], [0.04, 0.02, 0.02], Split::Mirrored).expect("valid");

@@ -1,4 +1,4 @@
-//! Cells of higher order taken by their corners, on files of gmsh.
+//! Cells of higher order reduced to their corners, on files of gmsh.
 
 use crate::common::{messages, read};
 use sinew_mesh::{CellBlock, CellNodeData, CellType, Mesh};
@@ -18,7 +18,7 @@ $Elements\n3
 $EndElements
 ";
 
-/// The same by its corners.
+/// The same mesh reduced to its corners.
 const FIRST_ORDER: &str = "\
 $MeshFormat\n2.2 0 8\n$EndMeshFormat
 $Nodes\n6

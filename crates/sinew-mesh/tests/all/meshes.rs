@@ -1,4 +1,4 @@
-//! The meshes of the repository are what their table says.
+//! The meshes of the repository agree with their table.
 
 use std::collections::HashSet;
 use std::fs;

@@ -1,4 +1,4 @@
-//! Refinement of meshes: what must stay, what must become finer, and that shapes stay good.
+//! Refinement of meshes: invariants, sizes and shapes.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -60,8 +60,8 @@ fn faces(mesh: &TetMesh) -> BTreeMap<[u32; 3], usize> {
     faces
 }
 
-/// The mean ratio of a tetrahedron, 12 (3 V)^(2/3) by the sum of its squared edges: 1 for a regular one, 0 for a flat one. The
-/// worst of a mesh.
+/// The mean ratio of a tetrahedron, 12 (3 V)^(2/3) over the sum of its squared edges: 1 for a regular one, 0 for a flat
+/// one. Returns the worst of a mesh.
 fn worst_shape(mesh: &TetMesh) -> f64 {
     let ratios = mesh
         .tets
@@ -126,7 +126,7 @@ fn sorted(mut face: [u32; 3]) -> [u32; 3] {
     face
 }
 
-/// The corners of each tetrahedron in sixteenths, in no order.
+/// The corners of each tetrahedron in sixteenths, unordered.
 fn tets_in_sixteenths(mesh: &TetMesh) -> BTreeSet<BTreeSet<[u32; 3]>> {
     let corner = |&node: &u32| mesh.points[node as usize].map(|x| (x * 16.0) as u32);
     let tets = mesh.tets.iter().map(|tet| tet.iter().map(corner).collect());

@@ -1,4 +1,4 @@
-//! Parts of a mesh chosen by where they lie.
+//! Parts of a mesh chosen by position.
 
 use std::f64::consts::PI;
 

@@ -1,4 +1,4 @@
-//! From a file's mesh to the one a simulation needs: merging, dropping, groups.
+//! Conversion of a file's mesh to that of a simulation: merging, dropping, groups.
 
 use crate::common::{TWICE_22, TWO_REGIONS_41, read, with};
 use sinew_mesh::{CellBlock, CellType, GroupMembers, Mesh, TetMesh};
@@ -239,7 +239,7 @@ fn a_hand_made_mesh_is_checked() {
     insta::assert_snapshot!(refusal(&mesh), @"tetra with tag 1 has node index 4, but there are 4 nodes (0..=3)");
 }
 
-/// Two tetrahedra (1 and 2) and a triangle (3), with sections of data behind them.
+/// Two tetrahedra (1 and 2) and a triangle (3), with sections of data after them.
 fn with_data(sections: &str) -> TetMesh {
     tet_mesh(&format!(
         "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n5\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 1 1 1\n$EndNodes\n\
@@ -302,7 +302,7 @@ fn parts_of_data_are_put_together_and_steps_or_copies_are_told_apart() {
     }
 }
 
-/// gmsh writes version 2.2 with a copy of an element for each group, under a tag of its own.
+/// gmsh writes version 2.2 with a copy of an element for each group, with its own tag.
 #[test]
 fn a_copy_gives_the_data_that_the_first_lacks() {
     let text = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n$EndNodes\n\

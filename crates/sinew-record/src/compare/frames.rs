@@ -66,15 +66,15 @@ pub(super) fn compare(
     Ok(())
 }
 
-/// Differences of the frames that were seen.
+/// Differences of the frames compared so far.
 #[derive(Default)]
 struct Found {
     /// Largest distance between a point at rest and its counterpart.
     points: Option<Difference>,
-    /// The first frame whose cells differ, in how many of them.
+    /// The first frame whose cells differ, with the share of different cells.
     cells: Option<Difference>,
     arrays: Vec<OfArray>,
-    /// Names of arrays that one has and the other has not, or has with other components.
+    /// Names of arrays that only one of them has, or whose numbers of components differ.
     alone: Vec<String>,
 }
 
@@ -98,7 +98,7 @@ struct View<'a> {
 }
 
 impl Found {
-    /// Compares two frames with as many points at the time `t` (s).
+    /// Compares two frames with the same number of points at the time `t` (s).
     fn see(&mut self, t: f64, frame: &Mesh, other: &Mesh) {
         let is_farther = |found: &Difference, known: &Option<Difference>| {
             known
@@ -192,7 +192,7 @@ impl Found {
     }
 }
 
-/// The share of cells that are others; `None` if all are the same.
+/// The share of different cells; `None` if all are the same.
 fn other_cells(frame: &Mesh, other: &Mesh) -> Option<Difference> {
     let cells = |mesh: &'_ Mesh| {
         let cells = mesh.cells.iter();

@@ -13,8 +13,8 @@ use crate::tables::{ENERGY, PROBES, REACTIONS};
 use crate::tool_rows;
 
 /// Compares the results in two folders: tables at the times of the first (those of the second between its rows on
-/// straight lines), displacements and velocities of frames at equal times. Bodies of other shape and probes at other
-/// places are differences too.
+/// straight lines), displacements and velocities of frames at equal times. Bodies of different shape and probes at
+/// different positions are differences too.
 ///
 /// # Errors
 /// [`CompareError`] for a folder without a result and for damaged files.

@@ -5,13 +5,13 @@ use std::path::{Component, Path, PathBuf};
 /// The largest difference between two results in one quantity.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Difference {
-    /// The file or series it is in.
+    /// The file or series in which it occurs.
     pub of: &'static str,
     /// The quantity: a probe, a column, a field.
     pub what: String,
     /// Its unit.
     pub unit: String,
-    /// The largest difference; of vectors its length.
+    /// The largest difference; for vectors its length.
     pub largest: f64,
     /// `largest` over the largest value of the quantity in the first result; 0 if both are 0.
     pub relative: f64,
@@ -48,7 +48,7 @@ pub enum CompareError {
         /// The system's reason.
         source: std::io::Error,
     },
-    /// A file that no run has written.
+    /// A file that was not written by a run.
     #[error("{}: {reason}", path.display())]
     Damaged {
         /// The file.
@@ -74,7 +74,7 @@ impl Comparison {
     }
 }
 
-/// The length of a vector of any number of components, above 0 also where their squares are not.
+/// The length of a vector of any number of components, above 0 also if their squares underflow.
 pub(super) fn length(components: impl IntoIterator<Item = f64> + Clone) -> f64 {
     let squares = components.clone().into_iter().map(|x| x * x);
     let length = squares.sum::<f64>().sqrt();
@@ -94,7 +94,7 @@ pub(super) fn relative(difference: f64, size: f64) -> f64 {
     }
 }
 
-/// A file of a result. No link leads to it, and its name not out of the folder: others may have made it.
+/// A file of a result. Links and names that lead out of the folder are refused, since the folder may come from others.
 pub(super) fn read(folder: &Path, name: &str) -> Result<Vec<u8>, CompareError> {
     let unreadable = |path: &Path, source| CompareError::Unreadable {
         path: path.to_owned(),

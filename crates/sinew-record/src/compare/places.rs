@@ -1,13 +1,13 @@
-//! Differences of where things are: the places of probes, and the nodes of the body at rest.
+//! Differences of positions: of probes, and of the nodes of the body at rest.
 
 use super::outcome::{Comparison, Difference, length};
 use crate::tables::PROBES;
 
-/// Distance over the size of the coordinates within which two places are the same.
+/// Distance over the size of the coordinates within which two positions are the same.
 const SAME: f64 = 1e-9;
 
-/// Compares the places of probes of the same name, which are above the table in lines such as
-/// `# tip: node 9 at 0.1 0.2 0.3 m, ..`.
+/// Compares the positions of probes of the same name, which are stated above the table in lines such as `# tip: node 9
+/// at 0.1 0.2 0.3 m, ..`.
 pub(super) fn probes(comparison: &mut Comparison, one: &str, other: &str) {
     let others: Vec<(&str, &str)> = other.lines().filter_map(described).collect();
     for (name, place) in one.lines().filter_map(described) {
@@ -34,7 +34,7 @@ pub(super) fn probes(comparison: &mut Comparison, one: &str, other: &str) {
     }
 }
 
-/// A probe's name and the description of its place.
+/// A probe's name and the description of its position.
 fn described(line: &str) -> Option<(&str, &str)> {
     line.strip_prefix("# ")?.split_once(':')
 }
@@ -45,7 +45,7 @@ fn group(place: &str) -> Option<&str> {
     Some(group)
 }
 
-/// The coordinates (m) in a place.
+/// The coordinates (m) in a description of a position.
 fn point(place: &str) -> Option<[f64; 3]> {
     let (_, coordinates) = place.split_once(" at ")?;
     let (coordinates, _) = coordinates.split_once(" m")?;

@@ -14,7 +14,7 @@ struct Quantity {
     columns: Vec<[usize; 2]>,
 }
 
-/// Ends of the names of components, of vectors and of tensors.
+/// Ends of the names of the components of vectors and tensors.
 const COMPONENTS: [&str; 9] = ["_x", "_y", "_z", "_xx", "_yy", "_zz", "_xy", "_yz", "_zx"];
 
 /// Compares a table that both results may have.

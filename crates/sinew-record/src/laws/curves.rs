@@ -9,13 +9,14 @@ use sinew_scene::{Scene, Subject};
 use super::error::LawCurvesError;
 use super::measured::Measured;
 
-/// Measured amounts of a load that are states of its curve; between more of them lines are straight.
+/// Largest number of measured amounts of a load that are states of its curve; for more of them the curve is
+/// interpolated by straight lines.
 const MOST_AMOUNTS: usize = 5000;
 
 /// Range of stretches by default.
 const USUAL: [f64; 2] = [0.7, 2.0];
 
-/// Room round measured points, as a share of their extent.
+/// Margin around measured points, as a share of their extent.
 const ROOM: f64 = 0.1;
 
 /// The requested curves.
@@ -25,11 +26,11 @@ pub struct AskedCurves {
     pub region: Option<String>,
     /// The axis of the pull; `None` for x, or for the direction between the fibre directions given by data of the mesh.
     pub along: Option<[f64; 3]>,
-    /// The second axis of sheets and shears, made perpendicular to the first; `None` for the second of the material's axes by
-    /// data of the mesh, or else the mesh's axis after the one that the first is nearest to.
+    /// The second axis of sheets and shears, made perpendicular to the first; `None` for the second of the material's
+    /// axes from data of the mesh, otherwise the mesh's axis after the one nearest to the first.
     pub across: Option<[f64; 3]>,
     /// The least and the largest stretch; an amount of shear is a stretch less 1. `None`: the range of the measured
-    /// points with a margin, or else from .7 to 2.
+    /// points with a margin, otherwise from .7 to 2.
     pub stretch: Option<[f64; 2]>,
 }
 
@@ -44,7 +45,7 @@ pub struct RegionCurves {
     pub law: String,
     /// Lame's constants (lambda, mu) (Pa) at rest, without fibres.
     pub lame: (f64, f64),
-    /// True if it has fibres, which the constants at rest are without.
+    /// True if it has fibres, which the constants at rest do not include.
     pub has_fibres: bool,
     /// Sentences about the material of the curves.
     pub notes: Vec<String>,
@@ -52,7 +53,7 @@ pub struct RegionCurves {
     pub curves: Vec<Curve>,
 }
 
-/// The curves of the laws of a scene. The scene is built only where data of its mesh give a modulus.
+/// The curves of the laws of a scene. The scene is built only if data of its mesh give a modulus.
 ///
 /// # Errors
 /// [`LawCurvesError`].
@@ -158,7 +159,7 @@ fn with_room([low, high]: [f64; 2]) -> [f64; 2] {
     [(low - room).max(0.5 * low), high + room]
 }
 
-/// A region with the properties of one place if the mesh's data give them, and sentences about the material of its
+/// A region with the properties of one position if the mesh's data give them, and sentences about the material of its
 /// curves. `moduli` are the least and the largest of its tetrahedra (Pa).
 fn at_a_point(
     (given, stated): (&Region, &Region),

@@ -9,10 +9,10 @@ use sinew_scene::SceneError;
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum LawCurvesError {
-    /// A scene that cannot be built, or a region that has no curve.
+    /// A scene that cannot be built, or a region for which there is no curve.
     #[error(transparent)]
     Scene(#[from] SceneError),
-    /// Data of the mesh that give no direction.
+    /// Data of the mesh that do not give a valid direction.
     #[error(transparent)]
     Data(#[from] sinew_mesh::TetDataError),
     /// An axis without direction.

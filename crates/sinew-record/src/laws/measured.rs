@@ -31,9 +31,9 @@ pub struct Measured {
 /// The difference between a curve and the points measured under its load.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Misfit {
-    /// Number of points that lie within the curve.
+    /// Number of points within the range of the curve.
     pub(crate) points: usize,
-    /// Number of points beyond it.
+    /// Number of points beyond that range.
     pub(crate) beyond: usize,
     /// The root of the mean square difference (Pa).
     pub(crate) root_mean_square: f64,
@@ -47,7 +47,7 @@ pub(crate) struct Misfit {
 pub struct MeasuredError {
     /// The file.
     pub path: PathBuf,
-    /// The line, from 1 on; `None` if the fault is that of the whole file.
+    /// The line, from 1 on; `None` if the fault concerns the whole file.
     pub line: Option<usize>,
     /// The fault.
     pub fault: MeasuredFault,
@@ -60,10 +60,10 @@ pub enum MeasuredFault {
     /// A file that cannot be read.
     #[error("cannot be read: {0}")]
     Unreadable(#[from] io::Error),
-    /// Bytes that are no text in UTF-8.
+    /// Bytes that are not UTF-8 text.
     #[error("is no text in UTF-8: save the table as CSV (UTF-8)")]
     NotText,
-    /// Other columns.
+    /// A header with other columns.
     #[error("the first line is {found:?}: expected the names of the columns, {HEAD}")]
     Header {
         /// The line, shortened.
@@ -81,7 +81,7 @@ pub enum MeasuredFault {
         /// The entry, shortened.
         found: String,
     },
-    /// An entry that is not a number that fits.
+    /// An entry that is not a number within the allowed range.
     #[error("{column} is {found:?}: expected {expected}")]
     Number {
         /// The column.
@@ -91,7 +91,7 @@ pub enum MeasuredFault {
         /// The values that fit.
         expected: &'static str,
     },
-    /// No rows.
+    /// A file without rows.
     #[error("expected at least one row below the names of the columns")]
     Empty,
 }
@@ -132,7 +132,7 @@ impl Measured {
         }
     }
 
-    /// The least and the largest stretch of all points, with 1 among them; those of shears are 1 above their amounts.
+    /// The least and the largest stretch of all points and of 1; stretches of shears are 1 above their amounts.
     pub(crate) fn stretches(&self) -> [f64; 2] {
         let stretches = self.points.iter();
         let stretches = stretches.map(|(load, amount, _)| amount + 1.0 - load.rest());
@@ -213,7 +213,7 @@ fn point(line: &str) -> Result<(Load, f64, f64), MeasuredFault> {
     Ok((load, amount, stress))
 }
 
-/// An entry without spaces and quotation marks round it.
+/// An entry without surrounding spaces and quotation marks.
 fn unquoted(entry: &str) -> &str {
     let entry = entry.trim();
     let inner = entry

@@ -8,21 +8,20 @@ use super::measured::Measured;
 use super::table::title;
 use super::words::{misfits, moduli, stability};
 
-/// The beginning of the description of a picture, by which it is known again.
+/// The beginning of the description of a picture, which identifies it.
 pub(super) const DESCRIBED: &str = "Curves of a law";
 
 const WIDTHS: [f64; 2] = [600.0, 440.0];
 const HEIGHT: f64 = 400.0;
-/// Limit of stresses that are drawn, over their median: a law that stiffens as an exponential leaves the
-/// frame.
+/// Limit of stresses that are drawn, over their median: a law that stiffens exponentially leaves the frame.
 const MOST: f64 = 8.0;
-/// Extent of a sheet's stress over that of the others': pressed along two axes it grows so fast that it would hide
-/// them.
+/// Limit of the extent of a sheet's stress over that of the others: under pressure along two axes it grows so fast that
+/// it would hide them.
 const OF_SHEET: f64 = 1.25;
-/// Dots of measured points of a load: more would hide each other and the curve.
+/// Largest number of dots of measured points of a load: more would hide each other and the curve.
 const MOST_DOTS: usize = 100;
 
-/// The picture of a region's law: stretches at the left, shear at the right. Lines are solid where the law is stable
+/// The picture of a region's law: stretches on the left, shear on the right. Lines are solid where the law is stable
 /// and dashed beyond; measured points are dots.
 #[must_use]
 pub fn picture_of_law(region: &RegionCurves, measured: Option<&Measured>) -> String {
@@ -54,7 +53,7 @@ pub fn picture_of_law(region: &RegionCurves, measured: Option<&Measured>) -> Str
     sheet.svg()
 }
 
-/// The place of a load among colours and markers.
+/// The colour and marker of a load.
 fn style(load: Load) -> Style {
     let place = Load::ALL.iter().position(|other| *other == load);
     Style {
@@ -192,7 +191,7 @@ fn range(curves: &[&Curve], measured: Option<&Measured>) -> Option<[f64; 2]> {
     (room > 0.0 && room.is_finite()).then_some([low - room, high + room])
 }
 
-/// The least and the largest of some stresses and 0.
+/// The least and the largest of these stresses and 0.
 fn extent(stresses: impl Iterator<Item = f64>) -> [f64; 2] {
     stresses.fold([0.0, 0.0], |[low, high], stress: f64| {
         [low.min(stress), high.max(stress)]

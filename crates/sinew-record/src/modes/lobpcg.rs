@@ -24,31 +24,31 @@ pub enum ModesError {
         found: usize,
         /// The requested modes.
         count: usize,
-        /// Rounds of the iteration.
+        /// Number of rounds of the iteration.
         rounds: usize,
     },
 }
 
-/// Rounds of the iteration.
+/// Number of rounds of the iteration.
 const MOST_ROUNDS: usize = 500;
 
-/// Preconditioned residual of a mode, relative to its length, at which it counts as converged: the error of its
-/// eigenvalue is then the square of that.
+/// Preconditioned residual of a mode, relative to its length, at which it counts as converged: the relative error of
+/// its eigenvalue is then the square of this number.
 const CONVERGED: f64 = 1e-6;
 
 /// Share of the largest stiffness over mass by which the matrix is shifted, so that a free body has a factor.
 const SHIFT: f64 = 1e-5;
 
-/// Share of it below which an eigenvalue is that of a rigid motion.
+/// Share of the largest stiffness over mass below which an eigenvalue is that of a rigid motion.
 const RIGID: f64 = 1e-10;
 
-/// Share of its length below which the orthogonal part of a vector is rounding.
+/// Share of the length of a vector below which its orthogonal part is rounding.
 const DEPENDENT: f64 = 1e-8;
 
 /// The modes of the smallest eigenvalues (1/s^2) of M^-1 K, with their shapes of modal mass 1, by LOBPCG (Knyazev,
-/// Toward the optimal preconditioned eigensolver, SIAM J. Sci. Comput. 23, 2001) with more vectors than modes: no mode
-/// is missed because its frequency is multiple, or because it is orthogonal to loads. The preconditioner is a factor,
-/// or two grids if there is no memory for one.
+/// Toward the optimal preconditioned eigensolver, SIAM J. Sci. Comput. 23, 2001) with more vectors than modes: so no
+/// mode is missed if its frequency is multiple, or if it is orthogonal to the loads. The preconditioner is a factor, or
+/// two grids if there is no memory for one.
 ///
 /// A body with rigid-body modes has no factor: its matrix is shifted by a part of M.
 pub(super) fn lowest(
@@ -182,7 +182,7 @@ impl Basis {
         }
     }
 
-    /// The same with images that are known.
+    /// Adds vectors whose images are known.
     fn add_all(&mut self, others: Self) {
         for (mut x, mut image) in others.vectors.into_iter().zip(others.images) {
             if self.orthonormalise(&mut x, Some(&mut image)) {
@@ -192,7 +192,7 @@ impl Basis {
         }
     }
 
-    /// Makes a vector orthogonal to the others and of length 1; false if nothing is left of it.
+    /// Makes a vector orthogonal to the others and of length 1; returns false if its orthogonal part is only rounding.
     fn orthonormalise(&self, x: &mut [f64], mut image: Option<&mut Vec<f64>>) -> bool {
         let mut change = |x: &mut [f64], factor: f64, with: Option<usize>| match with {
             Some(other) => {
@@ -225,8 +225,8 @@ impl Basis {
         true
     }
 
-    /// Eigenvalues of the matrix on the space of the vectors, the smallest first, and its eigenvectors by their shares of the
-    /// vectors, one after the other.
+    /// Eigenvalues of the matrix on the space of the vectors, the smallest first, and its eigenvectors as coefficients
+    /// of the vectors, one after the other.
     fn eigen(&self) -> Result<(Vec<f64>, Vec<f64>), FactorError> {
         let size = self.vectors.len();
         let mut matrix = vec![0.0; size * size];

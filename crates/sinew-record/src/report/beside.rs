@@ -7,7 +7,7 @@ pub(super) const STYLE: &str = ".beside { display: flex; flex-wrap: wrap; gap: 1
      .beside figure { flex: 1 1 24rem; margin: 0; max-width: 40rem; }\n\
      .beside .plot svg { min-width: 0; }\n";
 
-/// Puts drawings side by side.
+/// Places drawings side by side.
 pub(super) fn figures<T: AsRef<str>>(page: &mut Page, drawings: &[T]) {
     page.markup("<div class=\"beside\">\n");
     for svg in drawings {

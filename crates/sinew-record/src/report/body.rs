@@ -17,7 +17,7 @@ const MOST_TRIANGLES: usize = 300_000;
 /// Share of the body's size below which a displacement cannot be seen.
 const SEEN: f64 = 0.02;
 
-/// Size of a displacement in the picture, as a share of the body's size, if it would be invisible to scale.
+/// Size of a displacement in the picture, as a share of the body's size, if it would be invisible at true scale.
 const DRAWN: f64 = 0.08;
 
 /// Width and height of a picture.

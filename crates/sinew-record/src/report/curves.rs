@@ -4,10 +4,10 @@ use sinew_draw::{Axis, Plot, Series, Style};
 
 use crate::csv::Table;
 
-/// Stretches of a curve that are drawn by their least and largest value: about two to a pixel.
+/// Number of intervals of a curve that are drawn by their least and largest value: about two per pixel.
 const STRETCHES: usize = 600;
 
-/// Columns, by the names that `called` gives them, over the first one, the time.
+/// A plot of columns, with the names from `called`, over the first one, the time.
 pub(super) fn plot(
     table: &Table,
     title: &str,
@@ -24,7 +24,7 @@ pub(super) fn plot(
     plot
 }
 
-/// The points of a curve that its picture shows: all of a short one, the extremes of each stretch of a long one.
+/// The points of a curve in its picture: all of a short curve, the extremes of each interval of a long one.
 fn thinned(points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
     if points.len() <= 4 * STRETCHES {
         return points;

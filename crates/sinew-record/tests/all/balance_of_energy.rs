@@ -1,11 +1,11 @@
-//! The balance of energy is closed as each method promises.
+//! The energy balance is closed to the accuracy of each method.
 
 use sinew_core::simulate;
 use sinew_record::EnergyLoss;
 
 use crate::common::{cube, run, table};
 
-/// The largest remainder over the largest energy that went in, and the last remainder over it.
+/// The largest remainder over the largest supplied energy, and the last remainder over it.
 fn remainder(more: &str) -> [f64; 2] {
     let place = tempfile::tempdir().unwrap();
     let path = place.path().join("out");
@@ -35,7 +35,7 @@ fn with(supports: &str, method: &str, dt: &str) -> String {
     format!("{supports}[run]\nduration = 0.5\nintegrator = \"{method}\"\ndt = {dt}\n")
 }
 
-/// The mean acceleration method keeps energy exactly in linear systems (Hughes, The Finite Element Method, 9.2).
+/// The mean acceleration method conserves energy exactly in linear systems (Hughes, The Finite Element Method, 9.2).
 #[test]
 fn the_mean_acceleration_method_leaves_rounding() {
     let damped = format!("{PRESSED}[damping]\nmass = 5.0\nstiffness = 0.002\n");
@@ -66,8 +66,8 @@ fn gravity_and_springs_with_dashpots_are_in_it() {
     assert!(worst < 1e-10 * damped, "{worst:e} {damped:e}");
 }
 
-/// Dissipative methods: the energy that they take is known and never falls while none is supplied, and only rounding
-/// remains. It is known after an interruption too, and is not reported if rows are several steps apart.
+/// Dissipative methods: the energy that they dissipate is known and never falls while none is supplied, and only
+/// rounding remains. It is also known after an interruption, and is not reported if rows are several steps apart.
 #[test]
 fn methods_that_take_energy_say_how_much() {
     let damped = format!("{PRESSED}[damping]\nmass = 5.0\nstiffness = 0.002\n");
@@ -112,8 +112,8 @@ fn methods_that_take_energy_say_how_much() {
     }
 }
 
-/// A symplectic method keeps an energy close to the true one: what remains shrinks as the square of the step and does
-/// not grow with time.
+/// A symplectic method conserves an energy close to the true one: the remainder shrinks as the square of the step and
+/// does not grow with time.
 #[test]
 fn central_differences_swing_about_it() {
     let [coarse, _] = remainder(&with(PRESSED, "central-difference", "0.002"));
@@ -122,7 +122,7 @@ fn central_differences_swing_about_it() {
     assert!(fine < 0.02, "{fine}");
 }
 
-/// Work of a moved support is the work of its reaction, jumps of its speed included.
+/// The work of a moved support is the work of its reaction, including jumps of its velocity.
 #[test]
 fn supports_in_motion_do_work() {
     let moved = "[[fixed]]\ngroup = \"bottom\"\n[[move]]\ngroup = \"top\"\n";
@@ -139,7 +139,7 @@ fn supports_in_motion_do_work() {
 }
 
 /// A body that its base accelerates uniformly: the force on the base is that of the whole mass, including the base's
-/// own nodes, whether the motion is smooth or a table, and for any spacing of the rows.
+/// own nodes, for a smooth motion and for a table, and for any spacing of the rows.
 #[test]
 fn a_base_pushes_with_the_whole_mass_whatever_its_way() {
     let (acceleration, end) = (4.0, 0.4);
@@ -172,8 +172,8 @@ fn a_base_pushes_with_the_whole_mass_whatever_its_way() {
     }
 }
 
-/// A body that its base moves without strain has no damping force, and neither has the base, whatever times a method
-/// uses for the velocities of cells and of supports.
+/// A body that its base moves without strain has no damping force, and neither has the base, for all times at which
+/// methods evaluate the velocities of cells and of supports.
 #[test]
 fn damping_adds_nothing_to_the_push_of_a_base() {
     let (acceleration, edge, end) = (4.0, 0.02, 0.08_f64);
@@ -208,7 +208,7 @@ fn damping_adds_nothing_to_the_push_of_a_base() {
     }
 }
 
-/// Dashpots between a part that is moved and the rest take energy too.
+/// Dashpots between a moved part and the rest dissipate energy too.
 #[test]
 fn dashpots_at_moved_supports_are_in_it() {
     let text = |dt: &str| {
@@ -236,8 +236,8 @@ fn dashpots_at_moved_supports_are_in_it() {
     assert!(fine < 2e-3 && coarse > 3.0 * fine, "{coarse} {fine}");
 }
 
-/// Stiffness damping of tissue in large deformation, between a part that is moved and the rest: the dissipated energy
-/// never falls, and with it the balance closes.
+/// Stiffness damping of tissue in large deformation, between a moved part and the rest: the dissipated energy never
+/// falls, and with it the balance closes.
 #[test]
 fn stiffness_damping_at_moved_supports_of_soft_tissue_is_in_it() {
     let text = |law: &str, dt: &str| {
@@ -312,7 +312,7 @@ fn share(told: Option<String>) -> f64 {
     words[place - 1].parse().unwrap()
 }
 
-/// `(1 + w^2 dt^2)^-n` of the energy is left by implicit Euler after n steps of an oscillator.
+/// Implicit Euler leaves `(1 + w^2 dt^2)^-n` of the energy after n steps of an oscillator.
 #[test]
 fn what_implicit_euler_takes_from_an_oscillator_is_told_with_its_share() {
     for (steps, dt) in [(20, 0.001), (100, 0.002), (400, 0.0005)] {
@@ -330,8 +330,8 @@ fn what_implicit_euler_takes_from_an_oscillator_is_told_with_its_share() {
     }
 }
 
-/// Warnings are given with rows for every step or only some, on linear bodies and others, whatever supplies the energy;
-/// and the method that they name conserves it.
+/// Warnings are given with rows for every step or only some, on linear bodies and others, for any source of energy; and
+/// the method that they name conserves it.
 #[test]
 fn methods_that_take_much_energy_are_told_with_one_that_keeps_it() {
     let body = |model: &str, more: &str, run: &str| {
@@ -436,8 +436,8 @@ fn energy_that_tissue_takes_is_not_told_as_the_methods() {
     }
 }
 
-/// A row comes after several substeps, with the motion between them: the balance closes as with a fixed step that is as
-/// long as substeps at rest.
+/// A row after several substeps includes the motion between them: the balance closes as well as with a fixed step of
+/// the length of substeps at rest.
 #[test]
 fn steps_that_are_taken_again_leave_what_a_fixed_step_leaves_of_the_work_of_supports() {
     for (ratio, rise) in [(0.45, 0.05), (0.3, 0.06)] {
@@ -466,7 +466,7 @@ fn steps_that_are_taken_again_leave_what_a_fixed_step_leaves_of_the_work_of_supp
     }
 }
 
-/// Damping over a step of several parts is that of the motion within it.
+/// Damping over a step with several substeps is that of the motion within it.
 #[test]
 fn steps_of_several_parts_leave_little_of_what_damping_takes() {
     let last = |dt: &str| {
@@ -490,7 +490,7 @@ fn steps_of_several_parts_leave_little_of_what_damping_takes() {
     assert!(of_parts < 1e-3 + 2.0 * whole, "{of_parts} {whole}");
 }
 
-/// Messages of a run about energy, with a folder and with its probes alone.
+/// Messages of a run about energy, with a folder and with probes alone.
 fn said_both_ways(text: &str) -> [Vec<String>; 2] {
     let simulation = crate::common::build(text);
     let place = tempfile::tempdir().unwrap();
@@ -516,7 +516,7 @@ fn said_both_ways(text: &str) -> [Vec<String>; 2] {
     [folder, loss.in_words().into_iter().collect()]
 }
 
-/// A slender block of soft tissue that is turned, or thrown around an end that is held.
+/// A slender block of soft tissue that is turned, or thrown around a fixed end.
 fn turned(more: &str) -> String {
     format!(
         "[mesh]\nblock = {{ cells = [4, 1, 1], size = [0.1, 0.03, 0.03], split = \"mirrored\" }}\n[[region]]\n\
@@ -566,8 +566,8 @@ fn energy_that_a_clamp_takes_is_told_with_its_share() {
     }
 }
 
-/// Newmark's method conserves the energy of linear tissue only. The warnings name a method that conserves it here, as
-/// is checked.
+/// Newmark's method conserves the energy of linear tissue only. The warnings name a method that conserves it here; the
+/// test checks this.
 #[test]
 fn energy_that_newmark_loses_or_makes_on_thrown_soft_tissue_is_told_with_a_remedy() {
     for (dt, words) in [
@@ -587,7 +587,7 @@ fn energy_that_newmark_loses_or_makes_on_thrown_soft_tissue_is_told_with_a_remed
     assert_eq!(said_both_ways(&kept), [Vec::<String>::new(), Vec::new()]);
 }
 
-/// Work of a load that swings many times a step is summed from row to row, and is no work.
+/// The work of a load that oscillates many times in a step cannot be summed from row to row.
 #[test]
 fn a_load_that_swings_within_a_step_says_that_instead_of_a_share() {
     let text = |load: &str, method: &str, more: &str| {

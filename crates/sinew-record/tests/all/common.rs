@@ -8,7 +8,7 @@ use sinew_record::{Companion, RunEnd, RunFolder};
 use sinew_scene::{Scene, SceneSource, Simulation};
 use sinew_world::World;
 
-/// A beam of soft tissue that is held at `sides`, in few cells, with more tables of a scene.
+/// A beam of soft tissue that is fixed at `sides`, with few cells, with more tables of a scene.
 pub(crate) fn cube(more: &str) -> Simulation {
     let text = format!(
         "title = \"cube\"\n{}[mesh]\ncube = {{ cells = 3, edge = 0.1 }}\n[[region]]\ndensity = 1000.0\nmodel = \"linear\"\n\
@@ -33,7 +33,7 @@ pub(crate) fn build(text: &str) -> Simulation {
     simulation
 }
 
-/// Runs a simulation in a new folder, or goes on in it.
+/// Runs a simulation in a new folder, or continues in it.
 pub(crate) fn run(path: &Path, simulation: &Simulation, companion: &mut dyn Companion) -> RunEnd {
     let folder = match path.join("run.json").exists() {
         true => RunFolder::reopen(path).unwrap().0,

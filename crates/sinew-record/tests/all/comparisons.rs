@@ -1,4 +1,4 @@
-//! Differences between results are found where they are.
+//! Differences between results are found at their positions.
 
 use std::fs;
 
@@ -169,7 +169,8 @@ fn other_bodies_and_probes_at_other_places_are_no_match() {
     assert_eq!(places("one"), []);
 }
 
-/// Velocities are vectors, stresses tensors: a component that is 0 but for rounding counts by the size of the whole.
+/// Velocities are vectors, stresses tensors: a component that is 0 except for rounding is compared with the size of the
+/// whole.
 #[test]
 fn velocities_and_stresses_are_compared_as_a_whole() {
     let place = tempfile::tempdir().unwrap();

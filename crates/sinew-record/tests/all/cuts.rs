@@ -18,7 +18,7 @@ fn scene(tables: &str) -> String {
     )
 }
 
-/// A blade through the middle, wholly after .025 s.
+/// A blade through the middle, which has passed through after .025 s.
 const BLADE: &str = "[[tool]]\nname = \"blade\"\nshape = { blade = { length = 0.3 } }\nstart = [-0.02, 0.05, 0.05]\n\
     rotation = [1.5707963267948966, 0.0, 0.0]\nvelocity = [6.0, 0.0, 0.0]\n[cutting]\ntool = \"blade\"\n";
 
@@ -106,7 +106,7 @@ fn the_page_of_a_body_that_was_cut_at_rest_says_that_it_did_not_move() {
     assert!(!page.contains("NaN") && !page.contains("inf times"));
 }
 
-/// The cut opens edges of 43 mm, beside those of 35 mm that the surface had, under a ball of 40 mm.
+/// The cut exposes edges of 43 mm, in addition to those of 35 mm of the surface, under a ball of 40 mm.
 #[test]
 fn a_tool_meets_what_a_cut_lays_open_under_it_as_it_met_the_surface_before() {
     let place = tempfile::tempdir().unwrap();
@@ -280,7 +280,7 @@ fn sheets_from_outside_are_repeated_bit_for_bit_and_recorded() {
     );
 }
 
-/// Elements that average strain change their energy when a stretched body is cut, whether a part of it is moved or not.
+/// Elements that average strain change their energy when a stretched body is cut, with and without a moved part.
 #[test]
 fn energy_of_a_cut_is_known_where_supports_move() {
     let strokes = "stroke,t_s,ax_m,ay_m,az_m,bx_m,by_m,bz_m\n1,0.06,0.0103,-0.03,-0.02,0.0103,-0.03,0.04\n1,0.08,0.0103,0.05,-0.02,0.0103,0.05,0.04\n";

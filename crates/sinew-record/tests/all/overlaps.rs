@@ -1,4 +1,4 @@
-//! Bodies that pass through each other are told by runs.
+//! Runs report bodies that pass through each other.
 
 use std::fs;
 use std::path::Path;
@@ -13,7 +13,7 @@ use crate::common::run;
 
 const G: f64 = 9.81;
 
-/// Two cubes of 0.1 m in one file, 5 mm apart, of which the lower one is held.
+/// Two cubes of 0.1 m in one file, 5 mm apart, of which the lower one is fixed.
 fn falling(folder: &Path, more: &str) -> Simulation {
     let of = |name: &str, low: f64| {
         let mut mesh = block([4; 3], [0.1; 3], Split::Mirrored).unwrap();

@@ -1,4 +1,4 @@
-//! The page on the folder of a run names what runs leave, and nothing else.
+//! The page on the folder of a run names exactly the files and values that runs write.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -22,7 +22,7 @@ const BODY: &str = "[mesh]\ncube = { cells = 3, edge = 0.1, split = \"kuhn\" }\n
 const LOADED: &str = "model = \"linear\"\n[[load]]\nname = \"press\"\ngroup = \"top\"\ntraction = [0.0, 0.0, -20.0]\n\
     [run]\nduration = 0.02\nintegrator = \"newmark\"\ndt = 0.002\n";
 
-/// A ball on a coupling, by a table, beside a moved part, with all that fields and probes may have.
+/// A ball on a coupling, moved by a table, next to a moved part, with all optional fields and probes.
 const TOUCHED: &str = "model = \"linear\"\n[[move]]\ngroup = \"top\"\naxes = \"x\"\ndisplacement = [0.01, 0.0, 0.0]\n\
     ramp = { kind = \"sin2\", rise = 0.1 }\n[[probe]]\nname = \"speed\"\npoint = [0.0, 0.0, 0.1]\nquantity = \"velocity\"\n\
     [[probe]]\nname = \"load\"\npoint = [0.0, 0.0, 0.1]\nquantity = \"stress\"\n[[tool]]\nname = \"ball\"\n\
@@ -40,7 +40,7 @@ const CUT: &str = "model = \"linear\"\n[[tool]]\nname = \"blade\"\nshape = { bla
 const RELAXING: &str = "model = \"neo-hookean\"\nprony = [[0.3, 0.05]]\n[run]\nduration = 0.02\n\
     integrator = \"central-difference\"\ndt = 0.001\n";
 
-/// Far beyond its stable step, so that surfaces pass through each other.
+/// A scene far beyond its stable step, so that surfaces pass through each other.
 const WILD: &str = "model = \"linear\"\n[[load]]\ngroup = \"top\"\ntraction = [0.0, 0.0, -20.0]\n[run]\nduration = 10.0\n\
     integrator = \"central-difference\"\ndt = 0.1\n";
 
@@ -141,7 +141,7 @@ fn names_of_page() -> Names {
     names
 }
 
-/// Adds the names of the files in a folder and of what is in them.
+/// Adds the names of the files in a folder and of their contents.
 fn look(folder: &Path, root: &Path, names: &mut Names) {
     for entry in fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
@@ -183,7 +183,7 @@ fn look(folder: &Path, root: &Path, names: &mut Names) {
     }
 }
 
-/// Columns of a table, with what stands for names of the scenes above.
+/// Columns of a table, with placeholders for names of the scenes above.
 fn columns(text: &str) -> BTreeSet<String> {
     let head = text.lines().find(|line| !line.starts_with('#')).unwrap();
     let general = |column: &str| {

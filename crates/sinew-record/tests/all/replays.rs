@@ -1,4 +1,4 @@
-//! Results of sessions that are replayed by their logs.
+//! Results of sessions that are replayed from their logs.
 
 use std::fs;
 use std::path::Path;
@@ -11,7 +11,7 @@ use sinew_world::{Command, Replay, World};
 
 use crate::common::{run, table};
 
-/// A cube under a load that is there from the beginning on.
+/// A cube under a load that acts from the beginning.
 const TEXT: &str = "title = \"cube\"\n[mesh]\ncube = { cells = 3, edge = 0.1 }\n[[region]]\ndensity = 1000.0\nmodel = \"linear\"\n\
     youngs_modulus = 3000.0\npoissons_ratio = 0.3\n[[fixed]]\ngroup = \"bottom\"\n[[load]]\nname = \"press\"\ngroup = \"top\"\n\
     traction = [0.0, 0.0, -20.0]\n[run]\nduration = 0.1\nintegrator = \"newmark\"\ndt = 0.002\n[output]\nfields = { frames = 5 }\n";
@@ -102,7 +102,7 @@ fn summary(folder: &Path) -> Value {
     serde_json::from_slice(&fs::read(folder.join("summary.json")).unwrap()).unwrap()
 }
 
-/// Ends what it watches as soon as it is asked after this time (s).
+/// An observer that ends a run at the first query after this time (s).
 struct Impatient {
     from: f64,
     t: f64,

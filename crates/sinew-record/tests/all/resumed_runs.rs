@@ -1,4 +1,4 @@
-//! A run that was interrupted and went on leaves the bytes of one that was not.
+//! A run that was interrupted and continued leaves the same bytes as an uninterrupted one.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -7,7 +7,7 @@ use std::path::Path;
 use crate::common::{build, cube, run};
 use sinew_record::{Companion, Ended, RecordRunError, RunFolder};
 
-/// Interrupts a run at its first look from a step on.
+/// An observer that interrupts a run at the first check at or after a step.
 struct InterruptAt {
     step: usize,
     reached: usize,
@@ -23,7 +23,7 @@ impl Companion for InterruptAt {
     }
 }
 
-/// Contents by names, without what is said of the computer.
+/// Contents by names, without the facts about the computer.
 fn contents(path: &Path) -> BTreeMap<String, Vec<u8>> {
     let mut found = BTreeMap::new();
     for folder in [path.to_owned(), path.join("fields")] {
@@ -178,7 +178,7 @@ fn another_mesh_and_a_damaged_checkpoint_are_refused() {
     );
 }
 
-/// A thrown cube that fibres catch, by a method with more to add.
+/// A thrown cube that fibres stop, with a method and further tables.
 fn caught(run: &str) -> String {
     format!(
         "[mesh]\ncube = {{ cells = 3, edge = 0.04 }}\n[[region]]\ndensity = 1000.0\nmodel = \"neo-hookean\"\n\

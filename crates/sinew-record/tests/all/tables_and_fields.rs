@@ -1,4 +1,4 @@
-//! Tables and fields say the same, and what statics says.
+//! Tables and fields agree with each other and with statics.
 
 use std::fs;
 use std::path::Path;
@@ -24,8 +24,8 @@ pub(crate) fn singles(path: &Path, name: &str) -> Vec<f32> {
     numbers.into_iter().map(|number| number as f32).collect()
 }
 
-/// A column under its own weight: supports carry it to 1e-8, and their moment about their middle is that of forces that
-/// lie evenly about it.
+/// A column under its own weight: supports carry it to 1e-8, and their moment about their middle is that of evenly
+/// distributed forces.
 #[test]
 fn reactions_carry_the_weight() {
     let place = tempfile::tempdir().unwrap();
@@ -190,7 +190,8 @@ fn the_stress_of_a_bar_that_is_pulled_is_the_pull() {
     assert_eq!(summary["outcome"], "finished");
 }
 
-/// Two supports that share nodes, one along z and one across: each carries what it holds, and together the load.
+/// Two supports that share nodes, one along z and one across: each carries the forces in its directions, and together
+/// they carry the load.
 #[test]
 fn supports_that_share_nodes_share_no_force() {
     let place = tempfile::tempdir().unwrap();
@@ -212,7 +213,7 @@ fn supports_that_share_nodes_share_no_force() {
 }
 
 /// A step far too long inverts tetrahedra, for which the law has no force and so no acceleration. No row of the energy
-/// is due there, which would be refused before.
+/// is due there; such a row would be refused before.
 #[test]
 fn a_run_ends_by_name_where_a_frame_asks_for_an_acceleration_that_the_law_refuses() {
     let place = tempfile::tempdir().unwrap();

@@ -14,13 +14,14 @@ use crate::tables_and_fields::singles;
 const STIFFNESS: f64 = 3000.0 * 0.1 * 0.1 / 0.1;
 
 /// The height (m) of the plate: down by 5 mm within 0.1 s, with a smooth beginning and end, so that little energy is
-/// lost when nodes meet it.
+/// lost when nodes come into contact with it.
 fn height(t: f64) -> f64 {
     let share = (t / 0.1).min(1.0);
     0.1 - 0.005 * (std::f64::consts::FRAC_PI_2 * share).sin().powi(2)
 }
 
-/// A bar that is held at its bottom and does not widen, and a plate that comes down on it, by a table in `folder`.
+/// A bar that is fixed at its bottom and does not widen, and a plate that comes down on it, moved by a table in
+/// `folder`.
 fn pressed(folder: &Path, duration: f64, more: &str) -> Simulation {
     let pi = std::f64::consts::PI;
     let mut rows = "t_s,x_m,y_m,z_m,rx_rad,ry_rad,rz_rad\n".to_owned();
@@ -42,8 +43,7 @@ fn pressed(folder: &Path, duration: f64, more: &str) -> Simulation {
     simulation
 }
 
-/// A row at t = 0 and one for each step; once at rest the force is E A d/L, and no node is inside the plate at any
-/// time.
+/// A row at t = 0 and one for each step; at rest the force is E A d/L, and no node is inside the plate at any time.
 #[test]
 fn a_plate_feels_hookes_law() {
     let place = tempfile::tempdir().unwrap();
@@ -76,8 +76,8 @@ fn a_plate_feels_hookes_law() {
     assert!(last("plate_torque_x_Nm").abs() < 1e-9 * force);
 }
 
-/// Energy supplied is the work of the plate: it is stored in the bar, was damped, or was lost where nodes met the
-/// plate.
+/// Energy supplied is the work of the plate: it is stored in the bar, was damped, or was lost when nodes came into
+/// contact with the plate.
 #[test]
 fn the_work_of_tools_is_part_of_the_balance() {
     let place = tempfile::tempdir().unwrap();
@@ -99,8 +99,8 @@ fn the_work_of_tools_is_part_of_the_balance() {
     );
 }
 
-/// The pressure under the plate is E d/L wherever it touches, at edges and corners too, and its forces sum up to the
-/// force on the plate.
+/// The pressure under the plate is E d/L at all points of contact, including edges and corners, and its forces sum up
+/// to the force on the plate.
 #[test]
 fn fields_have_forces_and_pressures_of_contact() {
     let place = tempfile::tempdir().unwrap();
@@ -169,7 +169,7 @@ fn rows_come_as_often_as_those_of_probes_and_their_size_is_told_before() {
     }
 }
 
-/// Nothing but a plate gives this body energy, many times what it began with.
+/// Only a plate supplies energy to this body, many times its initial energy.
 #[test]
 fn the_work_of_tools_is_no_energy_from_nothing() {
     let place = tempfile::tempdir().unwrap();
@@ -194,7 +194,8 @@ fn the_work_of_tools_is_no_energy_from_nothing() {
     assert_eq!(growth.in_words(), None);
 }
 
-/// A plate on a spring of the bar's own stiffness goes half as deep, and its table says what its hand does.
+/// A plate on a spring with the stiffness of the bar goes half as deep, and its table contains the work that drives its
+/// path.
 #[test]
 fn a_plate_on_a_coupling_shares_the_way_with_the_tissue() {
     let place = tempfile::tempdir().unwrap();
@@ -230,7 +231,7 @@ fn a_plate_on_a_coupling_shares_the_way_with_the_tissue() {
     );
 }
 
-/// A step is cut into parts, of each of which contact has a force of its own, and rows may be several steps apart.
+/// A step has substeps, each with its own contact force, and rows may be several steps apart.
 #[test]
 fn forces_of_rows_add_up_to_the_momentum_of_a_body_whose_steps_are_taken_again() {
     for rows in ["", "probes = { every = 0.01 }\n"] {

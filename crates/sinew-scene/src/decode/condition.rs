@@ -5,11 +5,12 @@
 pub(crate) struct Condition {
     /// Requirement for the other keys.
     pub(crate) goes: Goes,
-    /// The end of the sentence, begun by the key, that refuses it otherwise.
+    /// The reason for the error message if the condition is not met: the end of a sentence that begins with the key.
     pub(crate) reason: &'static str,
     /// Remedy, if there is one.
     pub(crate) help: Option<&'static str>,
-    /// Another key and the words of it with which a required key must be given, if it may be left out with others.
+    /// Another key and those of its words with which a required key must be given, if the key may be left out with
+    /// other words.
     pub(crate) required: Option<(&'static str, AllWords)>,
 }
 
@@ -19,15 +20,15 @@ pub(crate) type AllWords = fn() -> &'static [&'static str];
 /// Requirement for another key of a table.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Goes {
-    /// This key is given.
+    /// This key must be given.
     With(&'static str),
-    /// This key is not given.
+    /// This key must not be given.
     Without(&'static str),
-    /// This key is one of these words.
+    /// This key must be one of these words.
     If(&'static str, &'static [&'static str]),
-    /// This key is one of these words, which are known at run time.
+    /// This key must be one of these words, which are known at run time.
     Among(&'static str, AllWords),
-    /// Nothing can: the key is known here only to be refused with a reason.
+    /// A requirement that cannot be met: the key is described only to be refused with a reason.
     Never,
 }
 
@@ -52,17 +53,17 @@ impl Condition {
         }
     }
 
-    /// The other key must be given.
+    /// Condition that the other key is given.
     pub(crate) const fn with(other: &'static str, reason: &'static str) -> Self {
         Self::new(Goes::With(other), reason)
     }
 
-    /// The other key must not be given.
+    /// Condition that the other key is not given.
     pub(crate) const fn without(other: &'static str, reason: &'static str) -> Self {
         Self::new(Goes::Without(other), reason)
     }
 
-    /// The other key must be one of these words.
+    /// Condition that the other key is one of these words.
     pub(crate) const fn where_is(
         other: &'static str,
         words: &'static [&'static str],
@@ -71,7 +72,7 @@ impl Condition {
         Self::new(Goes::If(other, words), reason)
     }
 
-    /// The other key must be one of the words that are known then.
+    /// Condition that the other key is one of the words that are known at run time.
     pub(crate) const fn among(other: &'static str, words: AllWords, reason: &'static str) -> Self {
         Self::new(Goes::Among(other, words), reason)
     }
@@ -84,7 +85,7 @@ impl Condition {
         }
     }
 
-    /// The key is refused.
+    /// Condition that is never met: the key is refused.
     pub(crate) const fn never(reason: &'static str) -> Self {
         Self::new(Goes::Never, reason)
     }

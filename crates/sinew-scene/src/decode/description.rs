@@ -35,7 +35,7 @@ impl TableDescription {
     }
 }
 
-/// Keys that are known at run time only, in the place of one key.
+/// Keys that are known at run time only, which replace one key.
 #[derive(Debug)]
 pub(crate) struct Parts {
     /// The keys.
@@ -66,7 +66,7 @@ pub(crate) trait Described: Sync {
     /// Its whole description.
     fn describe(&self) -> KeyDescription;
 
-    /// The keys that it replaces; `None` for a key of its own.
+    /// The keys that replace it; `None` for an ordinary key.
     fn parts(&self) -> Option<Parts> {
         None
     }
@@ -93,7 +93,7 @@ pub(crate) struct KeyDescription {
     pub(crate) shape: Shape,
     /// Behaviour if it is not given.
     pub(crate) otherwise: Stated,
-    /// The conditions under which it may be given, and must if it is required.
+    /// The conditions under which it may be given; a required key must be given if they are met.
     pub(crate) conditions: &'static [Condition],
 }
 
@@ -102,7 +102,7 @@ pub(crate) struct KeyDescription {
 pub(crate) enum Stated {
     /// It must be given.
     Required,
-    /// It must be given where another key is one of these words.
+    /// It must be given if another key is one of these words.
     RequiredWith(&'static str, Vec<&'static str>),
     /// The behaviour, as a description.
     InWords(&'static str),

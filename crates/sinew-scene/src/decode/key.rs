@@ -1,4 +1,4 @@
-//! The description of a key, by which it is read, refused and explained.
+//! The description of a key, used to read, check and explain it.
 
 use super::condition::Condition;
 use super::description::{Described, KeyDescription, Stated};
@@ -7,8 +7,8 @@ use super::values::{Kind, Written};
 
 /// A key: its name, its meaning, the values `V` that fit, and the rule `P` for its absence.
 ///
-/// Tables are read by these constants, and the reference and the schema of scenes are written from them, so that neither
-/// can differ from the reader.
+/// Tables are read by these constants, and the reference and the schema of scenes are written from them, so that both
+/// agree with the reader.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Key<V, P = Required> {
     pub(crate) name: &'static str,
@@ -27,7 +27,7 @@ impl<V: Copy> Key<V, Required> {
 }
 
 impl<V: Copy> Key<V, Optional> {
-    /// A key that may be left out; `otherwise` describes the behaviour then.
+    /// A key that may be left out; `otherwise` describes the behaviour in this case.
     pub(crate) const fn optional(
         name: &'static str,
         meaning: &'static str,

@@ -6,7 +6,7 @@ use crate::error::SceneError;
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Required;
 
-/// A key that may be left out, with a description of the behaviour then.
+/// A key that may be left out, with a description of the behaviour in this case.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Optional(pub(crate) &'static str);
 
@@ -14,13 +14,13 @@ pub(crate) struct Optional(pub(crate) &'static str);
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Or<T>(pub(crate) T);
 
-/// A table that may be left out, with the TOML that its reader takes then.
+/// A table that may be left out, with the TOML that its reader uses instead.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Usual(pub(crate) &'static str);
 
 /// Result of reading a key whose value is a `T` and which may be absent.
 pub(crate) trait Presence<T> {
-    /// The value, or perhaps none.
+    /// The result: the value, or an optional value.
     type Read;
 
     /// The value given, or the one for its absence.

@@ -65,7 +65,7 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// The error for a key that means nothing here.
+    /// The error for a key that is unknown here.
     pub(crate) fn unknown(&self, key: &Spanned<DeString<'_>>) -> SceneError {
         let known = self.description.all_keys();
         let nearest = nearest(key.get_ref(), known.iter().map(|key| key.name()));
@@ -295,7 +295,7 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// Returns an error for the first key that is given and does not go with the others.
+    /// Returns an error for the first key that is given but not allowed together with the others.
     pub(crate) fn check_conditions(&self) -> Result<(), SceneError> {
         for key in self.description.all_keys() {
             let key_is_given = self.has(key.name());
@@ -325,7 +325,7 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// The error for the word of another key on which a condition depends, if the word itself means nothing.
+    /// The error for the word of another key on which a condition depends, if the word itself is unknown.
     fn unknown_word(&self, condition: &Condition) -> Option<SceneError> {
         let (other, _) = condition.goes.words()?;
         let value = self.entries.get(other)?;
@@ -342,13 +342,13 @@ impl<'a> Table<'a> {
         Some(self.misfit(other, value, described.expected, misfit))
     }
 
-    /// The text of a key; `None` if its value is no text.
+    /// The text of a key; `None` if its value is not a text.
     fn word(&self, key: &str) -> Option<&str> {
         self.entries.get(key)?.get_ref().as_str()
     }
 
-    /// False for a key that does not go with the word of another key, or that goes with a key for which this is
-    /// false.
+    /// True for a key that may be given: it is allowed with the words of other keys, and so are the keys that it
+    /// depends on.
     fn may_be_given(&self, key: &dyn Described) -> bool {
         self.may_be_given_after(key, &mut Vec::new())
     }
@@ -418,7 +418,7 @@ impl<'a> Table<'a> {
         self.place.error(Some(value.span()), fault)
     }
 
-    /// The error for a list with a text that is no formula, at the character where it ceases to be one.
+    /// The error for a list with a text that is not a formula, at the first character that does not fit.
     fn no_formula(&self, key: &str, value: &Spanned<DeValue<'_>>) -> SceneError {
         let mut items = value.get_ref().as_array().into_iter().flatten();
         let wrong = items.find_map(|item| {
@@ -460,7 +460,7 @@ impl<'a> Table<'a> {
     }
 }
 
-/// The span of a table: its header or braces, or its key where dotted keys make the table.
+/// The span of a table: its header or braces, or its key if dotted keys make the table.
 fn header_or_key(
     value: &Spanned<DeValue<'_>>,
     entries: &DeTable<'_>,

@@ -11,9 +11,9 @@ pub(crate) enum Misfit {
     Type,
     /// The type is right, the value is not.
     Value,
-    /// A whole number is larger than TOML has any.
+    /// A whole number is larger than the largest one of TOML.
     TooLarge,
-    /// A text in the value is no formula.
+    /// A text in the value is not a formula.
     Formula,
 }
 
@@ -55,7 +55,7 @@ pub(crate) fn integer(value: &DeValue<'_>) -> Result<i64, Misfit> {
     i64::from_str_radix(integer.as_str(), integer.radix()).map_err(|_| Misfit::Value)
 }
 
-/// Description of the whole numbers that are taken as numbers.
+/// Description of the whole numbers that are accepted as numbers.
 pub(super) const WITHIN: &str = "whole numbers of at most 9223372036854775807 in size; write a larger number with a point or an exponent";
 
 /// A whole number from 1 to `most`.

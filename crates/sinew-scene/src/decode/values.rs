@@ -23,7 +23,7 @@ pub(crate) trait Kind: Copy + Sync {
 
 /// A kind of values that can be read.
 pub(crate) trait Values: Kind {
-    /// The value once it is read.
+    /// The value after reading.
     type Read;
 
     /// Reads a value.

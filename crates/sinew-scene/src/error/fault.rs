@@ -5,7 +5,7 @@ use super::override_error::OverrideError;
 use super::words::{did_you_mean, quoted, quoted_or_none, shortened};
 use crate::formula::FormulaError;
 
-/// Steps of a run, at most: larger whole numbers cannot be distinguished.
+/// Largest number of steps of a run: larger whole numbers cannot be distinguished.
 pub(crate) const MOST_STEPS: f64 = 1.0 / f64::EPSILON;
 
 /// A mistake in a scene.
@@ -21,7 +21,7 @@ pub enum Fault {
         /// The message of the TOML parser.
         message: String,
     },
-    /// Values of a program that TOML does not have.
+    /// Values of a program that TOML cannot express.
     #[error("these values make no scene: {reason}")]
     Values {
         /// The reason.
@@ -30,7 +30,7 @@ pub enum Fault {
     /// A value of the command line that cannot be set.
     #[error(transparent)]
     Override(#[from] OverrideError),
-    /// A key that means nothing in its table.
+    /// A key that is unknown in its table.
     #[error("unknown key `{}`{}", shortened(key), did_you_mean(*nearest))]
     UnknownKey {
         /// The key given.
@@ -70,7 +70,7 @@ pub enum Fault {
         /// The type of the value.
         kind: &'static str,
     },
-    /// A text that is no formula.
+    /// A text that is not a formula.
     #[error("{key}: \"{}\": {error}", shortened(text))]
     Formula {
         /// The key.
@@ -88,7 +88,7 @@ pub enum Fault {
         /// The keys that are given.
         found: Vec<&'static str>,
     },
-    /// A key that makes no sense together with the others.
+    /// A key that is not allowed together with the others.
     #[error("`{key}` {reason}")]
     Misplaced {
         /// The key.
@@ -106,7 +106,7 @@ pub enum Fault {
         /// The table that uses it.
         by: String,
     },
-    /// A number that a law cannot have.
+    /// A number that a law does not allow.
     #[error(transparent)]
     Parameter(#[from] sinew_fem::hyperelastic::ParameterError),
     /// A load that does not exist.
@@ -120,15 +120,15 @@ pub enum Fault {
         /// The names of the loads.
         known: Vec<String>,
     },
-    /// A formula that gives no finite number somewhere on the body.
+    /// A formula whose value is not finite somewhere on the body.
     #[error("a formula gives {value} at ({}, {}, {}) m: expected a finite number everywhere on the part", place[0], place[1], place[2])]
     NotFinite {
         /// Its value there.
         value: f64,
-        /// The place (m).
+        /// The position (m).
         place: [f64; 3],
     },
-    /// An impossible ramp.
+    /// A ramp with a parameter outside its range.
     #[error(transparent)]
     Ramp(#[from] sinew_core::RampError),
     /// An integrator that does not exist, or an option it refuses.
@@ -140,7 +140,7 @@ pub enum Fault {
     /// A table over time that cannot be used.
     #[error(transparent)]
     MotionTable(#[from] super::MotionTableError),
-    /// A tool that does not fit the body, or cannot be.
+    /// A tool that does not fit the body, or whose description is not valid.
     #[error(transparent)]
     Tool(#[from] super::ToolFault),
     /// A body that cannot be cut.
@@ -152,7 +152,7 @@ pub enum Fault {
     /// A cube or a block that cannot be generated.
     #[error(transparent)]
     Cube(#[from] sinew_mesh::structured::StructuredError),
-    /// A scale by which coordinates overflow.
+    /// A scale with which coordinates overflow.
     #[error("scale = {scale:?}: expected a factor that leaves all coordinates finite")]
     Scale {
         /// The factor.
@@ -167,7 +167,7 @@ pub enum Fault {
     /// A part chosen by position whose name is that of a group of the mesh file.
     #[error(transparent)]
     SelectedGroup(#[from] sinew_mesh::AddGroupError),
-    /// A region for the rest of the body although the others leave nothing.
+    /// A region for the rest of the body although the other regions cover all of it.
     #[error("the other regions have all {tets} tetrahedra and leave none")]
     NothingLeft {
         /// Tetrahedra of the mesh.
@@ -176,13 +176,13 @@ pub enum Fault {
     /// A body that cannot be modelled.
     #[error("{}", .0.cause())]
     Model(sinew_fem::FemError),
-    /// A material without curves.
+    /// A material for which there are no curves.
     #[error(transparent)]
     Homogeneous(#[from] sinew_fem::homogeneous::HomogeneousError),
     /// An oscillator that cannot be built.
     #[error(transparent)]
     Oscillator(#[from] sinew_core::OperatorError),
-    /// dt = "auto" where no step can be found.
+    /// dt = "auto", but no step can be found.
     #[error("dt = \"auto\" finds no step: {0}")]
     NoStableStep(#[from] NoStableStep),
     /// A method that cannot be set up for the scene.
@@ -196,7 +196,7 @@ pub enum Fault {
         /// The duration (s).
         duration: f64,
     },
-    /// dt = "auto" on a linear body that is cut, whose elements bound no step.
+    /// dt = "auto" on a linear body that is cut, whose elements give no bound of the step.
     #[error(
         "dt = \"auto\" finds no step that is stable after cuts, since an element of the body averages strain over tetrahedra that they separate: \
          expected a step with a margin, or element = \"p1\""
@@ -213,7 +213,7 @@ pub enum Fault {
         /// The duration (s).
         duration: f64,
     },
-    /// A state at t = 0 in which a law with memory has no meaning.
+    /// A state at t = 0 in which a law with memory is not defined.
     #[error("the body cannot begin so: {0}")]
     InitialState(sinew_core::EvaluationError),
     /// A static state that cannot be solved for.

@@ -65,7 +65,7 @@ fn words_in(expected: &str) -> impl Iterator<Item = &str> {
     expected.split('"').skip(1).step_by(2)
 }
 
-/// True if cells of a linear kind can be simulated.
+/// True if cells of a linear kind are supported.
 fn is_supported(linear: CellType) -> bool {
     matches!(
         linear,
@@ -78,7 +78,7 @@ fn stands_on_top(key: &str, known: &[&str]) -> bool {
     AT_THE_TOP.contains(&key) && !known.contains(&key)
 }
 
-/// A sentence that names the integrators that take an option.
+/// A sentence that names the integrators with an option.
 fn takers(key: &str) -> Option<String> {
     let entries = sinew_integrators::entries();
     let takes = |entry: &&sinew_integrators::Entry| entry.options.iter().any(|o| o.key == key);

@@ -1,11 +1,11 @@
-//! The keys that lead to a place in a text.
+//! The path of keys to a position in a text.
 
 use std::ops::Range;
 
 use toml::de::{DeTable, DeValue};
 
-/// The keys to the smallest key or value of a TOML text that contains a byte, such as `region[1].density`; tables of
-/// a list are counted from 1. `None` for a byte that belongs to none, and a text that is not TOML.
+/// The keys to the smallest key or value of a TOML text that contains a byte, such as `region[1].density`; tables of a
+/// list are counted from 1. `None` for a byte that belongs to no key, and for a text that is not TOML.
 pub(super) fn key_path(text: &str, byte: usize) -> Option<String> {
     let document = DeTable::parse(text).ok()?;
     let mut smallest = None;

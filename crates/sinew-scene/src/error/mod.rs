@@ -1,4 +1,4 @@
-//! Errors of scenes, with their place in the text.
+//! Errors of scenes, with their position in the text.
 
 mod fault;
 mod hint;
@@ -92,13 +92,13 @@ impl SceneError {
         self.0.scene.text()
     }
 
-    /// The bytes of the text at fault; `None` if the fault is that of the whole document.
+    /// The bytes of the text at fault; `None` if the fault concerns the whole document.
     #[must_use]
     pub fn span(&self) -> Option<Range<usize>> {
         self.0.span.clone()
     }
 
-    /// True if the scene was made of values of a program: the message names a key, since the user has no lines.
+    /// True if the scene was made from values of a program: the message names a key, since the user has no lines.
     #[must_use]
     pub fn is_of_values(&self) -> bool {
         self.0.scene.is_of_values()

@@ -18,7 +18,7 @@ impl MotionTableError {
         &self.path
     }
 
-    /// The line, counted from 1; `None` if the fault is that of the whole file.
+    /// The line, counted from 1; `None` if the fault concerns the whole file.
     #[must_use]
     pub fn line(&self) -> Option<usize> {
         self.line
@@ -81,7 +81,7 @@ pub enum MotionTableFault {
     /// A table without a row.
     #[error("there is no row below the names of the columns: expected at least one")]
     NoRows,
-    /// Rows that make no strokes.
+    /// Rows that are not valid strokes.
     #[error(transparent)]
     Strokes(#[from] sinew_cutting::StrokesError),
     /// A position along an axis that is not moved.

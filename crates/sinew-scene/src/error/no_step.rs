@@ -13,10 +13,10 @@ pub enum StableStepError {
     Setup(#[from] SetupError),
 }
 
-/// Reasons why an integrator sets no step on a scene.
+/// Reasons why an integrator gives no step for a scene.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum NoStableStep {
-    /// Nothing vibrates or is damped.
+    /// The body neither vibrates nor is damped.
     #[error("nothing in this scene limits the step of `{integrator}`")]
     Unlimited {
         /// Integrator id.
@@ -42,7 +42,7 @@ pub enum NoStableStep {
         "the stiffness of the body at t = 0 is not finite: a modulus or a density is too large or too small"
     )]
     NotFinite,
-    /// The integrator does not know.
+    /// The integrator does not know its largest stable step.
     #[error("`{integrator}` cannot tell up to which step it is stable")]
     Unknown {
         /// Integrator id.

@@ -23,12 +23,12 @@ pub enum OverrideError {
     Missing {
         /// The whole key.
         path: String,
-        /// The part that is not there.
+        /// The missing part.
         missing: String,
-        /// The most similar name that is there.
+        /// The most similar existing name.
         nearest: Option<String>,
     },
-    /// A number that is not that of a table in a list.
+    /// A number without a table of this number in a list.
     #[error("`{path}`: the scene has {count} of `{list}`, counted from 1")]
     Number {
         /// The whole key.

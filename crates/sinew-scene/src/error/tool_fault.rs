@@ -31,7 +31,7 @@ pub enum ToolFault {
         /// Number of the nodes.
         nodes: usize,
     },
-    /// A tool that is thinner than places are known.
+    /// A tool that is thinner than the precision of positions.
     #[error(
         "a radius or half a thickness of {} m, less than 1e-9 of the body, {} m: expected more; are its lengths in m?",
         short(*half_width),
@@ -43,24 +43,24 @@ pub enum ToolFault {
         /// The size of the body (m).
         body: f64,
     },
-    /// A place of a table that is farther away than places are known.
+    /// A position of a table that is so far away that its precision is not sufficient.
     #[error("at t = {} s the tool is at {position:?} m: expected coordinates of at most 1e6 m", short(*t))]
     Far {
         /// The time (s).
         t: f64,
-        /// The place (m).
+        /// The position (m).
         position: [f64; 3],
     },
-    /// An impossible shape.
+    /// A shape that is not valid.
     #[error(transparent)]
     Shape(#[from] ShapeError),
-    /// An impossible table of poses.
+    /// A table of poses that is not valid.
     #[error(transparent)]
     Table(#[from] TableError),
     /// Tools that do not fit together.
     #[error(transparent)]
     Tools(#[from] ToolsError),
-    /// A state in which the places of nodes are not known.
+    /// A state in which the positions of nodes are unknown.
     #[error(transparent)]
     Places(#[from] FieldError),
 }

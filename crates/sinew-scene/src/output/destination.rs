@@ -42,7 +42,7 @@ pub struct Destination {
 pub enum Delivery {
     /// All of it was written.
     Whole,
-    /// The reader of a pipe closed it before the end.
+    /// Only a part was written: the reader of a pipe closed it before the end.
     ReaderLeft,
 }
 
@@ -75,7 +75,7 @@ impl Destination {
         self.target == Target::StandardOutput
     }
 
-    /// True if the output goes to a device, a pipe, an open file or standard output, which are written to and not
+    /// True if the output goes to a device, a pipe, an open file or standard output; these are written to and not
     /// replaced.
     #[must_use]
     pub fn is_stream(&self) -> bool {
@@ -97,7 +97,7 @@ impl Destination {
         self.target.is_same_file(&other.target)
     }
 
-    /// Opens the output. A named pipe waits for its reader.
+    /// Opens the output. For a named pipe it waits for the reader.
     ///
     /// # Errors
     /// [`OutputError::NotOpened`].
@@ -165,7 +165,7 @@ impl Output {
         }
     }
 
-    /// Completes the output. A file gets its final name, if that may still be written.
+    /// Completes the output. A file gets its final name, if a file of this name may still be written.
     ///
     /// # Errors
     /// [`OutputError`]; an existing file is then unchanged.

@@ -21,7 +21,7 @@ pub enum OutputError {
         /// The path at the end of all links.
         target: PathBuf,
     },
-    /// A folder where a file belongs.
+    /// A folder, although a file is expected.
     #[error("cannot write {}: it is a folder; name a file in it", path.display())]
     Folder {
         /// The path.
@@ -32,10 +32,10 @@ pub enum OutputError {
     NoFolder {
         /// The path.
         path: PathBuf,
-        /// The folder it would be in.
+        /// The folder that should contain it.
         folder: PathBuf,
     },
-    /// A file or a device where a folder belongs.
+    /// A file or a device, although a folder is expected.
     #[error("cannot write into {}: it is not a folder; name a folder (it is created if absent)", path.display())]
     NotAFolder {
         /// The path.
@@ -46,7 +46,7 @@ pub enum OutputError {
     Foreign {
         /// The path.
         path: PathBuf,
-        /// Names of the others in it.
+        /// Names of the other content.
         names: Vec<String>,
     },
     /// A folder with a file that this run reads.
@@ -73,7 +73,7 @@ pub enum OutputError {
         /// The folder of the other result.
         holder: PathBuf,
     },
-    /// A complete result that cannot be kept next to its folder: something else has that name.
+    /// A complete result that cannot be kept next to its folder: another file or folder has that name.
     #[error("cannot write into {}: its results would be kept as {} until new ones are complete, and that is there already; rename it, or name a new folder", path.display(), kept.display())]
     NoRoomAside {
         /// The path.
@@ -81,7 +81,7 @@ pub enum OutputError {
         /// The name under which the results would be kept.
         kept: PathBuf,
     },
-    /// A complete result that the system does not rename.
+    /// A complete result that the system cannot rename.
     #[error("cannot write into {}: its results cannot be kept as {} until new ones are complete: {source}; name a new folder", path.display(), kept.display())]
     NotSetAside {
         /// The path.
@@ -147,7 +147,7 @@ pub enum OutputError {
         /// The path.
         path: PathBuf,
     },
-    /// A path that the operating system does not open for writing.
+    /// A path that the operating system cannot open for writing.
     #[error("cannot write {}: {source}; name another file", path.display())]
     NotOpened {
         /// The path.
@@ -166,7 +166,7 @@ pub enum OutputError {
 }
 
 impl OutputError {
-    /// True if the path was refused, so that another path helps; otherwise writing failed.
+    /// True if the path was refused, so that another path may be accepted; otherwise writing failed.
     #[must_use]
     pub fn is_refusal(&self) -> bool {
         !matches!(self, Self::Failed { .. } | Self::Gone { .. })
@@ -188,7 +188,7 @@ fn process(id: Option<u32>) -> String {
     id.map_or_else(String::new, |id| format!(" (process {id})"))
 }
 
-/// A few of the names of other things.
+/// Some of the names of other content.
 fn others(names: &[String]) -> String {
     const SHOWN: usize = 3;
     let shown = names
@@ -203,7 +203,7 @@ fn others(names: &[String]) -> String {
     }
 }
 
-/// The path by which the run reads the file, if it differs from the refused one.
+/// The path with which the run reads the file, if it differs from the refused one.
 fn as_input(path: &PathBuf, input: &PathBuf) -> String {
     if path == input {
         String::new()

@@ -33,9 +33,8 @@ impl OutputFolder {
         &self.path
     }
 
-    /// Checks, before long work, that the folder exists or can be created, that it accepts new files,
-    /// and that files of these names may be written in it, no two of them the same file. Leaves no
-    /// trace.
+    /// Checks, before long work, that the folder exists or can be created, that it accepts new files, and that files of
+    /// these names may be written in it, no two of them the same file. Leaves no files behind.
     ///
     /// # Errors
     /// [`OutputError`] for the first path that is refused.
@@ -102,8 +101,7 @@ impl OutputFolder {
     }
 }
 
-/// A folder's path without folders that would be created only to be left again: `new/..` is the
-/// folder that contains `new`.
+/// A folder's path without components that `..` cancels: `new/..` is the folder that contains `new`.
 fn once_made(path: &Path) -> PathBuf {
     let mut folder = PathBuf::new();
     for component in path.components() {

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 use super::error::OutputError;
 
-/// A file that grows line by line. Flushed content survives a kill of the process.
+/// A file that grows line by line. Flushed content remains if the process is killed.
 #[derive(Debug)]
 pub struct GrowingFile {
     path: PathBuf,
@@ -24,7 +24,7 @@ impl GrowingFile {
         }
     }
 
-    /// Adds to its end.
+    /// Appends to its end.
     ///
     /// # Errors
     /// [`OutputError::Failed`].
@@ -35,7 +35,7 @@ impl GrowingFile {
         Ok(())
     }
 
-    /// Makes sure that the disk has all of it, and gives its length in bytes.
+    /// Makes sure that all of its content is on the disk, and returns its length in bytes.
     ///
     /// # Errors
     /// [`OutputError::Failed`].

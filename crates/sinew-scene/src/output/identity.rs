@@ -3,7 +3,7 @@
 use std::fs::{self, File, Metadata};
 use std::path::{Path, PathBuf};
 
-/// Device and inode of a file, which all links to it and all spellings of its path share.
+/// Device and inode of a file, which are the same for all links to it and all spellings of its path.
 #[cfg(unix)]
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Identity(u64, u64);

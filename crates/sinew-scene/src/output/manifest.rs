@@ -24,11 +24,11 @@ pub(super) struct Manifest {
 /// The state of a result.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum State {
-    /// It is being written, or its writer was killed.
+    /// A result that is being written, or whose writer was killed.
     Unfinished,
-    /// It is complete.
+    /// A complete result.
     Finished,
-    /// It is complete, and kept until the one that takes its place is complete too.
+    /// A complete result that is kept until the one that replaces it is complete too.
     SetAside,
 }
 
@@ -45,7 +45,7 @@ impl State {
 }
 
 impl Manifest {
-    /// The manifest in a folder; `None` if absent, or another program's.
+    /// The manifest in a folder; `None` if absent, or if it belongs to another program.
     pub(super) fn read(folder: &Path) -> Result<Option<Self>, OutputError> {
         let path = folder.join(MANIFEST);
         let is_file = path.symlink_metadata().map(|found| found.is_file());

@@ -1,9 +1,8 @@
-//! All writing of the commands: checks of paths, and safe ways to write.
+//! Output of the commands: checks of paths, and safe writing.
 //!
-//! A [`Destination`] is a path that was checked before the work began; [`Destination::open`] turns it
-//! into an [`Output`]. A file is written under a temporary name and renamed when it is complete;
-//! devices, pipes and standard output are written to directly. Everything else is refused, and so
-//! are the files that the run reads.
+//! A [`Destination`] is a path that is checked before the work begins; [`Destination::open`] turns it into an
+//! [`Output`]. A file is written under a temporary name and renamed when it is complete; devices, pipes and standard
+//! output are written to directly. Everything else is refused, and so are the files that the run reads.
 
 mod destination;
 mod error;

@@ -1,4 +1,5 @@
-//! Files of a folder that belongs to one result. Nothing outside it is read or written: a link in it is an error, and so is another folder in its place.
+//! Files of a folder that belongs to one result. Nothing outside it is read or written: a link in it is an error, and
+//! so is another folder that has replaced it.
 
 use std::fs::{self, File};
 use std::io::{self, ErrorKind, Seek, SeekFrom, Write};
@@ -26,7 +27,7 @@ impl OwnedFolder {
         }
     }
 
-    /// A file to be read; `None` if absent.
+    /// Opens a file for reading; `None` if absent.
     ///
     /// # Errors
     /// [`OutputError`].
@@ -39,7 +40,7 @@ impl OwnedFolder {
         }
     }
 
-    /// Writes a file as a whole and makes sure that the disk has it.
+    /// Writes a file as a whole and makes sure that it is on the disk.
     ///
     /// # Errors
     /// [`OutputError`]; an existing file is then unchanged.
@@ -53,7 +54,7 @@ impl OwnedFolder {
         write(&path).map_err(|source| self.failed(&path, source))
     }
 
-    /// A failure to write, which may be that of a folder that has gone.
+    /// The error for a failure to write; its reason may be that the folder was replaced.
     fn failed(&self, path: &Path, source: io::Error) -> OutputError {
         match self.check_identity() {
             Err(gone) => gone,
@@ -83,7 +84,7 @@ impl OwnedFolder {
         Ok(())
     }
 
-    /// Makes sure that the disk has the names of all that was written lightly.
+    /// Makes sure that the names of all files from [`OwnedFolder::write_lightly`] are on the disk.
     ///
     /// # Errors
     /// [`OutputError`].
@@ -98,7 +99,7 @@ impl OwnedFolder {
         })
     }
 
-    /// Opens a file that grows, cut off after its first `length` bytes; new where `length` is 0.
+    /// Opens a file that grows, truncated after its first `length` bytes; a new file if `length` is 0.
     ///
     /// # Errors
     /// [`OutputError`], also for a file that is shorter.
@@ -130,7 +131,7 @@ impl OwnedFolder {
         }
     }
 
-    /// Removes a file, if it is there.
+    /// Removes a file, if it exists.
     ///
     /// # Errors
     /// [`OutputError`].
@@ -139,7 +140,7 @@ impl OwnedFolder {
         remove_if_there(&path).map_err(|source| OutputError::failed(&path, source))
     }
 
-    /// The path of a file that may be written: in a folder that exists, and no input of the run.
+    /// The path of a file that may be written: in a folder that exists, and not an input of the run.
     fn target(&self, name: &str) -> Result<PathBuf, OutputError> {
         let path = self.inside(name)?;
         if let Some((folder, _)) = name.rsplit_once('/') {

@@ -23,15 +23,15 @@ use super::whole_file::{is_left_behind, is_temporary, sync_folder};
 /// A complete result is kept while a new one is written: next to the folder, under the folder's name with `.old`,
 /// until [`OwnedFolder::finish`].
 ///
-/// While it is open no other process opens it.
+/// While it is open, no other process can open it.
 #[derive(Debug)]
 pub struct OwnedFolder {
     path: PathBuf,
     kind: &'static str,
     pub(super) inputs: Vec<Input>,
-    /// The folder that was locked, which another may replace under its path.
+    /// Identity of the folder that was locked; another folder may replace it at its path.
     pub(super) identity: Option<Identity>,
-    /// Folders in it with names that the disk may not have yet.
+    /// Folders in it whose names may not yet be on the disk.
     pub(super) unnamed: Mutex<BTreeSet<PathBuf>>,
     /// Holds the lock.
     _lock: File,
@@ -40,7 +40,7 @@ pub struct OwnedFolder {
 /// Content of a folder before a result is written into it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Tenant {
-    /// Nothing.
+    /// No content.
     Nobody,
     /// A complete result of the same kind, which is kept until the new one is complete.
     Earlier,
@@ -51,9 +51,9 @@ pub enum Tenant {
 /// Fate of the result that was kept while a new one was written.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Replaced {
-    /// There was none, or it is gone.
+    /// There was none, or it was removed.
     Whole,
-    /// It is still in this folder.
+    /// The earlier result is still in this folder.
     KeptIn(PathBuf),
 }
 
@@ -81,7 +81,7 @@ impl OwnedFolder {
         Ok(tenant)
     }
 
-    /// Like [`OwnedFolder::check`], also for the process that writes into the folder.
+    /// Same as [`OwnedFolder::check`], also for the process that writes into the folder.
     fn check_content(
         path: &Path,
         kind: &'static str,
@@ -153,7 +153,7 @@ impl OwnedFolder {
     /// complete result of the same kind is set aside until [`OwnedFolder::finish`]; an incomplete one is removed.
     ///
     /// # Errors
-    /// As [`OwnedFolder::check`], and [`OutputError::Busy`] while another process writes into it.
+    /// Same as [`OwnedFolder::check`], and [`OutputError::Busy`] while another process writes into it.
     pub fn claim(
         path: &Path,
         kind: &'static str,
@@ -210,8 +210,8 @@ impl OwnedFolder {
         Ok(folder)
     }
 
-    /// Completes the result, which is then durable, and removes the one that was kept next to it; a failed one leaves
-    /// that in place.
+    /// Completes the result, which is then durable, and removes the one that was kept next to it; after a failed run
+    /// the kept one remains.
     ///
     /// # Errors
     /// [`OutputError`].
@@ -284,7 +284,7 @@ impl OwnedFolder {
         self.write(MANIFEST, manifest.to_json().as_bytes())
     }
 
-    /// Removes all files of the result, the manifest last, and folders in it that are empty then.
+    /// Removes all files of the result, the manifest last, and the folders in it that are then empty.
     fn clear(&self) -> Result<(), OutputError> {
         let Some(manifest) = Manifest::read(&self.path)? else {
             return Ok(());
@@ -331,7 +331,7 @@ impl OwnedFolder {
         &self.path
     }
 
-    /// Removes temporary files of processes that are gone.
+    /// Removes temporary files of processes that have ended.
     fn clear_left_behind(&self) -> Result<(), OutputError> {
         let entries = entries(&self.path, "");
         let entries = entries.map_err(|source| OutputError::not_opened(&self.path, source))?;
@@ -354,7 +354,7 @@ impl OwnedFolder {
 /// The end of the name of a folder whose result is kept.
 const ASIDE: &str = ".old";
 
-/// The path at which a complete result is kept while the folder at `path` gets another.
+/// The path at which a complete result is kept while another is written into the folder at `path`.
 fn kept_path(path: &Path) -> PathBuf {
     let real = path.canonicalize().unwrap_or_else(|_| path.to_owned());
     let mut name: OsString = real.file_name().unwrap_or_default().to_owned();
@@ -362,7 +362,7 @@ fn kept_path(path: &Path) -> PathBuf {
     real.with_file_name(name)
 }
 
-/// The path of [`kept_path`], if nothing of others is there.
+/// The path of [`kept_path`], if it contains no other content.
 fn kept_beside(path: &Path, kind: &str) -> Result<PathBuf, OutputError> {
     let kept = kept_path(path);
     let (here, real) = (std::env::current_dir(), path.canonicalize());
@@ -402,7 +402,7 @@ fn own_name(folder: &Path) -> Option<String> {
     Some(real.file_name()?.to_string_lossy().into_owned())
 }
 
-/// Removes a result that was set aside. What others put into its folder stays there.
+/// Removes a result that was set aside. Files of others in its folder remain.
 fn remove_set_aside(kept: &Path, kind: &'static str) -> Result<Replaced, OutputError> {
     let folder = OwnedFolder::lock(kept, kind, &[])?;
     folder.clear()?;

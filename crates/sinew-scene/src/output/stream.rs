@@ -4,8 +4,8 @@ use std::fs::File;
 use std::io::{self, ErrorKind, Stdout, Write};
 use std::path::Path;
 
-/// Standard output, a device, a pipe or an open file. A reader that closes its pipe is no failure: the
-/// rest is dropped.
+/// Standard output, a device, a pipe or an open file. A reader that closes its pipe is not an error: the rest is
+/// discarded.
 #[derive(Debug)]
 pub(super) struct Stream {
     sink: Sink,

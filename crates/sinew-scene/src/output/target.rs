@@ -17,14 +17,14 @@ const DESCRIPTORS: [&str; 3] = ["/dev/fd", "/proc/self/fd", "/dev/stderr"];
 /// Number of links that are followed before a path counts as a ring of links, as in Linux.
 const MOST_LINKS: usize = 40;
 
-/// The thing that an output is written to.
+/// The target of an output.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum Target {
     /// Standard output.
     StandardOutput,
     /// A device, a pipe or an open file, written to directly.
     Stream,
-    /// A file that exists or can be created, by the path at the end of all links.
+    /// A file that exists or can be created, given by the path at the end of all links.
     File(PathBuf),
 }
 
@@ -155,7 +155,7 @@ fn resolved(path: &Path) -> PathBuf {
     path
 }
 
-/// Description of the kind of a thing that accepts no stream.
+/// Description of the kind of a target that accepts no stream.
 #[cfg(unix)]
 fn unsuitable(kind: &FileType) -> Option<&'static str> {
     use std::os::unix::fs::FileTypeExt;

@@ -1,4 +1,4 @@
-//! Messages of the commands to people.
+//! Messages of the commands for the user.
 
 use std::io::{self, ErrorKind, Write};
 use std::path::PathBuf;
@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use super::destination::Destination;
 use super::error::OutputError;
 
-/// The stream of a command's messages: not the one that its output goes to.
+/// The stream of a command's messages, different from that of its output.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Voice {
     /// Standard output.
@@ -16,7 +16,7 @@ pub enum Voice {
 }
 
 impl Voice {
-    /// The stream that an output does not go to.
+    /// The stream that is not used by an output.
     #[must_use]
     pub fn apart_from(destination: &Destination) -> Self {
         if destination.is_standard_output() {
@@ -26,7 +26,7 @@ impl Voice {
         }
     }
 
-    /// Writes a text and the end of its line. A reader that closed the stream is no failure.
+    /// Writes a text and the end of its line. A reader that closed the stream is not an error.
     ///
     /// # Errors
     /// [`OutputError::Failed`] when it cannot be written for any other reason.
@@ -51,7 +51,7 @@ fn line(mut stream: impl Write, text: &str) -> io::Result<()> {
     stream.flush()
 }
 
-/// Writes a text and the end of its line to standard output. A reader that closed it is no failure.
+/// Writes a text and the end of its line to standard output. A reader that closed it is not an error.
 ///
 /// # Errors
 /// [`OutputError::Failed`] when it cannot be written for any other reason.
@@ -59,7 +59,7 @@ pub fn say(text: &str) -> Result<(), OutputError> {
     Voice::StandardOutput.say(text)
 }
 
-/// Writes a warning or an error to standard error. Ignores a failure, as there is no other way to report it.
+/// Writes a warning or an error to standard error. Ignores a failure, since there is no other way to report it.
 pub fn complain(text: &str) {
     let _ = Voice::StandardError.say(text);
 }

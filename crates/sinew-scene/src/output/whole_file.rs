@@ -31,14 +31,15 @@ impl WholeFile {
         Ok(started)
     }
 
-    /// Completes the file and gives it its name, replacing one of that name; then the disk has it under that name.
+    /// Completes the file and gives it its name, replacing one of that name. Afterwards the file is on the disk under
+    /// that name.
     pub(super) fn finish(self) -> io::Result<()> {
         let folder = folder_of(&self.path).to_owned();
         self.complete()?;
         sync_folder(&folder)
     }
 
-    /// Like [`WholeFile::finish`], without waiting until the name is on the disk.
+    /// Same as [`WholeFile::finish`], without waiting until the name is on the disk.
     pub(super) fn finish_lightly(self) -> io::Result<()> {
         self.complete()
     }
@@ -81,7 +82,8 @@ impl Drop for WholeFile {
     }
 }
 
-/// Makes sure that the disk has the names in a folder: without that a file that was renamed may have its former name after a loss of power.
+/// Makes sure that the names in a folder are on the disk: otherwise a renamed file may have its former name after a
+/// loss of power.
 #[cfg(unix)]
 pub(super) fn sync_folder(folder: &Path) -> io::Result<()> {
     match File::open(folder).and_then(|folder| folder.sync_all()) {
@@ -98,7 +100,7 @@ pub(super) fn sync_folder(folder: &Path) -> io::Result<()> {
     }
 }
 
-/// Folders are no files here, and their names are kept by the system.
+/// Does nothing: on this system folders are not files, and the system keeps their names.
 #[cfg(not(unix))]
 pub(super) fn sync_folder(_: &Path) -> io::Result<()> {
     Ok(())

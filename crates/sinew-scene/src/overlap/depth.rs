@@ -9,7 +9,7 @@ use sinew_tools::vector::{Vector, add, length, scaled, sub};
 
 use super::inside::SurfacePoint;
 
-/// The corners of a tetrahedron's faces, each opposite the corner of the same place.
+/// The corners of a tetrahedron's faces, each opposite the corner with the same index.
 pub(super) const FACES: [[usize; 3]; 4] = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];
 
 /// Marks the outside.
@@ -21,7 +21,7 @@ const OUTSIDE: u32 = u32::MAX;
 /// correct even if the body has folded into itself and the point lies on its surface.
 #[derive(Debug)]
 pub(super) struct Depths {
-    /// The tetrahedron behind each face.
+    /// The tetrahedron on the other side of each face.
     neighbours: Vec<[u32; 4]>,
     /// Tetrahedra between each one and the surface.
     layers: Vec<u32>,
@@ -111,7 +111,7 @@ impl Depths {
     }
 
     /// The distance (m) of a point in a tetrahedron from the surface, if it is larger than `least` (m): from all
-    /// triangles of the surface that do not contain the point. `None` once `looks` checks of tetrahedra are used up.
+    /// triangles of the surface that do not contain the point. `None` if the `looks` checks of tetrahedra are used up.
     pub(super) fn beyond(
         &mut self,
         (mesh, places): (&TetMesh, &[Vector]),

@@ -1,4 +1,4 @@
-//! A uniform grid of boxes, hashed, so that it has no ends.
+//! A uniform grid of boxes, hashed, so that it is unbounded.
 
 use sinew_tools::vector::Vector;
 
@@ -38,10 +38,10 @@ pub(super) fn longest([low, high]: &Bounds) -> f64 {
     (0..3).fold(0.0, |most: f64, axis| most.max(high[axis] - low[axis]))
 }
 
-/// A cell by its place along each axis.
+/// A cell by its index along each axis.
 type Cell = [i64; 3];
 
-/// Boxes by the cells of a grid that they reach into (Teschner and others, Optimized spatial hashing, VMV 2003).
+/// Boxes by the cells of a grid that they overlap (Teschner and others, Optimized spatial hashing, VMV 2003).
 #[derive(Debug, Default)]
 pub(super) struct Grid {
     /// Cells in a metre.
@@ -92,7 +92,8 @@ impl Grid {
         self.starts[0] = 0;
     }
 
-    /// Calls `take` with each box that meets this one, by its place among `boxes`, with which the grid was filled; seldom twice. Returns how many it compared.
+    /// Calls `take` with the index of each box that meets this one among `boxes`, with which the grid was filled;
+    /// rarely twice. Returns the number of comparisons.
     pub(super) fn visit(&self, of: &Bounds, boxes: &[Bounds], mut take: impl FnMut(u32)) -> usize {
         let span = self.span(of);
         if count(&span) > boxes.len() as f64 {
@@ -119,7 +120,7 @@ impl Grid {
         compared
     }
 
-    /// The cells that a box reaches into.
+    /// The cells that a box overlaps.
     fn span(&self, of: &Bounds) -> [Cell; 2] {
         of.map(|corner| {
             corner.map(|along| {
@@ -147,7 +148,7 @@ fn each_cell([low, high]: &[Cell; 2], mut take: impl FnMut(Cell)) {
     }
 }
 
-/// The bucket of a cell, of a power of two of them.
+/// The bucket of a cell; the number of buckets is a power of two.
 fn hash([x, y, z]: Cell, buckets: usize) -> usize {
     let mixed =
         x.wrapping_mul(73_856_093) ^ y.wrapping_mul(19_349_663) ^ z.wrapping_mul(83_492_791);

@@ -5,7 +5,7 @@ use sinew_tools::vector::{Vector, cross, dot, sub};
 
 use super::grid::{Bounds, Grid, bounds, longest};
 
-/// Share of a tetrahedron's volume by which a point on its face may count as outside, and is taken in.
+/// Tolerance for points on a face, as a share of the tetrahedron's volume: within it a point counts as inside.
 const ON_FACE: f64 = 1e-9;
 
 /// Comparisons per tetrahedron after which the search ends: far more than any but tangled bodies take.
@@ -14,14 +14,14 @@ const COMPARISONS: usize = 200;
 /// A point of the surface: a node, or one between nodes.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct SurfacePoint {
-    /// Its place (m).
+    /// Its position (m).
     pub(super) at: Vector,
     /// The nodes between which it lies; some of them may occur twice here.
     pub(super) between: [u32; 3],
 }
 
 impl SurfacePoint {
-    /// A node at its place (m).
+    /// A node at its position (m).
     pub(super) fn node(node: u32, at: Vector) -> Self {
         Self {
             at,
@@ -35,7 +35,7 @@ impl SurfacePoint {
     }
 }
 
-/// Tetrahedra as they lie in a state, and how to find points in them.
+/// Tetrahedra at their positions in a state, and a search for points in them.
 pub(super) struct Placed<'a> {
     mesh: &'a TetMesh,
     places: &'a [Vector],
@@ -48,7 +48,7 @@ pub(super) struct Placed<'a> {
 }
 
 impl<'a> Placed<'a> {
-    /// These tetrahedra, where nodes are at these places (m).
+    /// These tetrahedra, with the nodes at these positions (m).
     pub(super) fn new(mesh: &'a TetMesh, places: &'a [Vector], mut tets: Vec<u32>) -> Self {
         let mut is_crushed = vec![false; places.len()];
         let mut size = 0.0;
@@ -74,10 +74,10 @@ impl<'a> Placed<'a> {
         }
     }
 
-    /// The points, by index, that lie in tetrahedra of which they are no part, with these tetrahedra.
+    /// The points, by index, that lie in tetrahedra to which they do not belong, with these tetrahedra.
     ///
-    /// Points at tetrahedra that are inside out count in other parts only: in their own part, crushing is the cause,
-    /// which is reported as such.
+    /// Points at inverted tetrahedra count in other parts only: in their own part the cause is crushing, which is
+    /// reported separately.
     pub(super) fn find(
         &self,
         points: &[SurfacePoint],
@@ -112,7 +112,7 @@ impl<'a> Placed<'a> {
     }
 }
 
-/// Six times the volume (m^3) of a tetrahedron, negative inside out.
+/// Six times the volume (m^3) of a tetrahedron, negative if it is inverted.
 fn volume([a, b, c, d]: &[Vector; 4]) -> f64 {
     dot(sub(*b, *a), cross(sub(*c, *a), sub(*d, *a)))
 }

@@ -4,7 +4,8 @@ use sinew_mesh::{GroupMembers, TetMesh};
 
 /// The names of two tetrahedra, each with its connected part.
 ///
-/// Within one part it is the smallest group that both are in, if there is one. Those of two parts have the largest group that each is in without the other.
+/// For one part the name is the smallest group that contains both, if there is one. For two parts each name is the
+/// largest group that contains one tetrahedron but not the other.
 pub(super) fn names(mesh: &TetMesh, [one, other]: [(u32, u32); 2]) -> [String; 2] {
     let groups = || {
         mesh.groups.iter().filter_map(|group| match &group.members {

@@ -1,4 +1,4 @@
-//! The search for the point of a body that is deepest in it.
+//! The search for the surface point that is deepest in the body.
 
 use std::sync::Arc;
 
@@ -10,18 +10,18 @@ use super::grid::{Bounds, Grid, bounds, include, longest, meet};
 use super::inside::{Placed, SurfacePoint};
 use super::segment::{are_apart, crossing};
 
-/// Share of a body's size, or of its largest displacement if that is more, up to which surfaces touch: single
-/// precision rounds places by less.
+/// Share of a body's size, or of its largest displacement if that is more, up to which surfaces count as touching:
+/// single precision rounds positions by less.
 const TOUCHES: f64 = 1e-6;
 
-/// Most comparisons for each edge of the surface; a state that needs more is given up, since its surface is near
-/// itself everywhere.
+/// Largest number of comparisons for each edge of the surface; a state that needs more is not checked, since its
+/// surface is near itself everywhere.
 const COMPARISONS: usize = 1000;
 
-/// Most tetrahedra that are checked to measure depths, as a multiple of their number, or of 1000.
+/// Largest number of tetrahedra that are checked to measure depths, as a multiple of their number, or of 1000.
 const LOOKS: usize = 20;
 
-/// A point of the surface that is inside a tetrahedron of which it is no part.
+/// A point of the surface that is inside a tetrahedron to which it does not belong.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Inside {
     /// The distance (m) from the surface around the tetrahedron.
@@ -36,7 +36,7 @@ pub(super) struct Inside {
 pub(super) struct OverlapSearch {
     mesh: Arc<TetMesh>,
     triangles: Vec<[u32; 3]>,
-    /// The same with their nodes in ascending order, sorted.
+    /// The triangles with their nodes in ascending order, sorted.
     faces: Vec<[u32; 3]>,
     edges: Vec<[u32; 2]>,
     nodes: Vec<u32>,
@@ -47,13 +47,13 @@ pub(super) struct OverlapSearch {
     size: f64,
     /// Tolerance for points in tetrahedra at cut faces; `None` if cut faces are treated as any other surface.
     lips: Option<Lips>,
-    /// Made if a point was found inside.
+    /// Data for depths; made when a point was first found inside.
     depths: Option<Depths>,
     boxes: Vec<Bounds>,
     grid: Grid,
 }
 
-/// Cut faces that keep each other apart, node by node.
+/// Cut faces between which contact acts, node by node.
 pub(super) struct Lips {
     /// One flag per node: true if cuts duplicated it, so that other nodes have the same origin.
     pub(super) is_copied: Vec<bool>,
@@ -94,7 +94,7 @@ impl OverlapSearch {
         }
     }
 
-    /// The deepest point where nodes are at these places (m); none if no surface is in a part, and of a state that is
+    /// The deepest point for nodes at these positions (m); `None` if no surface is in a part, and for a state that is
     /// not finite.
     pub(super) fn deepest(&mut self, places: &[Vector]) -> Option<Inside> {
         let points = self.mesh.points.iter();
@@ -142,7 +142,7 @@ impl OverlapSearch {
         found.find_map(|(points, found)| self.deepest_of(places, &points, found, touching))
     }
 
-    /// A tetrahedron at the node of a point inside, and the one in which it is, each with its part.
+    /// A tetrahedron at the node of a point inside, and the one that contains the point, each with its part.
     pub(super) fn tets_of(&self, inside: &Inside) -> [(u32, u32); 2] {
         let tets = &self.mesh.tets;
         let own = (0..)
@@ -159,7 +159,8 @@ impl OverlapSearch {
         self.faces.binary_search(&face).is_ok()
     }
 
-    /// Edges and triangles of the surface that are no farther apart than `touching` (m), and have no node in common; none of a state that is given up.
+    /// Edges and triangles of the surface that are no farther apart than `touching` (m), and have no node in common;
+    /// `None` for a state that needs too many comparisons.
     fn near(&mut self, places: &[Vector], touching: f64) -> Option<Vec<[u32; 2]>> {
         let at = |node: u32| places[node as usize];
         self.boxes.clear();
@@ -224,8 +225,8 @@ impl OverlapSearch {
         is_concerned
     }
 
-    /// Points of triangles and edges that may be inside although no node is: centroids, and midpoints of the part of
-    /// an edge between two triangles that it passes through.
+    /// Points of triangles and edges that may be inside although no node is: centroids, and midpoints of the part of an
+    /// edge between two triangles that the edge crosses.
     fn between_nodes(
         &self,
         places: &[Vector],

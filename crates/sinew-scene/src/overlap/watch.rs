@@ -13,14 +13,14 @@ use super::search::{Lips, OverlapSearch};
 use crate::number::{short, vector};
 use crate::simulation::BodyModel;
 
-/// Share of an edge by which faces of a cut that keep each other apart may overlap without a report: they do so node by
+/// Share of an edge by which cut faces with contact between them may overlap without a report: contact acts node by
 /// node, and a cut is rough between its nodes.
 const LIPS: f64 = 0.5;
 
-/// Two parts of a body, or two surfaces of one part, that are in each other.
+/// Two parts of a body, or two surfaces of one part, that overlap.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Overlap {
-    /// Distance (m) of the deepest point from the surface of the part that it is in.
+    /// Distance (m) of the deepest point from the surface of the part that contains it.
     pub depth: f64,
     /// Time (s).
     pub t: f64,
@@ -28,7 +28,7 @@ pub struct Overlap {
     pub at: [f64; 3],
     /// The tag of the node at the point, or next to it if no node is inside.
     pub node: u64,
-    /// The parts, by groups of tetrahedra: that of the node, and that in which it is.
+    /// The parts, by groups of tetrahedra: that of the node, and that which contains the node.
     pub parts: [String; 2],
 }
 
@@ -50,12 +50,12 @@ impl fmt::Display for Overlap {
     }
 }
 
-/// A watch for parts and surfaces of a body that pass through each other: the deepest that it has seen.
+/// A watch for parts and surfaces of a body that pass through each other; it keeps the deepest overlap.
 ///
 /// A check costs some tenths of a microsecond for each triangle of the surface, unless surfaces touch.
 pub struct OverlapWatch {
     body: Arc<BodyModel>,
-    /// Made at the first check.
+    /// The search; made at the first check.
     search: Option<OverlapSearch>,
     /// Buffers for the current state.
     displacements: Vec<Vector>,
@@ -72,7 +72,7 @@ impl fmt::Debug for OverlapWatch {
 }
 
 impl OverlapWatch {
-    /// A watch that has seen nothing yet.
+    /// A watch that has not found an overlap yet.
     #[must_use]
     pub fn new(body: &Arc<BodyModel>) -> Self {
         Self {
@@ -84,7 +84,7 @@ impl OverlapWatch {
         }
     }
 
-    /// The deepest that was seen.
+    /// The deepest overlap so far.
     #[must_use]
     pub fn deepest(&self) -> Option<&Overlap> {
         self.deepest.as_ref()
@@ -139,8 +139,8 @@ impl OverlapWatch {
     }
 }
 
-/// The cut faces that keep each other apart, and nodes at which tetrahedra came off each other where others were taken
-/// away.
+/// The cut faces between which contact acts, and the nodes at which tetrahedra were separated because others were
+/// removed.
 fn lips(body: &BodyModel) -> Option<Lips> {
     let cut = &body.cut.as_ref()?.cut;
     let pairs = body.tools.as_ref().map_or(0, |tools| tools.lip_pairs());

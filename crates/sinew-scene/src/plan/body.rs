@@ -41,7 +41,7 @@ pub(super) fn sections(body: &Body, built: &BodyModel, probes: &[Probe]) -> Vec<
     ]
 }
 
-/// Parts that no contact keeps apart: parts of the mesh, and pieces that cuts may separate.
+/// Parts without contact between them: parts of the mesh, and pieces that cuts may separate.
 fn apart(body: &Body, parts: usize) -> Vec<String> {
     const TOLD: &str = "where they are in each other a run warns";
     let falls = |cutting: &Cutting| cutting.pieces == LoosePieces::Fall;

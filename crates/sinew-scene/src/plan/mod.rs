@@ -1,4 +1,4 @@
-//! The plan: a description of a simulation for people.
+//! The plan: a description of a simulation for the user.
 
 mod body;
 mod cutting;
@@ -28,7 +28,7 @@ pub struct Plan {
     pub title: String,
     /// Its sections in order.
     pub sections: Vec<PlanSection>,
-    /// Warnings, as [`Simulation::warnings`].
+    /// Warnings, the same as [`Simulation::warnings`].
     pub warnings: Vec<Warning>,
     /// 2/omega_max (s), the limit of undamped leapfrog.
     pub critical_step: f64,

@@ -80,7 +80,7 @@ pub(super) fn section(simulation: &Simulation) -> PlanSection {
 /// Share of the median element's step below which the step of an element stands out.
 const STANDS_OUT: f64 = 0.5;
 
-/// Elements of which the median is taken: of more each nth.
+/// Largest number of elements for the median; of more elements, every nth is used.
 const SAMPLE: usize = 5_000;
 
 /// A sentence about the element that sets the step, if one does.

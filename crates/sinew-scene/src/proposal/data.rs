@@ -8,7 +8,7 @@ use sinew_mesh::info::DataRange;
 use super::quoted::quoted;
 use crate::number::short;
 
-/// Names of data that are a stiffness, in small letters and without signs between words.
+/// Names of data that are a stiffness, in lower case and without separators between words.
 const STIFFNESS: [&str; 8] = [
     "e",
     "young",

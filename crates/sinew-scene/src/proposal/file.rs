@@ -1,4 +1,4 @@
-//! The mesh file as a first scene reads it.
+//! The mesh file of a first scene.
 
 use std::path::Path;
 
@@ -6,10 +6,10 @@ use super::unit::Unit;
 
 /// A mesh file and its keys in a scene.
 pub(super) struct MeshFile<'a> {
-    /// Its path as the scene names it.
+    /// Its path in the scene.
     pub(super) path: &'a Path,
     /// Its unit of length.
     pub(super) unit: Unit,
-    /// True if its cells have no nodes but corners.
+    /// True if its cells have corner nodes only.
     pub(super) is_linear: bool,
 }

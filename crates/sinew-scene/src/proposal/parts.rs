@@ -14,20 +14,20 @@ const LOADED: [&str; 10] = [
     "load", "press", "push", "pull", "tip", "top", "contact", "tool", "inner", "lip",
 ];
 
-/// Shares of the body's height that a place at its bottom or top takes, tried one after another.
+/// Heights of a part at the bottom or top of the body, as shares of the body's height, tried one after another.
 const SHARES: [f64; 4] = [0.05, 0.1, 0.2, 0.4];
 
 /// The fewest nodes that support a body against rotation.
 const HOLDING: usize = 3;
 
-/// A part of the body as a scene's table names it.
+/// A part of the body in the form of a scene's table.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Part {
     /// A group.
     Group(String),
-    /// All below this height (m).
+    /// Everything below this height (m).
     Below(f64),
-    /// All above this height (m).
+    /// Everything above this height (m).
     Above(f64),
 }
 
@@ -129,7 +129,8 @@ fn at_an_end(mesh: &TetMesh, place: impl Fn(f64, f64, f64) -> Part) -> Part {
     places.find(holds).unwrap_or_else(|| of_share(0.5))
 }
 
-/// The groups of tetrahedra that can be regions, and whether they leave some; none if they overlap.
+/// The groups of tetrahedra that can be regions, and true if some tetrahedra are in none of them; no groups if they
+/// overlap.
 fn regions(mesh: &TetMesh) -> (Option<Vec<String>>, bool) {
     let mut taken = vec![false; mesh.tets.len()];
     let mut names = Vec::new();

@@ -11,7 +11,7 @@ use super::parts::{Part, Parts};
 use super::quoted::quoted;
 use crate::number::short;
 
-/// Tetrahedra beyond which a factor takes minutes, and explicit steps are proposed.
+/// Number of tetrahedra beyond which a factorisation takes minutes, and explicit steps are proposed.
 const MANY: usize = 100_000;
 
 /// The scene for a mesh in metres.

@@ -10,7 +10,7 @@ pub(super) struct Unit {
     pub(super) metres: f64,
 }
 
-/// Units, with the greatest extent of a body for which each is taken: no body that is operated on is 5 m long.
+/// Units, with the largest extent of a body for which each is chosen: no body in surgery is 5 m long.
 const UNITS: [(f64, &str, f64); 3] = [
     (5.0, "metres", 1.0),
     (5e3, "millimetres", 1e-3),

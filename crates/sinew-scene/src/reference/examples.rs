@@ -4,7 +4,7 @@ use toml_edit::{DocumentMut, Item};
 
 use crate::decode::TableDescription;
 
-/// The value of a key as the first example that has it writes it.
+/// The value of a key in the first example that has it.
 pub(super) fn of(table: &TableDescription, key: &str) -> Option<String> {
     table.all_examples().into_iter().find_map(|text| {
         let document: DocumentMut = toml(text).parse().ok()?;

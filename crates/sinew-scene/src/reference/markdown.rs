@@ -82,7 +82,7 @@ fn table_of<'a>(sections: &'a [Section], table: &TableDescription) -> Option<&'a
     sections.iter().find(|known| known.table.name == table.name)
 }
 
-/// The values that fit, with a link to the table they may be.
+/// The values that fit, with a link to the table if they are one.
 fn values(key: &KeyDescription, sections: &[Section]) -> String {
     let inner = tables_in(&key.shape);
     let inner = inner

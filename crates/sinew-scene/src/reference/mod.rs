@@ -1,4 +1,4 @@
-//! Reference of scenes for people, and schema for editors, both written from the descriptions that the decoder uses.
+//! Reference of scenes for the user, and schema for editors, both written from the descriptions that the decoder uses.
 
 mod examples;
 mod markdown;

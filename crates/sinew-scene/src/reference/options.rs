@@ -42,7 +42,7 @@ pub(super) fn shape(kind: &OptionKind) -> Result<Shape, Vec<(&'static str, Optio
     })
 }
 
-/// A largest number, unless it is that of the computer's representation.
+/// The largest number, unless it is only the limit of the computer's representation.
 fn most_that_matters(most: u32) -> Option<u64> {
     (most != u32::MAX).then_some(u64::from(most))
 }

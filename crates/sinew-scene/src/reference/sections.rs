@@ -8,7 +8,7 @@ pub(super) struct Section {
     pub(super) table: &'static TableDescription,
     /// The keys, and for each the heading of the table that has it; empty for the top of a scene.
     pub(super) holders: Vec<(String, &'static str)>,
-    /// The name by which texts call it: `[mesh]`, `[[load]]`, or the keys of an inner table.
+    /// Its name in texts: `[mesh]`, `[[load]]`, or the keys of an inner table.
     pub(super) heading: String,
     /// True if it is a table of the document.
     pub(super) is_of_the_document: bool,

@@ -16,7 +16,7 @@ use crate::error::{Fault, SceneError};
 pub struct Cutting {
     /// Share of its shortest edge within which a node is moved onto the cut.
     pub snap: f64,
-    /// Energy (J/m^2) of the blade's work per area of new surface.
+    /// Work (J/m^2) of the blade per area of new surface.
     pub toughness: f64,
     /// The blade.
     pub blade: Blade,
@@ -31,7 +31,7 @@ pub struct Cutting {
 /// The blade that cuts a body.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Blade {
-    /// None: the body is cut by commands only.
+    /// No blade: the body is cut by commands only.
     None,
     /// Both ends of a blade over time in a CSV file: its path as written, relative to the scene's folder.
     Table(PathBuf),
@@ -42,11 +42,12 @@ pub enum Blade {
 /// Treatment of unsupported components.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LoosePieces {
-    /// They continue to move.
+    /// Unsupported components continue to move.
     Fall,
-    /// They rest at the place where they were cut off, without contact; another cut may pass through them.
+    /// Unsupported components rest at the position at which they were cut off, without contact; another cut may pass
+    /// through them.
     Freeze,
-    /// They are removed with their mass.
+    /// Unsupported components are removed with their mass.
     Remove,
 }
 
@@ -187,7 +188,7 @@ pub(super) fn read(table: &Table<'_>, tools: &[Tool]) -> Result<Cutting, SceneEr
     })
 }
 
-/// The place of the tool of a name, which is a blade, or is none.
+/// The index of the tool with a name, which must be a blade, or must not be one.
 fn named(
     table: &Table<'_>,
     key: &'static str,

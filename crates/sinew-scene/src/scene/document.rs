@@ -42,7 +42,7 @@ pub(crate) const DOCUMENT: TableDescription = TableDescription {
     examples: &["title = \"A cube under its own weight\"\ngravity = [0.0, 0.0, -9.81]\n"],
 };
 
-/// Keys of a body, which an oscillator is not.
+/// Condition of the keys of a body: not for an oscillator.
 const OF_A_BODY: &[Condition] = &[Condition::without(
     OSCILLATOR_TABLE.name,
     "does not go with [oscillator]",

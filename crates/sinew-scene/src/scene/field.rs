@@ -1,4 +1,4 @@
-//! Numbers along three axes, each of which may depend on the place.
+//! Numbers along three axes, each of which may depend on the position.
 
 use toml::de::DeValue;
 
@@ -6,7 +6,7 @@ use crate::decode::value::{Misfit, finite, list, text};
 use crate::decode::{Kind, Shape, Values};
 use crate::formula::Formula;
 
-/// Three numbers or formulas, along x, y and z; the text describes which fit.
+/// Three numbers or formulas, along x, y and z; the text describes the values that fit.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Field(pub(super) &'static str);
 

@@ -23,7 +23,7 @@ impl<T> Given<T> {
     }
 }
 
-/// Values of a kind, or the table [`DATA`] in their place.
+/// Values of a kind, or the table [`DATA`] instead.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct OrData<V>(pub(super) V);
 
@@ -71,7 +71,7 @@ pub(super) fn names(table: &Table<'_>, key: &'static str) -> Result<Vec<String>,
     tables.iter().map(|data| data.read(&NAME)).collect()
 }
 
-/// The value of a key, or the name of the data in its place.
+/// The value of a key, or the name of the data given instead.
 pub(super) fn read<V: Values>(
     table: &Table<'_>,
     key: &Key<OrData<V>>,

@@ -1,4 +1,4 @@
-//! Scenes from values without a text, and as values.
+//! Scenes from values without a text, and scenes as values.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -11,18 +11,19 @@ use super::Scene;
 use crate::error::{Fault, SceneError};
 use crate::source::SceneSource;
 
-/// Name of the text that is made of values, in the folder of its paths.
+/// Name of the text that is made from values, in the folder of its paths.
 const NAME: &str = "scene";
 
 impl Scene {
-    /// Reads a scene from a tree of values, such as a map of a program, by the same descriptions as from a text: maps are
-    /// tables, and a list of maps is a list of tables. Relative paths start at `folder`.
+    /// Reads a scene from a tree of values, such as a map of a program, with the same descriptions as from a text: maps
+    /// are tables, and a list of maps is a list of tables. Relative paths start at `folder`.
     ///
-    /// [`Scene::source`] is TOML that is made of the values, so that run folders and logs keep the scene. Errors name the key,
-    /// such as `region[1].density`, with tables of a list counted from 1.
+    /// [`Scene::source`] is TOML that is made from the values, so that run folders and logs keep the scene. Errors name
+    /// the key, such as `region[1].density`, with tables of a list counted from 1.
     ///
     /// # Errors
-    /// [`SceneError`] for the first mistake, and for values that TOML does not have, such as a map whose keys are no texts.
+    /// [`SceneError`] for the first mistake, and for values that TOML cannot express, such as a map whose keys are not
+    /// texts.
     ///
     /// ```
     /// use sinew_scene::Scene;
@@ -48,11 +49,11 @@ impl Scene {
 }
 
 impl SceneSource {
-    /// A tree of values of a program as the text of a scene, of which messages name keys in the place of lines.
+    /// A tree of values of a program as the text of a scene. Messages name its keys instead of lines.
     /// [`Scene::from_value`] reads one directly.
     ///
     /// # Errors
-    /// [`SceneError`] for values that TOML does not have.
+    /// [`SceneError`] for values that TOML cannot express.
     pub fn from_value(
         value: &impl Serialize,
         folder: impl AsRef<Path>,
@@ -73,7 +74,7 @@ impl SceneSource {
     }
 }
 
-/// The keys to the first value that is none, such as `region[1].density`.
+/// The path of keys to the first null value, such as `region[1].density`.
 fn null_in(value: &impl Serialize) -> Option<String> {
     let tree = serde_json::to_value(value).ok()?;
     null_below(&tree, String::new())

@@ -61,13 +61,13 @@ impl Values for GroupName {
 }
 
 impl GroupName {
-    /// Reads the group that a table must name, as [`sinew_mesh::TetMesh::group`] takes it: with a dimension after a
+    /// Reads the group that a table must name, in the form for [`sinew_mesh::TetMesh::group`]: with a dimension after a
     /// colon.
     pub(super) fn required(table: &Table<'_>, key: &Key<GroupName>) -> Result<String, SceneError> {
         named(table, key.name, table.read(key)?)
     }
 
-    /// The same of one that it may name.
+    /// Reads the group that a table may name, in the same form.
     pub(super) fn optional(
         table: &Table<'_>,
         key: &Key<GroupName, Optional>,

@@ -9,21 +9,21 @@ use crate::decode::{
 use crate::error::{Fault, SceneError};
 use crate::formula::Formula;
 
-/// A part of the state at t = 0. Where several parts set the same node, the last one counts.
+/// A part of the state at t = 0. If several parts set the same node, the last one counts.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Initial {
     /// Displacements (m) of the nodes of a group.
     Displacement {
         /// The group; `None` means the whole body.
         group: Option<String>,
-        /// Displacement (m) along x, y and z, of the place at rest.
+        /// Displacement (m) along x, y and z, as formulas of the position at rest.
         value: [Formula; 3],
     },
     /// Velocities (m/s) of the nodes of a group.
     Velocity {
         /// The group; `None` means the whole body.
         group: Option<String>,
-        /// Velocity (m/s) along x, y and z, of the place at rest.
+        /// Velocity (m/s) along x, y and z, as formulas of the position at rest.
         value: [Formula; 3],
     },
     /// u_i = strain_i (x_i - origin_i) for all nodes of a group.

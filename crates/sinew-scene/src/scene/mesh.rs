@@ -43,11 +43,11 @@ pub struct MeshChanges {
     pub linear: bool,
     /// Factor of all coordinates.
     pub scale: Option<f64>,
-    /// A turn about an axis through the origin.
+    /// A rotation about an axis through the origin.
     pub rotation: Option<Rotation>,
 }
 
-/// A turn about an axis through the origin.
+/// A rotation about an axis through the origin.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rotation {
     /// The axis, of any length but 0.
@@ -56,8 +56,8 @@ pub struct Rotation {
     pub degrees: f64,
 }
 
-/// Beyond this many cells along an edge a cube has more than 6 million tetrahedra, and its matrix
-/// more than a gigabyte.
+/// Largest number of cells along an edge: beyond it a cube has more than 6 million tetrahedra, and its matrix more than
+/// a gigabyte.
 const MOST_CELLS: usize = 100;
 
 /// The number of cells of the largest cube, and of the largest block.

@@ -1,4 +1,4 @@
-//! The tables of a scene as the user wrote them, checked one by one.
+//! The tables of a scene in the user's text, checked one by one.
 
 mod cutting;
 mod damping;
@@ -63,7 +63,7 @@ use crate::decode::{Place, Table};
 use crate::error::{Fault, SceneError};
 use crate::source::{SceneSource, text_of};
 
-/// A scene as its user wrote it, every key checked.
+/// The scene in the user's text, with every key checked.
 #[derive(Debug, Clone)]
 pub struct Scene {
     title: String,
@@ -73,7 +73,7 @@ pub struct Scene {
     places: Places,
 }
 
-/// The thing that moves in a scene.
+/// The moving subject of a scene.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Subject {
     /// A body of tetrahedra.
@@ -89,8 +89,8 @@ pub struct Body {
     pub mesh: MeshSource,
     /// Changes of size, orientation and order between the source and the body.
     pub mesh_changes: MeshChanges,
-    /// Materials, damping, supports and loads. Prescribed motions, which may be in files, are added where the
-    /// scene is built: see [`crate::BodyModel::problem`].
+    /// Materials, damping, supports and loads. Prescribed motions, which may be in files, are added when the scene is
+    /// built: see [`crate::BodyModel::problem`].
     pub problem: Problem,
     /// Parts that are moved.
     pub motions: Vec<Motion>,
@@ -98,8 +98,8 @@ pub struct Body {
     pub tools: Vec<Tool>,
     /// Cutting of the body; `None` if it stays whole.
     pub cutting: Option<Cutting>,
-    /// The CSV file of the factor of each load of `problem`, as written, if it is in one. `problem` has the factor once
-    /// the scene is built.
+    /// The CSV file of the factor of each load of `problem`, as written, if it is in one. `problem` has the factor
+    /// after the scene is built.
     pub load_files: Vec<Option<PathBuf>>,
     /// The name of each load of `problem`, if it has one.
     pub load_names: Vec<Option<String>>,
@@ -148,7 +148,7 @@ impl Scene {
     /// Reads a scene file.
     ///
     /// # Errors
-    /// [`SceneError`] when the file cannot be read, and as for [`Scene::parse`].
+    /// [`SceneError`] when the file cannot be read, and the errors of [`Scene::parse`].
     pub fn load(path: impl AsRef<Path>) -> Result<Self, SceneError> {
         Self::load_with::<&str>(path, &[])
     }
@@ -156,7 +156,7 @@ impl Scene {
     /// Reads a scene file with other values; see [`SceneSource::with_values`].
     ///
     /// # Errors
-    /// As [`Scene::load`], and if a value cannot be set.
+    /// Same as [`Scene::load`], and an error if a value cannot be set.
     pub fn load_with<T: AsRef<str>>(
         path: impl AsRef<Path>,
         values: &[T],
@@ -171,7 +171,7 @@ impl Scene {
         }
     }
 
-    /// Reads a scene in which some values are set, as [`Scene::load_with`] does; opens no file.
+    /// Reads a scene with other values, as [`Scene::load_with`] does; opens no file.
     ///
     /// # Errors
     /// Same as [`Scene::load_with`].
@@ -224,7 +224,7 @@ impl Scene {
         }
     }
 
-    /// The thing that moves.
+    /// The moving subject.
     #[must_use]
     pub fn subject(&self) -> &Subject {
         &self.subject
@@ -244,7 +244,7 @@ impl Scene {
         &self.settings
     }
 
-    /// The outputs of a run of it.
+    /// The outputs of a run of this scene.
     #[must_use]
     pub fn output(&self) -> &OutputSettings {
         &self.output
@@ -286,7 +286,7 @@ impl Scene {
         &self.places
     }
 
-    /// The text the scene was read from.
+    /// The text from which the scene was read.
     #[must_use]
     pub fn source(&self) -> &SceneSource {
         self.places.document.scene()

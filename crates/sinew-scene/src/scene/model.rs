@@ -101,7 +101,7 @@ fn has(law: &KnownLaw, parameter: &LawParameter) -> bool {
         .any(|own| own.name == parameter.name)
 }
 
-/// The models by the keys that go with them, and the keys of laws.
+/// The models, grouped by the keys that are allowed with them, and the keys of laws.
 #[derive(Debug)]
 struct Models {
     laws: Vec<&'static str>,
@@ -116,8 +116,8 @@ struct Models {
 }
 
 impl Models {
-    /// The models that are known now. Each state of the registry is kept for good: programs add laws once, at their
-    /// beginning.
+    /// The models that are known now. Each state of the registry is kept until the program ends: programs add laws
+    /// once, at their beginning.
     fn known() -> &'static Self {
         static KNOWN: Mutex<Option<(usize, &'static Models)>> = Mutex::new(None);
         let laws = known_laws();
@@ -205,12 +205,12 @@ pub(super) fn by_modulus() -> &'static [&'static str] {
     &Models::known().by_modulus
 }
 
-/// The models that Poisson's ratio may be given for.
+/// The models for which Poisson's ratio may be given.
 pub(super) fn by_ratio() -> &'static [&'static str] {
     &Models::known().by_ratio
 }
 
-/// The models that Poisson's ratio must be given for.
+/// The models for which Poisson's ratio must be given.
 pub(super) fn always_by_ratio() -> &'static [&'static str] {
     &Models::known().always_by_ratio
 }
@@ -222,7 +222,7 @@ pub(super) fn is_shared(parameter: &LawParameter) -> bool {
     shared.iter().any(|shared| shared.name == parameter.name)
 }
 
-/// Regions of a law with parameters of its own, one for each of several parameters of which one is given.
+/// Regions of a law with its own parameters, one for each of several parameters of which one is given.
 fn examples(law: &'static KnownLaw) -> Vec<&'static str> {
     let parameters = law.parameters();
     if parameters.iter().all(is_shared) {
@@ -257,7 +257,7 @@ fn examples(law: &'static KnownLaw) -> Vec<&'static str> {
     (0..choices.max().unwrap_or(1)).map(region).collect()
 }
 
-/// The keys of laws, in the place of this one.
+/// The keys of laws, which replace this key.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LawKeys;
 
@@ -291,7 +291,7 @@ impl Described for LawKeys {
     }
 }
 
-/// A key that is a parameter of some laws, which need not mean the same by it.
+/// A key that is a parameter of some laws; its meaning may differ between them.
 #[derive(Debug)]
 struct LawKey {
     name: &'static str,
@@ -439,7 +439,7 @@ impl Values for Parameter {
     }
 }
 
-/// The values of a law's parameter in a region; `None` if it is left out and may be.
+/// The values of a law's parameter in a region; `None` if it may be left out and is.
 pub(super) fn read(
     table: &Table<'_>,
     parameter: &'static LawParameter,

@@ -19,7 +19,7 @@ pub struct Motion {
     pub axes: [bool; 3],
     /// The prescribed motion.
     pub way: Way,
-    /// The CSV file of the factor of a displacement, as written, if it is in one. `way` has the factor once the scene
+    /// The CSV file of the factor of a displacement, as written, if it is in one. `way` has the factor after the scene
     /// is built.
     pub ramp_file: Option<PathBuf>,
 }
@@ -29,7 +29,7 @@ pub struct Motion {
 pub enum Way {
     /// A displacement (m) times a ramp.
     Displacement([f64; 3], Ramp),
-    /// At this velocity (m/s) from t = 0 on.
+    /// A motion at this velocity (m/s) from t = 0 on.
     Velocity([f64; 3]),
     /// Straight lines between the rows of a CSV file: its path as written, relative to the scene's folder.
     Table(PathBuf),

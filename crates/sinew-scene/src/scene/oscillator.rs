@@ -1,4 +1,4 @@
-//! `[oscillator]`: one mass on a spring and a dashpot, in place of a body.
+//! `[oscillator]`: one mass on a spring and a dashpot, instead of a body.
 
 use crate::decode::{Key, Needs, Number, Or, Table, TableDescription};
 use crate::error::SceneError;

@@ -28,7 +28,7 @@ pub struct OutputSettings {
     pub compress: bool,
 }
 
-/// Evenly spaced instants of a run, its beginning and its end among them.
+/// Evenly spaced instants of a run, including its beginning and its end.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Instants {
     /// Instants at this interval (s).

@@ -1,4 +1,4 @@
-//! The conditions of `where`: places in the body at rest, and data of its mesh.
+//! The conditions of `where`: positions in the body at rest, and data of its mesh.
 
 use std::ops::Bound;
 
@@ -16,7 +16,7 @@ use crate::error::{Fault, SceneError};
 const MEANING: &str = "A place in the body at rest, or a part of it by data of its mesh. Where there are several keys, all of them must hold. A triangle or a \
                        tetrahedron is chosen if all its nodes are. `sinew plan` prints how many were found; to find none is an error.";
 
-/// The places of nodes and of triangles.
+/// The conditions for nodes and triangles.
 pub(super) const PLACE: TableDescription = TableDescription {
     name: "place",
     meaning: MEANING,
@@ -37,7 +37,7 @@ pub(super) const PLACE: TableDescription = TableDescription {
     ],
 };
 
-/// The places of tetrahedra.
+/// The conditions for tetrahedra.
 pub(super) const PLACE_OF_TETRAHEDRA: TableDescription = TableDescription {
     name: "place-of-tetrahedra",
     keys: &[

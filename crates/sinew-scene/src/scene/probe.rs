@@ -24,7 +24,7 @@ pub struct ProbePoint {
 pub enum ProbeAt {
     /// The node nearest to a position in the undeformed body (m); for stress the tetrahedron that contains it.
     Point([f64; 3]),
-    /// The mean over a group: by area over triangles, by volume over tetrahedra, alike over nodes.
+    /// The mean over a group: by area over triangles, by volume over tetrahedra, with equal weights over nodes.
     Mean(String),
 }
 
@@ -35,7 +35,7 @@ pub enum Quantity {
     Displacement,
     /// Velocity (m/s).
     Velocity,
-    /// Stress (Pa), and von Mises' of it.
+    /// Stress (Pa), and its von Mises stress.
     Stress,
 }
 

@@ -140,11 +140,11 @@ pub(super) const FILE: Key<Text> = Key::required(
     Text::any("the path of a CSV file, seen from the scene"),
 );
 
-/// A factor over time as a scene gives it.
+/// A factor over time in a scene.
 pub(super) struct Factor {
-    /// The factor; 1 in place of one that is in a file, until the scene is built.
+    /// The factor; 1 until the scene is built if the factor is in a file.
     pub(super) ramp: Ramp,
-    /// The CSV file that has it, as written.
+    /// The CSV file that contains it, as written.
     pub(super) file: Option<PathBuf>,
 }
 

@@ -113,7 +113,7 @@ const SPRINGS_OF_REGION: Key<Inner> = Key::required(
     "goes with model = \"springs\" only",
 )]);
 
-/// Elements without the numbers that go with them.
+/// Elements without their numbers.
 #[derive(Clone, Copy, PartialEq)]
 enum ElementName {
     P1,
@@ -303,7 +303,7 @@ fn read(table: &Table<'_>, selections: &mut Selections) -> Result<Region, SceneE
     })
 }
 
-/// The parameters of a law of large deformation, by its own descriptions.
+/// The parameters of a law of large deformation, read with the law's own descriptions.
 fn parameters(
     table: &Table<'_>,
     law: &'static KnownLaw,
@@ -369,7 +369,7 @@ mod tests {
     use super::*;
     use sinew_fem::hyperelastic::KEYS_OF_REGIONS;
 
-    /// The registry of laws refuses these names, and cannot see the keys here.
+    /// The registry of laws refuses these names, but has no access to the keys here.
     #[test]
     fn laws_leave_the_keys_of_regions_alone() {
         let keys = REGION.keys.iter().filter(|key| key.parts().is_none());

@@ -34,7 +34,7 @@ pub struct RunSettings {
     pub options: Options,
 }
 
-/// A step as a scene asks for it.
+/// A step in the form of a scene.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum TimeStep {
     /// This step (s).
@@ -44,7 +44,7 @@ pub enum TimeStep {
     Auto,
 }
 
-/// Keys besides are options of the integrator.
+/// The table `[run]`; other keys are options of the integrator.
 pub(crate) const RUN: TableDescription = TableDescription {
     name: "run",
     meaning: "How long is simulated, by which method and in which steps. Further keys are options of the integrator.",

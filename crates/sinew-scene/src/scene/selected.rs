@@ -1,4 +1,4 @@
-//! `group` and `where`: the part of the body that a table is about.
+//! `group` and `where`: the part of the body that a table concerns.
 
 use sinew_mesh::Selection;
 use toml::de::DeValue;
@@ -53,7 +53,7 @@ const EXPECTED_GROUP: GroupName = GroupName {
     expected: "the name of a group, { name = \"liver\", dim = 2 } where several have it, or where = { .. } in its place",
 };
 
-/// A group beside `where`.
+/// Condition that `group` and `where` are not both given.
 pub(super) const NOT_WHERE: Condition =
     Condition::without("where", "cannot be used with `where`; give one of the two");
 

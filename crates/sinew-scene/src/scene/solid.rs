@@ -8,10 +8,10 @@ use super::model::MODEL;
 use crate::error::SceneError;
 
 impl Scene {
-    /// The material of a region, which is that of the scene's region `index` (0-based) or made of it.
+    /// The material of a region, which is the scene's region `index` (0-based) or derived from it.
     ///
     /// # Errors
-    /// [`SceneError`] with the line of a region that has no curves.
+    /// [`SceneError`] with the line of a region for which there are no curves.
     pub fn solid(&self, index: usize, region: &Region) -> Result<Solid, SceneError> {
         let places = self.places();
         let place = places.of(&places.regions, index);

@@ -33,7 +33,7 @@ pub(super) const FIBRES_OF_REGION: Key<Inner, Optional> = Key::optional(
     "goes with laws of large deformation only, such as model = \"neo-hookean\"",
 )]);
 
-/// The model must be a law of large deformation.
+/// Condition that the model is a law of large deformation.
 const fn of_large_deformation(reason: &'static str) -> Condition {
     Condition::among(MODEL.name, laws, reason)
 }

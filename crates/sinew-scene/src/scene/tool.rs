@@ -21,7 +21,7 @@ use crate::error::{Fault, SceneError};
 pub struct Tool {
     /// Its name, with which its columns in tables begin.
     pub name: String,
-    /// The shapes that it is made of.
+    /// The shapes that form it.
     pub parts: Vec<ToolPart>,
     /// Its motion.
     pub path: ToolPath,
@@ -31,27 +31,27 @@ pub struct Tool {
     pub touches: Option<String>,
     /// Treatment of a tool that begins inside the body.
     pub starts_inside: StartsInside,
-    /// The time for which it grasps the tissue it touches.
+    /// The time in which it grasps the tissue that it touches.
     pub grasp: Option<Grasp>,
-    /// The rigid body that its path draws along; `None` for a tool that is on its path.
+    /// The rigid body that a coupling pulls along the path; `None` for a tool that follows its path exactly.
     pub body: Option<ToolBody>,
 }
 
 /// The motion of a tool.
 #[derive(Debug, Clone, PartialEq)]
 pub enum ToolPath {
-    /// It stays at a place.
+    /// The tool stays at a pose.
     Hold(ToolStart),
-    /// It moves from a place at this velocity (m/s), without rotation.
+    /// The tool moves from a pose at this velocity (m/s), without rotation.
     Velocity(ToolStart, [f64; 3]),
     /// Poses over time in a CSV file: its path as written, relative to the scene's folder.
     Table(PathBuf),
 }
 
-/// The place of a tool at t = 0.
+/// The pose of a tool at t = 0.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ToolStart {
-    /// The place (m) of its own origin.
+    /// The position (m) of its own origin.
     pub position: [f64; 3],
     /// Its rotation vector (rad).
     pub rotation: [f64; 3],
@@ -260,7 +260,7 @@ const TO: Key<Number> = Key::required(
 )
 .unit("s");
 
-/// The value `true`; without the key another one applies.
+/// The value `true`; if the key is absent, another value applies.
 #[derive(Debug, Clone, Copy)]
 struct True;
 

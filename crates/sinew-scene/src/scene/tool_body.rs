@@ -1,4 +1,4 @@
-//! `body` of `[[tool]]`: tools that are rigid bodies of their own.
+//! `body` of `[[tool]]`: tools that are dynamic bodies.
 
 use std::ops::Bound;
 

@@ -12,7 +12,7 @@ use crate::error::SceneError;
 pub struct ToolPart {
     /// Its shape.
     pub shape: ToolShape,
-    /// The place (m) of its middle in the tool's own frame; of a plane, of one of its points.
+    /// The position (m) of its centre in the tool's own frame; for a plane, of one of its points.
     pub at: [f64; 3],
     /// Its rotation vector (rad) in the tool's own frame.
     pub rotation: [f64; 3],
@@ -33,7 +33,7 @@ pub enum ToolShape {
         /// Length (m) of the cylinder.
         length: f64,
     },
-    /// All that lies below a plane whose normal is +z.
+    /// The half-space below a plane whose normal is +z.
     Plane,
     /// A box along the axes.
     Box {
@@ -240,7 +240,7 @@ pub(super) fn read(table: &Table<'_>) -> Result<(ToolPart, Place), SceneError> {
 }
 
 impl ToolShape {
-    /// The key of the size by which it is thinnest; `None` for a plane.
+    /// The key of the smallest size; `None` for a plane.
     pub(crate) fn thinnest(&self) -> Option<&'static str> {
         match self {
             Self::Sphere { .. } | Self::Capsule { .. } => Some(RADIUS.name),

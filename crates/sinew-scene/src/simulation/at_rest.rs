@@ -13,20 +13,20 @@ use super::Simulation;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum AtRestError {
-    /// A system that shows no matrices.
+    /// A system without accessible matrices.
     #[error("the system shows no matrices")]
     NoMatrices,
     /// A law that refuses the state at rest.
     #[error(transparent)]
     Refused(#[from] EvaluationError),
-    /// A tangent at rest that makes no system.
+    /// A tangent at rest that is not valid for a system.
     #[error(transparent)]
     Operators(#[from] OperatorError),
 }
 
 impl Simulation {
-    /// M, D and K of small motions about rest, so fast that no stress relaxes, and the loads on the body at rest: for a linear
-    /// body its own.
+    /// M, D and K of small motions about rest, so fast that no stress relaxes, and the loads on the body at rest. For a
+    /// linear body they are its own matrices.
     ///
     /// # Errors
     /// [`AtRestError`].

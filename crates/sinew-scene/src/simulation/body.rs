@@ -60,7 +60,7 @@ pub(super) fn build(
     })
 }
 
-/// The cutting of a body, with the table of its blade read.
+/// The cutting of a body, with the content of the blade's table.
 pub(super) fn cut_plan(body: &Body, places: &Places) -> Result<Option<Arc<CutPlan>>, SceneError> {
     let Some(cutting) = &body.cutting else {
         return Ok(None);
@@ -79,7 +79,7 @@ pub(super) fn cut_plan(body: &Body, places: &Places) -> Result<Option<Arc<CutPla
     })))
 }
 
-/// A prescribed motion, its table read.
+/// A prescribed motion, with the content of its table.
 fn moving(motion: &Motion, places: &Places, index: usize) -> Result<Moving, SceneError> {
     let Motion {
         group, axes, way, ..

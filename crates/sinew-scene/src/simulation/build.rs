@@ -1,4 +1,4 @@
-//! From a scene to a simulation.
+//! The construction of a simulation from a scene.
 
 use std::sync::{Arc, OnceLock};
 

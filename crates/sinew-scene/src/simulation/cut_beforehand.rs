@@ -26,7 +26,7 @@ impl Simulation {
         self.cutting.as_ref().is_some_and(|plan| plan.cuts_after(t))
     }
 
-    /// The scene on the body as cut by all strokes that end by the beginning of the motion; nothing cuts it later.
+    /// The scene on the body after all strokes that end by the beginning of the motion; nothing cuts it later.
     ///
     /// # Errors
     /// [`CuttingError`].

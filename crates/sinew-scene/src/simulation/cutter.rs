@@ -29,7 +29,7 @@ pub struct CutTotals {
     pub changes: u64,
     /// Work (J) of the blade: the toughness times the area.
     pub blade_work: f64,
-    /// Defects of lifted strokes that their sheets do not show.
+    /// Defects of lifted strokes that are not visible in their sheets.
     pub rough: RoughStrokes,
 }
 
@@ -99,7 +99,7 @@ pub struct Cutter {
     pub(super) followed: Option<f64>,
     /// Time (s) of the last sheet that touched the body.
     swept: f64,
-    /// True if the tool that is the blade was in the tissue when it was followed last.
+    /// True if the tool that is the blade was in the tissue at the end of the last call of [`Cutter::follow`].
     is_in: bool,
     /// The body before the current cut.
     before: Before,
@@ -109,7 +109,7 @@ pub struct Cutter {
 /// Largest number of saved changes: far more than there are, and far from overflow.
 const MOST_CHANGES: u64 = 1 << 53;
 
-/// The cuts of a body, and where its cutter stands.
+/// The cuts of a body, and the state of its cutter.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SavedCuts {
     cut: SavedCut,
@@ -183,11 +183,11 @@ impl Cutter {
     }
 
     /// Cuts along the path of the scene's blade up to `end` (s), and removes the tetrahedra that are inside the
-    /// removing tool then, in the configuration of the state, before the step that ends then. If the body changes,
-    /// returns the body to continue with, and transfers the state to it.
+    /// removing tool at that time, in the configuration of the state, before the step that ends there. If the body
+    /// changes, returns the body to continue with, and transfers the state to it.
     ///
     /// # Errors
-    /// [`CuttingError`]; the run cannot continue then.
+    /// [`CuttingError`]; the run then cannot continue.
     pub fn follow(
         &mut self,
         body: &SceneBody,
@@ -249,7 +249,7 @@ impl Cutter {
     /// state. If the body changes, returns the body to continue with, and transfers the state to it.
     ///
     /// # Errors
-    /// [`CuttingError`]; the run cannot continue then.
+    /// [`CuttingError`]; the run then cannot continue.
     pub fn cut(
         &mut self,
         poses: [[[f64; 3]; 2]; 2],
@@ -275,8 +275,8 @@ impl Cutter {
         self.cut.lift();
     }
 
-    /// Defects of strokes that their sheets do not show, those of the current stroke included: of it, uncut area only
-    /// if its blade is out of the body.
+    /// Defects of strokes that are not visible in their sheets, including those of the current stroke. The uncut area
+    /// of the current stroke is included only if its blade is out of the body.
     #[must_use]
     pub fn rough_strokes(&self) -> RoughStrokes {
         let at_hand = RoughStrokes::of(self.cut.body(), self.swept);
@@ -299,7 +299,7 @@ impl Cutter {
         left
     }
 
-    /// Keeps all that it continues from.
+    /// Saves all data that it needs to continue.
     #[must_use]
     pub fn save(&self) -> SavedCuts {
         SavedCuts {
@@ -407,7 +407,7 @@ impl Cutter {
             .collect()
     }
 
-    /// The node of the body before the current cut that a node is, or is a copy of.
+    /// The original of a node in the body before the current cut; the node itself if it is not a copy.
     fn before_copies(&self, mut node: u32) -> u32 {
         while node as usize >= self.before.nodes {
             node = self.cut.body().copied_from(node);
@@ -415,7 +415,8 @@ impl Cutter {
         node
     }
 
-    /// The place in the body before that each touched cell of the body after has, or that of which it is a copy.
+    /// For each touched cell of the body after the cut, its index among those of the body before, or that of its
+    /// original.
     fn places_before(&self, before: &SceneBody, after: &SceneBody) -> Vec<Option<usize>> {
         let known = touched(before).map(|[node, place]| (node, place as usize));
         let known: HashMap<u32, usize> = known.collect();
@@ -470,10 +471,10 @@ impl Cutter {
     }
 }
 
-/// The largest rotation (rad) of a blade in one sheet: its ends move straight.
+/// The largest rotation (rad) of a blade in one sheet, in which its ends move along straight lines.
 const LARGEST_TURN: f64 = 0.25;
 
-/// The equal parts of a time from one instant to another (s) in which a blade turns by no more than a sheet follows.
+/// The equal parts of a time interval (s) in each of which a blade turns by no more than [`LARGEST_TURN`].
 fn parts_of_turn(tools: &Tools, blade: usize, times: [f64; 2], inputs: &Inputs) -> u32 {
     let Some(tool) = tools.tools().get(blade) else {
         return 1;
@@ -500,14 +501,14 @@ struct Before {
     nodes: usize,
     /// Its state, if that may have been changed.
     state: State,
-    /// True if it may.
+    /// True if the state may have been changed.
     is_taken: bool,
     /// Nodes of the body that tools grasped.
     held: Vec<u32>,
 }
 
 impl Before {
-    /// Keeps the state before its first change.
+    /// Saves the state before its first change.
     fn take(&mut self, state: &State) {
         if !std::mem::replace(&mut self.is_taken, true) {
             self.state.clone_from(state);

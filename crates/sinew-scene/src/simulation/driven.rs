@@ -1,4 +1,4 @@
-//! Scenes that are driven from outside while they run.
+//! Scenes that are steered from outside while they run.
 
 use std::sync::Arc;
 
@@ -14,11 +14,11 @@ use super::{Simulation, tool};
 use crate::keys::GRAVITY;
 use crate::scene::Subject;
 
-/// Reasons for which loads cannot be driven.
+/// Reasons for which loads cannot be steered.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum DrivenLoadError {
-    /// A load that is driven already.
+    /// A load that is already steered.
     #[error(transparent)]
     Ramp(#[from] RampError),
     /// A load that a body refuses.
@@ -34,8 +34,8 @@ const FORCE: &str = "force";
 
 impl Simulation {
     /// Lets inputs steer its tools, each of which follows the scene until then; returns their channels, in the order of
-    /// the tools. Since they may be steered anywhere, each meets the triangles of the surface if any of these is larger
-    /// than the tool.
+    /// the tools. Since they may be steered to any position, each has contact with the triangles of the surface if any
+    /// of these is larger than the tool.
     ///
     /// # Errors
     /// [`ToolsError`] for tools that do not fit the surface.
@@ -67,7 +67,7 @@ impl Simulation {
 }
 
 impl SceneBody {
-    /// The names by which its loads can be driven: those of the scene, `load 2` for the second if it has none,
+    /// The names under which its loads can be steered: those of the scene, `load 2` for the second if it has none,
     /// `gravity` if there is one; `force` for that of an oscillator.
     #[must_use]
     pub fn load_names(&self) -> Vec<String> {
@@ -89,11 +89,11 @@ impl SceneBody {
         }
     }
 
-    /// Adds a channel of factors for each of [`SceneBody::load_names`], by which [`SceneBody::with_driven_loads`]
-    /// drives them.
+    /// Adds a channel of factors for each of [`SceneBody::load_names`], with which [`SceneBody::with_driven_loads`]
+    /// steers them.
     ///
     /// # Errors
-    /// [`DrivenLoadError::Ramp`] for a load that is driven already.
+    /// [`DrivenLoadError::Ramp`] for a load that is already steered.
     pub fn add_load_channels(&self, inputs: &mut Inputs) -> Result<Vec<Channel>, DrivenLoadError> {
         let ramps: Vec<Ramp> = match self.scene.subject() {
             Subject::Body(body) => {

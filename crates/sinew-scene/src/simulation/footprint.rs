@@ -81,5 +81,5 @@ fn held(body: &Body, mesh: &TetMesh) -> Vec<bool> {
     held.into_iter().map(|held| held == [true; 3]).collect()
 }
 
-/// Vectors that a run keeps: state, its start, registers, forces.
+/// Number of vectors that a run keeps: state, its start, registers, forces.
 const VECTORS: usize = 10;

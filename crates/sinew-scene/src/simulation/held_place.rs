@@ -12,14 +12,14 @@ pub struct HeldPlace {
     pub by: ReactionOf,
     /// The part of the body.
     pub on: On,
-    /// Its nodes (0-based) with the components that it fixes or moves and no part before it does, so that the forces
-    /// of all parts add up to that of the whole.
+    /// Its nodes (0-based) with the components that it fixes or moves and that no earlier part fixes or moves, so that
+    /// the forces of all parts add up to the total.
     pub nodes: Vec<(u32, [bool; 3])>,
-    /// Mean (m) of the places at rest of its nodes before all cuts.
+    /// Mean (m) of the positions at rest of its nodes before all cuts.
     pub centre: [f64; 3],
 }
 
-/// A table of a scene by which components are fixed or moved, by its place in the list (0-based).
+/// A table of a scene that fixes or moves components, given by its index in the list (0-based).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum ReactionOf {
     /// `[[fixed]]`.

@@ -17,7 +17,7 @@ pub struct RefusedLoad {
     pub needed: LoadOverStep,
     /// The load in the terms of the scene.
     pub load: String,
-    /// The first instant (s) at which the load is not as needed.
+    /// The first instant (s) at which the load does not meet the requirement.
     pub instant: f64,
     /// The step (s).
     pub dt: f64,
@@ -67,7 +67,7 @@ pub struct UnresolvedLoad {
     pub load: String,
     /// The instant of the first of two changes (s).
     pub from: f64,
-    /// Time between the two changes or quarter of a period (s), which is a step that follows the load.
+    /// Time between the two changes or quarter of a period (s): a step that resolves the load.
     pub length: f64,
     /// The period (s) of a load that oscillates.
     pub period: Option<f64>,

@@ -111,7 +111,7 @@ impl Simulation {
     }
 }
 
-/// The id of an integrator that is exact wherever loads jump, if there is one.
+/// The id of an integrator that is exact for loads that jump at any instant, if there is one.
 fn exact_under_any_load() -> Option<&'static str> {
     let exact = ChangingLoads::Exact(LoadOverStep::Any);
     let entries = sinew_integrators::entries();

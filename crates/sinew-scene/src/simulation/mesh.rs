@@ -1,4 +1,4 @@
-//! The mesh that `[mesh]` asks for.
+//! The mesh that `[mesh]` describes.
 
 use sinew_mesh::{Linearised, Mesh, TetMesh, structured};
 
@@ -11,7 +11,7 @@ use crate::scene::{Body, MeshChanges, MeshSource, Places};
 /// A mesh and the warnings of its reader.
 pub(super) type MeshAndWarnings = (TetMesh, Vec<String>);
 
-/// Makes or reads the mesh, and changes it as the scene asks.
+/// Makes or reads the mesh, and makes the changes of the scene.
 pub(super) fn of_body(body: &Body, places: &Places) -> Result<MeshAndWarnings, SceneError> {
     let place = places.mesh.as_ref().unwrap_or(&places.document);
     let changes = &body.mesh_changes;
@@ -66,7 +66,7 @@ fn changed(
     Ok((mesh, warnings))
 }
 
-/// Linearises cells if the scene asks for it, and reports the change.
+/// Linearises cells if the scene requests it, and reports the change.
 fn linearised(mesh: &mut Mesh, changes: &MeshChanges) -> Option<String> {
     if !changes.linear {
         return None;

@@ -1,4 +1,4 @@
-//! A scene with its mesh, before any matrix.
+//! A scene with its mesh, before its matrices are assembled.
 
 use sinew_mesh::TetMesh;
 
@@ -9,7 +9,7 @@ use super::{Footprint, Simulation, mesh};
 use crate::error::SceneError;
 use crate::scene::{Body, Places, Scene, Subject};
 
-/// A scene whose mesh was read, before its matrices are assembled: the memory that these need is known here.
+/// A scene whose mesh was read, before its matrices are assembled. The memory that they need is already known.
 #[derive(Debug)]
 pub struct MeshedScene {
     pub(super) scene: Scene,
@@ -43,8 +43,8 @@ impl Scene {
         self.read_mesh()?.build()
     }
 
-    /// Like [`Scene::build`], on the given mesh (m) in place of the one that `[mesh]` names. An
-    /// oscillator ignores it.
+    /// Same as [`Scene::build`], on the given mesh (m) instead of the one that `[mesh]` names. An oscillator ignores
+    /// it.
     ///
     /// # Errors
     /// [`SceneError`] with the line of the scene that does not fit this mesh.

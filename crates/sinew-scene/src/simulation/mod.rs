@@ -1,4 +1,4 @@
-//! A scene as a system that integrators can move.
+//! A scene as a system for integrators.
 
 mod at_rest;
 mod body;
@@ -150,10 +150,10 @@ impl Simulation {
         self.body.probes()
     }
 
-    /// A fresh integrator with the scene's options.
+    /// A new integrator with the scene's options.
     ///
     /// # Errors
-    /// [`OptionError`] for an option that the integrator refuses. Reading the scene has checked them.
+    /// [`OptionError`] for an option that the integrator refuses. They were checked when the scene was read.
     pub fn integrator(&self) -> Result<Box<dyn Stepper>, OptionError> {
         sinew_integrators::build(&self.settings().integrator, &self.options())
     }
@@ -207,9 +207,9 @@ impl Simulation {
         }
     }
 
-    /// The displacement (m) at which a body counts as diverged: 100 times its size. For a body that may fly off, since
-    /// no support holds it along an axis or cuts may detach pieces, 1e6 times: free fall is no divergence, and a motion
-    /// that grows at every step gets there soon all the same.
+    /// The displacement (m) at which a body counts as diverged: 100 times its size. The factor is 1e6 for a body that
+    /// may fly off, since no support fixes it along an axis or cuts may detach pieces: free fall is not divergence, and
+    /// a motion that grows at every step soon reaches this limit as well.
     #[must_use]
     pub fn divergence_limit(&self) -> Option<f64> {
         let extent = self.system().extent()?;

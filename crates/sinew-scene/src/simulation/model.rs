@@ -9,7 +9,7 @@ use sinew_tools::Tools;
 use super::cut_from::CutFrom;
 use super::selected::SelectedPart;
 
-/// The thing that moves, with its matrices.
+/// The moving subject of a scene, with its matrices.
 #[derive(Debug, Clone)]
 pub enum SceneModel {
     /// A body of tetrahedra.
@@ -33,7 +33,7 @@ pub struct BodyModel {
     pub model: sinew_fem::Model,
     /// The tools and the cut faces in contact with it, which the model shares; `None` if there are none.
     pub tools: Option<Arc<Tools>>,
-    /// Origin of its parts, once it was cut.
+    /// Origin of its parts, if it was cut.
     pub cut: Option<Arc<CutFrom>>,
     /// See [`BodyModel::surface`].
     pub(super) surface: OnceLock<Arc<BoundarySurface>>,
@@ -94,7 +94,7 @@ impl BodyModel {
         tools.filter(|tools| !tools.tools().is_empty())
     }
 
-    /// The same body, which these tools touch.
+    /// The same body with these tools.
     pub(super) fn touched_by(self, tools: Arc<Tools>) -> Self {
         if tools.tools().is_empty() && tools.lip_pairs() == 0 {
             return self;
@@ -113,8 +113,8 @@ impl BodyModel {
         }
     }
 
-    /// Subtracts from the forces (N) of supports on all nodes the forces of tools in fixed directions in a state: the
-    /// supports bear them.
+    /// Subtracts from the forces (N) of supports on all nodes the forces of tools in fixed directions in a state, since
+    /// the supports carry them.
     pub fn subtract_contact(&self, state: &State, reactions: &mut [[f64; 3]]) {
         let Some(tools) = &self.tools else {
             return;

@@ -25,7 +25,7 @@ pub(super) struct MotionTable {
     pub(super) positions: Vec<[f64; 3]>,
 }
 
-/// Places (m) and rotation vectors (rad) over time (s).
+/// Positions (m) and rotation vectors (rad) over time (s).
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct PoseTable {
     pub(super) times: Vec<f64>,
@@ -41,7 +41,7 @@ const STROKES: [&str; 8] = [
 /// Columns of a table of factors.
 const FACTORS: [&str; 2] = [TIME, "factor"];
 
-/// Rows of numbers, as many in each as there are columns.
+/// Rows of numbers, one number for each column.
 struct Rows {
     columns: &'static [&'static str],
     rows: Vec<Vec<f64>>,
@@ -57,7 +57,7 @@ impl MotionTable {
         read(scene, written, |text| Self::parse(text, axes))
     }
 
-    /// The table of a text, or the line that is at fault.
+    /// The table of a text, or the line with the fault.
     fn parse(text: &str, axes: [bool; 3]) -> Result<Self, (usize, MotionTableFault)> {
         let rows = Rows::parse(text, &[&POSITIONS], 1)?;
         let table = Self {
@@ -79,12 +79,12 @@ impl MotionTable {
 }
 
 impl PoseTable {
-    /// Reads a table; without columns of rotations nothing is turned.
+    /// Reads a table; without columns of rotations there is no rotation.
     pub(super) fn read(scene: &SceneSource, written: &Path) -> Result<Self, MotionTableError> {
         read(scene, written, Self::parse)
     }
 
-    /// The table of a text, or the line that is at fault.
+    /// The table of a text, or the line with the fault.
     fn parse(text: &str) -> Result<Self, (usize, MotionTableFault)> {
         let rows = Rows::parse(text, &[&POSITIONS, &POSES], 1)?;
         Ok(Self {
@@ -106,7 +106,7 @@ pub(super) fn read_strokes(
     read(scene, written, strokes)
 }
 
-/// The strokes of a text, or the line that is at fault.
+/// The strokes of a text, or the line with the fault.
 fn strokes(text: &str) -> Result<Strokes, (usize, MotionTableFault)> {
     let rows = Rows::parse(text, &[&STROKES], 1)?;
     let ends = rows.vectors(2).into_iter().zip(rows.vectors(5));
@@ -124,7 +124,7 @@ pub(super) fn read_factor(scene: &SceneSource, written: &Path) -> Result<Ramp, M
     read(scene, written, factor)
 }
 
-/// The factor of a text, or the line that is at fault.
+/// The factor of a text, or the line with the fault.
 fn factor(text: &str) -> Result<Ramp, (usize, MotionTableFault)> {
     let rows = Rows::parse(text, &[&FACTORS], 2)?;
     Ok(Ramp::Table {
@@ -232,7 +232,7 @@ fn numbers(row: &str, columns: &'static [&'static str]) -> Result<Vec<f64>, Moti
     entries.into_iter().zip(columns).map(number).collect()
 }
 
-/// Enough of a text to recognise it.
+/// The beginning of a text, sufficient to recognise it.
 fn shortened(text: &str) -> String {
     const LONGEST: usize = 40;
     match text.char_indices().nth(LONGEST) {

@@ -23,9 +23,9 @@ pub struct Probe {
     pub nodes: Vec<ProbeNode>,
     /// The tetrahedra (0-based) whose stress it is the mean of, with shares that add up to 1; none for motions.
     pub tets: Vec<(u32, f64)>,
-    /// Description of its place.
+    /// Description of its position.
     pub place: String,
-    /// True if all of its nodes and tetrahedra were cut away: it has no value any more.
+    /// True if all of its nodes and tetrahedra were removed by cuts: it no longer has a value.
     pub is_gone: bool,
 }
 
@@ -80,7 +80,7 @@ impl ProbeNode {
 }
 
 impl Probe {
-    /// This probe of the uncut body, on the remaining body: it keeps its own nodes, with a copy in place of one that
+    /// This probe of the uncut body, on the remaining body: it keeps its own nodes, with a copy instead of a node that
     /// lost its tetrahedra, and its own tetrahedra. If all are gone it has no value.
     ///
     /// `node_of` gives the first node of the mesh that is one of the uncut mesh or a copy of it.
@@ -129,13 +129,13 @@ impl Probe {
         }
     }
 
-    /// Its directions: three, or one for an oscillator; none for stress.
+    /// Number of its directions: three, or one for an oscillator; none for stress.
     pub(crate) fn axes(&self) -> usize {
         self.nodes.first().map_or(0, |node| node.dofs.len())
     }
 
-    /// The displacement (m) in each of its directions at time `t` (s), with that of the degrees of freedom then: 0
-    /// in fixed directions, the prescribed one in moved ones.
+    /// The displacement (m) in each of its directions at time `t` (s), with that of the degrees of freedom at this
+    /// time: 0 in fixed directions, the prescribed one in moved ones.
     pub fn displacement<'a>(&'a self, t: f64, u: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
         let own = move |dof: usize| u.get(dof).copied().unwrap_or(f64::NAN);
         (0..self.axes()).map(move |axis| {
@@ -147,7 +147,7 @@ impl Probe {
         })
     }
 
-    /// The mean of a value of its nodes. That of a single one keeps its bits.
+    /// The mean of a value of its nodes. The mean over a single node is exactly its value.
     pub(crate) fn mean(&self, mut of: impl FnMut(&ProbeNode) -> f64) -> f64 {
         match &self.nodes[..] {
             _ if self.is_gone => f64::NAN,
@@ -284,7 +284,8 @@ fn shares_of_nodes(mesh: &TetMesh, group: &str) -> Result<Vec<(u32, f64)>, Fault
     Ok(of_sum_one(weighted.collect()))
 }
 
-/// The share of each tetrahedron in the mean over a group; over those at its triangles by their area.
+/// The share of each tetrahedron in the mean over a group; for a group of triangles over the tetrahedra at them, by
+/// area.
 fn shares_of_tets(mesh: &TetMesh, group: &str) -> Result<Vec<(u32, f64)>, Fault> {
     let group = mesh.group(group)?;
     Ok(match &group.members {
@@ -328,7 +329,7 @@ fn by_volume(mesh: &TetMesh, is_in: impl Fn(u32) -> bool) -> Vec<(u32, f64)> {
     of_sum_one(tets.map(|tet| (tet, mesh.volume(tet as usize))).collect())
 }
 
-/// Weights divided by their sum; alike if sizes are beyond the numbers of a computer.
+/// Weights divided by their sum; equal weights if the sum overflows.
 fn of_sum_one(mut weighted: Vec<(u32, f64)>) -> Vec<(u32, f64)> {
     let sum: f64 = weighted.iter().map(|(_, weight)| weight).sum();
     let alike = (weighted.len() as f64).recip();

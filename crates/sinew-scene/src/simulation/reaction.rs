@@ -15,11 +15,11 @@ use crate::scene::Subject;
 /// The force that fixes or moves a part of the body.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Reaction {
-    /// The table of the scene that asks for it.
+    /// The table of the scene that states the support or motion.
     pub by: ReactionOf,
     /// The part of the body.
     pub on: On,
-    /// The force (N) on the body at the nodes of the part, of components that no part before it fixes or moves.
+    /// The force (N) on the body at the nodes of the part, in components that no earlier part fixes or moves.
     pub force: [f64; 3],
     /// The moment (N m) of these forces about the mean of the part's nodes at rest.
     pub moment: [f64; 3],
@@ -92,8 +92,8 @@ impl SceneBody {
     }
 
     /// The forces of the scene's supports and motions in a state, in the order of the scene; none for an oscillator.
-    /// See [`sinew_fem::Model::reactions`], also for single nodes. If the speed of a moved part jumps, its impulse is
-    /// included as a mean over the steps on both sides.
+    /// See [`sinew_fem::Model::reactions`], also for single nodes. If the velocity of a moved part jumps, its impulse
+    /// is included as a mean over the steps on both sides.
     ///
     /// # Errors
     /// [`ReactionError`] when the state is that of another system, and if a load follows inputs that are not given.
@@ -139,7 +139,7 @@ impl HeldParts {
     /// The parts of a body that are fixed or moved; `None` if there are none.
     ///
     /// # Errors
-    /// [`ReactionError`] as [`SceneBody::held_parts`].
+    /// [`ReactionError`], see [`SceneBody::held_parts`].
     pub fn of(body: &SceneBody) -> Result<Option<Self>, ReactionError> {
         let parts = body.held_parts()?;
         let Some(body) = body.model().body().filter(|_| !parts.is_empty()) else {
@@ -160,10 +160,10 @@ impl HeldParts {
         &self.parts
     }
 
-    /// Computes the forces in a state, with the times (s) over which the impulse of a jump of speed is spread.
+    /// Computes the forces in a state, with the times (s) over which the impulse of a jump of velocity is spread.
     ///
     /// # Errors
-    /// [`ReactionError`] as [`SceneBody::reactions`].
+    /// [`ReactionError`], see [`SceneBody::reactions`].
     pub fn take(&mut self, when: LoadTime<'_>, state: &State) -> Result<(), ReactionError> {
         let model = &self.body.model;
         model.reactions_in(when, state, &mut self.forces)?;

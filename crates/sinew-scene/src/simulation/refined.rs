@@ -9,20 +9,21 @@ use crate::error::SceneError;
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum RefinementError {
-    /// There is no mesh.
+    /// A scene without a mesh.
     #[error("an oscillator has no mesh")]
     NoMesh,
-    /// The mesh would become too large.
+    /// A mesh that would become too large.
     #[error(transparent)]
     Mesh(#[from] RefineError),
-    /// The scene does not fit the finer mesh.
+    /// A scene that does not fit the finer mesh.
     #[error("on the refined mesh: {0}")]
     Scene(#[from] SceneError),
 }
 
 impl Simulation {
-    /// The same scene on its mesh with each tetrahedron divided into eight. Groups of the mesh take the same part of
-    /// the body as before; places of the scene (`where`) are selected again, and may follow the body more closely.
+    /// The same scene on its mesh with each tetrahedron divided into eight. Groups of the mesh cover the same part of
+    /// the body as before; parts that the scene selects by position (`where`) are selected again, and may fit the body
+    /// more closely.
     ///
     /// # Errors
     /// [`RefinementError`] for an oscillator, and if the finer mesh cannot be made or used.

@@ -5,7 +5,7 @@ use sinew_cutting::{Chips, CuttableBody, Missed, Uncut};
 
 use crate::number::{count, short};
 
-/// Defects of strokes that their sheets do not show, each with the time (s) of the first stroke that left it.
+/// Defects of strokes that are not visible in their sheets, each with the time (s) of the first stroke that caused it.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct RoughStrokes {
     /// Uncut area in a body that strokes passed through.
@@ -17,7 +17,7 @@ pub struct RoughStrokes {
 }
 
 impl RoughStrokes {
-    /// Defects of the current stroke, whose last sheet came at a time (s).
+    /// Defects of the current stroke, whose last sheet was at a time (s).
     pub(super) fn of(body: &CuttableBody, t: f64) -> Self {
         Self {
             uncut: body.uncut(),

@@ -1,4 +1,4 @@
-//! The body of a scene as it moves.
+//! The body of a scene during its motion.
 
 use std::sync::{Arc, OnceLock};
 
@@ -18,7 +18,7 @@ pub struct SceneBody {
     pub(super) scene: Arc<Scene>,
     pub(super) model: SceneModel,
     pub(super) probes: Arc<[Probe]>,
-    /// Its parts that are fixed or moved, once they were requested.
+    /// Its parts that are fixed or moved, after they were first requested.
     pub(super) held: OnceLock<Arc<[HeldPlace]>>,
 }
 
@@ -47,7 +47,7 @@ impl SceneBody {
         &self.probes
     }
 
-    /// Sets an integrator with the scene's options up for this body and a step (s).
+    /// Sets up an integrator with the scene's options for this body and a step (s).
     ///
     /// # Errors
     /// [`SceneError`] at the key for which it is refused.

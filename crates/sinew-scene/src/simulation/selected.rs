@@ -1,4 +1,4 @@
-//! Parts of the body chosen by position, made groups of its mesh.
+//! Parts of the body chosen by position, which become groups of its mesh.
 
 use sinew_mesh::{GroupMembers, TetMesh};
 
@@ -14,7 +14,7 @@ pub struct SelectedPart {
     pub name: String,
     /// Number of its nodes.
     pub nodes: usize,
-    /// Area of the body's boundary that it takes (m^2): of the triangles of which all nodes are selected.
+    /// Area (m^2) of its part of the body's boundary: of the triangles with all nodes selected.
     pub area: f64,
     /// Number of its tetrahedra and their volume (m^3), if it is a region.
     pub tets: Option<(usize, f64)>,
@@ -86,7 +86,7 @@ fn add(mesh: &mut TetMesh, body: &Body, selected: &Selected) -> Result<SelectedP
     })
 }
 
-/// The tetrahedra that no other region has. Missing groups are reported elsewhere.
+/// The tetrahedra that are in no other region. Missing groups are reported elsewhere.
 fn rest(mesh: &TetMesh, body: &Body) -> Result<Vec<u32>, Fault> {
     let mut taken = vec![false; mesh.tets.len()];
     for region in &body.problem.regions {

@@ -27,7 +27,7 @@ pub(super) fn refused(
     )
 }
 
-/// The refusal of a system by an integrator of these settings, with other options.
+/// The error of an integrator of these settings that refuses a system, with other options.
 pub(super) fn refusal(
     settings: &RunSettings,
     options: &Options,
@@ -38,7 +38,7 @@ pub(super) fn refusal(
     method.prepare(system, dt).err()
 }
 
-/// The refusal, at the first option whose removal avoids a refusal of this kind; at the integrator if there is no such
+/// The error, at the first option whose removal avoids an error of this kind; at the integrator if there is no such
 /// option.
 pub(super) fn at_key(
     run: &Place,

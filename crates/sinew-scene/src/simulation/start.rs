@@ -68,7 +68,7 @@ fn at(value: &[Formula; 3], place: [f64; 3]) -> [f64; 3] {
     std::array::from_fn(|axis| value[axis].at(place))
 }
 
-/// The displacement (m) of the body at rest under the loads at these places.
+/// The displacement (m) of the body at rest under the loads with these indices.
 #[cfg(feature = "implicit")]
 fn at_rest(loads: &[usize], model: &Model) -> Result<Vec<f64>, Fault> {
     let load = model.full_loads(loads);

@@ -31,7 +31,7 @@ pub(super) fn options((id, options): (&str, &Options), follows_stiffness: bool) 
     options.clone()
 }
 
-/// The step (s) that a scene asks for; `stable` is called only if the scene leaves it to the integrator.
+/// The step (s) that a scene requests; `stable` is called only if the scene leaves it to the integrator.
 pub(super) fn seconds(
     settings: &RunSettings,
     system: &dyn System,

@@ -22,7 +22,7 @@ use crate::scene::{
 /// Share of the body's size by which a node may lie inside a tool that begins on its surface.
 pub(super) const ROUNDING: f64 = 1e-9;
 
-/// Lets the tools of a scene touch a body, which begins in the state `initial`.
+/// Adds the tools of a scene to a body, which begins in the state `initial`.
 pub(super) fn added_to(
     built: BodyModel,
     body: &Body,
@@ -131,8 +131,8 @@ fn on_nodes(
     tools.with_cut_faces(faces.collect())
 }
 
-/// Pairs of cut faces of a body that touch each other: those of which the scene moves no corner and no corner rests
-/// elsewhere.
+/// Pairs of cut faces of a body that touch each other: those of which no corner is moved by the scene or frozen away
+/// from its position at rest.
 fn cut_faces(body: &Body, built: &BodyModel) -> Vec<[[u32; 3]; 2]> {
     let touches = body
         .cutting
@@ -147,8 +147,8 @@ fn cut_faces(body: &Body, built: &BodyModel) -> Vec<[[u32; 3]; 2]> {
     faces
 }
 
-/// Rebuilds the contact of tools with a body that has changed. Tools meet triangles if they did before, so that no
-/// triangle is suddenly added inside a tool.
+/// Rebuilds the contact of tools with a body that has changed. Tools have contact with triangles if they had it before,
+/// so that no triangle is suddenly added inside a tool.
 pub(super) fn touching_anew(
     built: BodyModel,
     body: &Body,
@@ -223,7 +223,7 @@ pub(super) fn touchable(
     }
 }
 
-/// The nodes of a tool's surface or group that it may touch, and those that it may not, since they are fixed or
+/// The nodes of a tool's surface or group that it may touch, and those that it may not, because they are fixed or
 /// moved.
 pub(super) fn nodes_of(
     tool: &Tool,
@@ -316,7 +316,7 @@ pub(super) fn inside(
     Some((built.mesh.node_tags[node as usize], -deepest.gap))
 }
 
-/// Share of the body's size below which a tool is too thin for the rounding of places.
+/// Share of the body's size below which a tool is too thin for the rounding of positions.
 const THINNEST: f64 = 1e-9;
 
 /// Refuses a tool with a part that is too thin; the error has the index of the part and the fault.

@@ -1,4 +1,4 @@
-//! The surface under tips of tools that are finer than it.
+//! Contact of the surface's triangles with tips of tools that are smaller than them.
 
 use sinew_core::{Inputs, System};
 use sinew_mesh::TetMesh;
@@ -8,13 +8,13 @@ use sinew_tools::{Corner, Motion, Tool, TouchedTriangle, swept_box};
 use super::model::BodyModel;
 use crate::number::length;
 
-/// Share of the body's size added to a tool's reach beyond its path, since tissue moves too.
+/// Share of the body's size added to a tool's reach beyond its path, because tissue moves too.
 const BEYOND: f64 = 0.1;
 
 /// Instants at which a path is checked, besides those of its table.
 const LOOKS: u32 = 64;
 
-/// For each tool, true if it is smaller than a surface triangle within its reach in a time (s), and does not meet all
+/// For each tool, true if it is smaller than a surface triangle within its reach in a time (s), and does not touch all
 /// of them with faces at least as wide. If the body may be cut, any face of its tetrahedra counts.
 pub(super) fn are_fine(
     tools: &[Tool],
@@ -123,7 +123,7 @@ fn longest_edge(
 /// True if no part of a tool on a prescribed path is narrower than a triangle that it moves towards within its reach,
 /// measured across its normal: a plate may be thin and press with its face.
 ///
-/// For a tool that stays, is steered or is a body of its own, the direction from which tissue approaches is unknown.
+/// For a tool that rests, is steered or is a dynamic body, the direction from which tissue approaches is unknown.
 fn meets_with_wide_faces(
     tool: &Tool,
     surface: &[[u32; 3]],
@@ -191,7 +191,7 @@ fn longest_of(corners: &[[f64; 3]; 3]) -> f64 {
     edges.into_iter().fold(0.0, f64::max)
 }
 
-/// The instants (s) at which a path is looked at, increasing.
+/// The instants (s) at which a path is checked, increasing.
 fn instants(tool: &Tool, duration: f64) -> Vec<f64> {
     let mut times: Vec<f64> = (0..=LOOKS)
         .map(|look| duration * f64::from(look) / f64::from(LOOKS))
@@ -208,7 +208,7 @@ fn instants(tool: &Tool, duration: f64) -> Vec<f64> {
     times
 }
 
-/// The box (m) that a tool passes through in a time (s); `None` if that is not known, or has no bounds.
+/// The box (m) through which a tool passes in a time (s); `None` if that is unknown or unbounded.
 fn reach(tool: &Tool, duration: f64) -> Option<[[f64; 3]; 2]> {
     if matches!(tool.motion, Motion::Steered(..)) {
         return None;
@@ -229,8 +229,7 @@ fn reach(tool: &Tool, duration: f64) -> Option<[[f64; 3]; 2]> {
     })?
 }
 
-/// The nodes of which some component is moved, increasing: their position does not follow from the degrees of freedom
-/// alone.
+/// The nodes with a moved component, increasing: their position does not follow from the degrees of freedom alone.
 pub(super) fn moved_nodes(built: &BodyModel) -> Vec<u32> {
     let mut moved = Vec::new();
     for motion in &built.problem.moves {

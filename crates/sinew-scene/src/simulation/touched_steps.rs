@@ -1,4 +1,4 @@
-//! Methods that tools cannot push.
+//! Methods without support for tools.
 
 use std::sync::Arc;
 
@@ -31,7 +31,7 @@ pub(super) fn check(settings: &RunSettings, run: &Place) -> Result<(), SceneErro
     }
 }
 
-/// A cube that no tool touches, but which could be; `None` never.
+/// A cube that supports contact but has no tool; never `None`.
 fn stand_in() -> Option<Model> {
     let mesh = block([1; 3], [1.0; 3], Split::Kuhn).ok()?;
     let problem = Problem::of([Region::new(Law::linear(1000.0, 0.3), 1000.0)])

@@ -30,7 +30,7 @@ fn each_is_a_value_that_reads_as_the_same_scene() {
     }
 }
 
-/// One test, because each scene is built once.
+/// Checks all properties in one test, because each scene is built once.
 #[test]
 fn all_are_built_plans_fit_a_terminal_and_memory_is_foretold_from_the_mesh() {
     let scenes = scenes();

@@ -1,4 +1,4 @@
-//! Properties that a mesh file gives for each tetrahedron, as scenes name them.
+//! Properties that a mesh file gives for each tetrahedron, and their names in scenes.
 
 use std::fs;
 use std::path::Path;
@@ -62,7 +62,7 @@ fn bar(lines: &str) -> Result<Simulation, SceneError> {
     load(folder.path(), "file = \"bar.msh\"", lines)
 }
 
-/// The message and the hint of a refusal, with the line that they are about.
+/// The message and the hint of an error, with the line to which they refer.
 fn refusal(found: Result<Simulation, SceneError>) -> String {
     let error = found.unwrap_err();
     format!(
@@ -132,7 +132,7 @@ fn a_refined_mesh_has_the_data_of_the_one_it_was_made_from() {
     }
 }
 
-/// A state is of one body: with other data it is another.
+/// A state belongs to one body: other data make another body.
 #[test]
 fn other_data_make_another_body() {
     let folder = tempfile::tempdir().unwrap();

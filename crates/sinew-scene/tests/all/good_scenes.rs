@@ -1,4 +1,4 @@
-//! The scenes that come with the project, and other ways to write the same.
+//! The scenes of the project, and other spellings of the same scenes.
 
 use sinew_core::{OptionValue, Options, Ramp};
 use sinew_fem::{Fixed, Law, LoadKind, LoadSpec, Problem, Rayleigh, Region, SpringRule};
@@ -252,7 +252,8 @@ substeps = "auto"
     assert_eq!(scene.settings().samples, 7);
 }
 
-/// Each key in the place of its line, in tables of a list, inner tables and lists, from values of any kind of program.
+/// Errors name each key instead of its line, in tables of a list, inner tables and lists, from values of any kind of
+/// program.
 #[test]
 fn a_scene_of_values_is_that_of_its_text_and_errors_name_keys() {
     let values = |density: f64, more: serde_json::Value| {

@@ -1,4 +1,4 @@
-//! Meshes that are not what they seem: groups of one name, bodies that touch without holding together.
+//! Meshes with hidden faults: groups of one name, bodies that touch without being joined.
 
 use std::fs;
 
@@ -20,7 +20,7 @@ fn build(mesh: &Mesh, tables: &str) -> Result<Simulation, SceneError> {
     Scene::load(path).and_then(Scene::build)
 }
 
-/// A block of which the tissue and its bottom are both called liver.
+/// A block whose tissue and bottom are both called liver.
 fn two_livers() -> TetMesh {
     let mut mesh = block([2, 2, 2], [0.1; 3], Split::Mirrored).unwrap();
     mesh.groups.retain(|group| group.name != "sides");
@@ -95,7 +95,7 @@ fn what_takes_one_dimension_takes_its_group_of_the_name() {
     );
 }
 
-/// Two blocks that lie on each other: one is held at each end, and nothing holds them together.
+/// Two blocks in contact: each is fixed at its outer end, and nothing joins them.
 #[test]
 fn blocks_that_touch_without_common_nodes_are_warned_of() {
     let mut mesh = two_livers();

@@ -41,7 +41,7 @@ fn run(simulation: &Simulation, folder: &Path) -> (State, Vec<Vec<f64>>) {
     (state, csv.lines().skip(1).map(numbers).collect())
 }
 
-/// The three ways to say how a part is moved, each with its position along z over time.
+/// The three forms of a prescribed motion, each with its position along z over time.
 #[test]
 fn probes_on_moved_parts_show_the_way_they_are_moved() {
     let folder = tempfile::tempdir().unwrap();
@@ -103,7 +103,7 @@ fn a_table_belongs_to_the_files_a_broken_scene_is_read_from() {
     assert_eq!(files, [path, folder.path().join("../stroke.csv")]);
 }
 
-/// Hooke's law, a static state once the motion has died away: E A d/L at both ends.
+/// Hooke's law, a static state after the motion has decayed: E A d/L at both ends.
 #[test]
 fn reactions_name_their_tables_and_bear_the_pull() {
     let folder = tempfile::tempdir().unwrap();
@@ -185,7 +185,7 @@ fn a_jump_without_damping_and_a_load_on_a_moved_part_are_warned_about() {
     assert!(build(&scene(PRESS, "", NEWMARK)).warnings().is_empty());
 }
 
-/// A method that takes no load that changes within its steps says so, with the table at fault.
+/// A method that does not support loads that change within its steps is refused, with the table at fault.
 #[test]
 fn a_motion_that_a_method_cannot_follow_is_refused_before_the_run() {
     let propagator =

@@ -1,4 +1,4 @@
-//! Bodies that pass through each other, told by geometry alone: displacements are given.
+//! Bodies that pass through each other, found from geometry alone: displacements are given.
 
 use std::fs;
 
@@ -25,7 +25,7 @@ fn part(name: &str, cells: [usize; 3], [low, high]: [[f64; 3]; 2]) -> TetMesh {
     mesh
 }
 
-/// Parts in one mesh, with nothing in common.
+/// Parts in one mesh, without common nodes.
 fn together(parts: impl IntoIterator<Item = TetMesh>) -> TetMesh {
     let mut mesh = TetMesh::default();
     for part in parts {
@@ -49,7 +49,7 @@ fn together(parts: impl IntoIterator<Item = TetMesh>) -> TetMesh {
     mesh
 }
 
-/// The part of a mesh that its tetrahedra with such centroids are.
+/// The part of a mesh with the tetrahedra whose centroids are kept.
 fn only(mesh: &TetMesh, keep: impl Fn([f64; 3]) -> bool) -> TetMesh {
     let kept = mesh.tets.iter().filter(|tet| {
         let corners = tet.map(|node| mesh.points[node as usize]);
@@ -96,7 +96,7 @@ fn told(mesh: &TetMesh, by: impl Fn([f64; 3]) -> [f64; 3]) -> Option<Overlap> {
     told_of(&build(&mesh.to_mesh(), ""), by)
 }
 
-/// A turn about an axis in no special direction.
+/// A rotation about an axis in a general direction.
 fn turned([x, y, z]: [f64; 3]) -> [f64; 3] {
     let ([sin, cos], [s, c]) = ([0.6, 0.8], [5.0 / 13.0, 12.0 / 13.0]);
     let (x, y) = (c * x - s * y, s * x + c * y);

@@ -1,4 +1,4 @@
-//! Parts of a body chosen by where they lie.
+//! Parts of a body chosen by position.
 
 use crate::common::{build, numbers, run};
 use sinew_scene::{Scene, SceneSource, Simulation};
@@ -35,7 +35,7 @@ name = "top"
 point = [0.05, 0.05, 0.1]
 "#;
 
-/// The same parts by where they lie, each in another way.
+/// The same parts chosen by position, each with another condition.
 fn placed() -> String {
     let mut text = CUBE.to_owned();
     for (group, place) in [
@@ -84,7 +84,7 @@ fn a_run_with_places_has_the_bits_of_one_with_groups() {
     assert!(last[1..].iter().all(|u| *u != 0.0), "{last:?}");
 }
 
-/// The pressure p on a face of area A pushes with p A, whatever else the face's nodes are.
+/// The pressure p on a face of area A pushes with p A, also if the face's nodes belong to other parts.
 #[test]
 fn pressure_on_a_place_pushes_with_its_area() {
     let text = CUBE.replace(
@@ -104,7 +104,7 @@ fn pressure_on_a_place_pushes_with_its_area() {
     assert!((part.area - 0.005).abs() < 1e-12);
 }
 
-/// Two halves of unlike density: the masses are those of the volumes.
+/// Two halves of different density: the masses follow from the volumes.
 #[test]
 fn a_region_for_the_rest_takes_what_the_others_leave() {
     let halves = |first: &str, second: &str| {

@@ -13,7 +13,7 @@ fn plan(text: &str) -> Plan {
     build(text).plan()
 }
 
-/// A plan's text with the same instructions on every computer.
+/// A plan's text with the same instruction set on every computer.
 fn anywhere(plan: &Plan) -> String {
     let mut plan = plan.clone();
     // Before the text is broken into lines.
@@ -29,7 +29,7 @@ fn anywhere(plan: &Plan) -> String {
     plan.to_string()
 }
 
-/// The paper's cube from the generator, which makes the same mesh as the file holds.
+/// The paper's cube from the generator, which makes the same mesh as that in the file.
 fn papers_cube() -> Plan {
     let scene = fs::read_to_string(PAPERS_CUBE).unwrap();
     let file = "file = \"../meshes/paper-cube.msh\"";
@@ -113,7 +113,7 @@ fn the_numbers_of_the_papers_cube() {
     assert_eq!(clamped.kind, WarningKind::ClampedNetwork);
 }
 
-/// The mesh's part of the plan of a body that nothing but its mesh sets apart.
+/// The lines about the mesh in the plan of a body with this mesh.
 fn mesh_lines(mesh: &str) -> Vec<String> {
     let scene = format!(
         "mesh = {{ {mesh} }}
@@ -177,7 +177,7 @@ fn the_papers_oscillator() {
     "#);
 }
 
-/// Gravity, several materials' worth of damping, partial supports, a start and held probes.
+/// Gravity, damping of several materials, partial supports, an initial state and probes at fixed nodes.
 #[test]
 fn a_scene_with_everything() {
     let text = r#"
@@ -280,7 +280,7 @@ dt = 0.001
     assert!(!plan.contains("probes"), "{plan}");
 }
 
-/// Plain loops for bodies that fast machines do not support, and the plan for a precision that none of them offers.
+/// Plain loops for bodies that fast machines do not support, and the plan for a precision that no fast machine offers.
 #[test]
 fn plain_loops_are_named_with_their_reason() {
     let tissue = "[mesh]\ncube = { cells = 2, edge = 0.1 }\n[[region]]\ndensity = 1000.0\nmodel = \"neo-hookean\"\n\

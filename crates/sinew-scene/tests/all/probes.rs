@@ -6,7 +6,7 @@ use sinew_mesh::GroupMembers;
 use sinew_scene::output::{Delivery, Destination};
 use sinew_scene::{ProbeCsv, ProbeRows, Scene, SceneSource};
 
-/// A bar of nu = 0 that is held at its bottom and pulled at its top by 30 Pa, at rest: the stress is the pull
+/// A bar of nu = 0 that is fixed at its bottom and pulled at its top by 30 Pa, at rest: the stress is the pull
 /// everywhere, and the displacement `30/E z`.
 const PULLED: &str = "[mesh]\nblock = { cells = [2, 2, 6], size = [0.02, 0.02, 0.06] }\n[[region]]\ndensity = 1000.0\n\
                       model = \"linear\"\nyoungs_modulus = 3000.0\npoissons_ratio = 0.0\n[[fixed]]\ngroup = \"bottom\"\n\
@@ -98,7 +98,7 @@ fn means_and_stresses_of_a_pulled_bar_are_those_of_statics() {
 }
 
 /// Central differences: the velocity at an instant is that between its neighbours (Newmark 1959; Hughes, The Finite
-/// Element Method, section 9.1), at free nodes; where a part is moved it is the rate of its course.
+/// Element Method, section 9.1), at free nodes; at moved parts it is the rate of the course.
 #[test]
 fn velocities_are_those_between_the_instants_before_and_after() {
     let dt = 0.0005;
@@ -170,7 +170,7 @@ fn places_that_contradict_each_other_are_refused() {
     );
 }
 
-/// Nodes that are chosen by where they lie are a group of nodes: their mean, alike over all.
+/// Nodes that are chosen by position are a group of nodes: the probe is their mean with equal weights.
 #[cfg(feature = "implicit")]
 #[test]
 fn a_probe_of_several_nodes_is_their_mean() {

@@ -9,7 +9,7 @@ use sinew_scene::{Scene, Simulation};
 
 use crate::common::{build, numbers, run};
 
-/// A block that nothing holds, under a traction with this ramp.
+/// A block without supports, under a traction with this ramp.
 fn free(law: &str, ramp: &str, method: &str, dt: f64) -> String {
     format!(
         "[mesh]\nblock = {{ cells = [1, 1, 2], size = [0.02, 0.02, 0.04] }}\n[[region]]\ndensity = 1000.0\nmodel = \"{law}\"\n\
@@ -30,7 +30,7 @@ fn momentum(simulation: &Simulation, state: &State) -> f64 {
     along.map(|(mass, v)| mass * v).sum()
 }
 
-/// Newton's second law: the momentum is the impulse, wherever in a step the load ends.
+/// Newton's second law: the momentum is the impulse, for any end of the load within a step.
 #[test]
 fn a_load_that_ends_abruptly_leaves_its_impulse() {
     let folder = tempfile::tempdir().unwrap();
@@ -54,7 +54,7 @@ fn a_load_that_ends_abruptly_leaves_its_impulse() {
     }
 }
 
-/// The scene in a file, beside what it names.
+/// The scene in a file, next to the files that it names.
 fn load(folder: &Path, text: &str) -> Scene {
     let path = folder.join("scene.toml");
     fs::write(&path, text).unwrap();

@@ -1,4 +1,4 @@
-//! The ready scenes under scenes/ready: each runs without a warning to a number that a textbook has.
+//! The ready scenes under scenes/ready: each runs without a warning to a number from a textbook.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -39,13 +39,13 @@ fn end(simulation: &Simulation) -> State {
     crate::common::run(simulation, tempfile::tempdir().unwrap().path()).0
 }
 
-/// The displacement (m) of a probe, by its place in the list.
+/// The displacement (m) of a probe, by its index in the list.
 fn probe(simulation: &Simulation, state: &State, index: usize) -> [f64; 3] {
     let u = simulation.probes()[index].displacement(state.t(), &state.u);
     <[f64; 3]>::try_from(u.collect::<Vec<f64>>()).unwrap()
 }
 
-/// The reaction (N) of the support or motion at a place in the list of all.
+/// The reaction (N) of the support or motion with an index in the list of all.
 fn reaction(simulation: &Simulation, state: &State, index: usize) -> [f64; 3] {
     simulation.body().reactions(state, Inputs::none()).unwrap()[index].force
 }
@@ -54,7 +54,7 @@ fn weight(simulation: &Simulation) -> f64 {
     9.81 * body(simulation).model.report().mass
 }
 
-/// The modulus (Pa) of a material that cannot get wider, M = E (1 - nu)/((1 + nu)(1 - 2 nu)).
+/// The modulus (Pa) of a laterally confined material, M = E (1 - nu)/((1 + nu)(1 - 2 nu)).
 fn confined(law: &Law) -> f64 {
     let Law::Linear {
         youngs_modulus: e,
@@ -137,7 +137,8 @@ fn the_pressed_organ_sags_by_its_weight_at_nearly_its_volume() {
 }
 
 /// The motion at the start has the energy rho w^2 a^4/12 int sin^2(pi z/2h) dz = rho w^2 a^4 h/24. Nothing dissipates
-/// it: as long as the column moves it is kinetic or elastic. The column turns by more than a half before it comes back.
+/// it: as long as the column moves it is kinetic or elastic. The column turns by more than half a turn before it turns
+/// back.
 #[test]
 fn the_column_winds_up_by_more_than_half_a_turn_and_keeps_its_energy() {
     let simulation = ready("twisted-column");
@@ -176,7 +177,8 @@ fn the_column_winds_up_by_more_than_half_a_turn_and_keeps_its_energy() {
     );
 }
 
-/// The base carries the weight. Fibres hold what bulges: without them, as in organ-pressed, the top sags by 5 mm.
+/// The base carries the weight. Fibres limit the lateral bulging: without them, as in organ-pressed, the top sags by 5
+/// mm.
 #[test]
 fn the_organ_with_fibres_sags_by_less_with_its_weight_on_its_base() {
     let simulation = ready("organ-fibres");
@@ -209,10 +211,10 @@ fn the_muscle_starts_stretched_as_a_tapered_bar() {
     is_near(force, -pull, 1e-5);
 }
 
-/// A thick tube of Holzapfel, Gasser and Ogden's law that keeps its length and its volume: the pressure is the integral of
-/// the difference of the stresses around and through the wall over the logarithm of the radius (Holzapfel, Gasser and
-/// Ogden, Journal of Elasticity 61, 2000, equation 33). The mesh is coarse: it leaves 2.9 per cent, and 1.7 where it has
-/// twice the tetrahedra around and four through the wall; Poisson's ratio .499 changes nothing.
+/// A thick tube of Holzapfel, Gasser and Ogden's law that keeps its length and its volume: the pressure is the integral
+/// of the difference of the stresses around and through the wall over the logarithm of the radius (Holzapfel, Gasser
+/// and Ogden, Journal of Elasticity 61, 2000, equation 33). The mesh is coarse: the error is 2.9 per cent, and 1.7 per
+/// cent with twice the tetrahedra around and four through the wall; Poisson's ratio .499 changes nothing.
 #[test]
 fn the_artery_widens_as_a_tube_that_keeps_its_volume() {
     let simulation = ready("artery");
@@ -303,7 +305,7 @@ fn the_layers_are_pressed_as_springs_in_series() {
     is_near(probe(&simulation, &state, 1)[2], -muscle, 1e-5);
 }
 
-/// The force on the needle is the force that holds the tissue at its bottom.
+/// The force on the needle equals the force of the support at the bottom of the tissue.
 #[test]
 fn the_needle_takes_the_force_that_the_bottom_gives() {
     let simulation = ready("needle");
@@ -347,7 +349,7 @@ fn the_inclusion_stiffens_the_cube_within_the_bounds_of_reuss_and_voigt() {
     );
 }
 
-/// A slab that cannot get wider is a spring: u = -p h/M, linear in z, whatever the shape of its elements.
+/// A laterally confined slab is a spring: u = -p h/M, linear in z, for any shape of its elements.
 #[test]
 fn the_slivers_do_not_spoil_the_slab() {
     let simulation = ready("slivers");
@@ -367,7 +369,7 @@ fn the_incision_hangs_on_its_bottom_by_its_weight_alone() {
     assert!(probe(&simulation, &state, 0)[0] > 1e-5, "the cut opens");
 }
 
-/// Forces of tool and support are in balance once the cube is at rest under the ball, and no node is inside the ball.
+/// Forces of tool and support are in balance when the cube is at rest under the ball, and no node is inside the ball.
 #[test]
 fn the_ball_presses_on_the_cube_as_the_cube_on_its_bottom() {
     let simulation = ready("press");

@@ -20,7 +20,7 @@ fn rows() -> Vec<Table> {
         .collect()
 }
 
-/// A cube of 10 mm of the tissue between two plates that take it to this stretch.
+/// A cube of 10 mm of the tissue between two plates that impose this stretch.
 fn stretched(region: &Table, stretch: f64) -> Table {
     let mut scene: Table = format!(
         "[mesh]\ncube = {{ cells = 2, edge = 0.01 }}\n\

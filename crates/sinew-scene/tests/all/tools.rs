@@ -47,8 +47,8 @@ fn a_group_is_all_that_a_tool_touches() {
     assert!(tools.touched_cells().iter().all(|cell| cell.rest[2] == 0.1));
 }
 
-/// The position of a node that is moved in one direction depends on more than its degrees of freedom, so tools leave it
-/// out.
+/// The position of a node that is moved in one direction depends on more than its degrees of freedom, so tools ignore
+/// it.
 #[test]
 fn moved_nodes_and_held_directions_are_told_apart() {
     let text = ball(
@@ -117,8 +117,8 @@ fn thin_fast_and_pushing_tools_are_warned_about() {
     assert!(said(&build(&still)).is_empty());
 }
 
-/// A ball whose lowest point lies on a node begins outside, whatever rounding makes of it.
-/// A plane that is moved by 200 sizes of the body within the only step takes it along.
+/// A plane that moves by 200 sizes of the body within the only step takes it along. A ball whose lowest point lies on a
+/// node begins outside, independent of rounding.
 #[test]
 fn what_a_tool_carries_away_has_diverged_by_any_machine() {
     for machine in ["auto", "general", "reference"] {
@@ -159,7 +159,7 @@ fn a_tool_that_begins_on_the_surface_is_not_inside() {
     }
 }
 
-/// The force of a tilted plate along a held axis is borne by the support of that axis.
+/// The force of a tilted plate along a fixed axis is carried by the support of that axis.
 #[test]
 fn supports_bear_what_tools_push_into_held_directions() {
     let text = scene(
@@ -185,7 +185,7 @@ fn supports_bear_what_tools_push_into_held_directions() {
     }
 }
 
-/// Otherwise a plate through a moved or held top would be silence.
+/// Without the warning a plate that passes through a moved or fixed top would not be reported.
 #[test]
 fn a_tool_that_passes_through_nodes_it_does_not_meet_is_warned_about() {
     let plate = "[[tool]]\nname = \"plate\"\nshape = { plane = {} }\nstart = [0.0, 0.0, 0.101]\nrotation = [3.141592653589793, 0.0, 0.0]\n\
@@ -195,7 +195,7 @@ fn a_tool_that_passes_through_nodes_it_does_not_meet_is_warned_about() {
     assert!(said(&build(&scene(plate))).is_empty());
 }
 
-/// A plate that comes down on a top which is held against it goes through, and the run says so.
+/// A plate that comes down on a fixed top passes through it, and the run reports this.
 #[test]
 fn a_tool_that_leaves_nodes_in_it_is_told() {
     let plate = "[[fixed]]\ngroup = \"top\"\naxes = \"z\"\n[[tool]]\nname = \"plate\"\nshape = { plane = {} }\nstart = [0.0, 0.0, 0.101]\n\
@@ -214,7 +214,7 @@ fn a_tool_that_leaves_nodes_in_it_is_told() {
     assert!(simulation.body().left_by_tools(&state).is_empty());
 }
 
-/// Otherwise a grasp that closes beside the tissue, or two jaws on one node, would be silence.
+/// Without the warning a grasp that closes next to the tissue, or two jaws on one node, would not be reported.
 #[test]
 fn a_grasp_that_seizes_nothing_and_one_that_comes_second_are_told() {
     let jaw = |name: &str, z: f64, speed: f64, from: f64| {
@@ -261,7 +261,7 @@ fn a_tool_that_is_a_body_says_so_and_gives_way() {
     assert!(simulation.body().left_by_tools(&state).is_empty());
 }
 
-/// A tip of a tenth of an edge between nodes: its triangles are found, and it does not pass.
+/// A tip of a tenth of an edge between nodes: its triangles are found, and it does not pass through.
 #[test]
 fn a_thin_tip_presses_where_there_is_no_node() {
     let tip =
@@ -286,8 +286,8 @@ fn a_thin_tip_presses_where_there_is_no_node() {
     assert!(said(&far).is_empty());
 }
 
-/// A plate that is thinner than an edge of the surface presses with its face, around which no triangle can pass; on
-/// edge it is a blade.
+/// A plate that is thinner than an edge of the surface presses with its face, around which no triangle can pass; with
+/// its edge ahead it acts like a blade.
 #[test]
 fn a_thin_plate_meets_triangles_where_it_comes_with_its_edge() {
     let plate = |way: &str| {

@@ -1,4 +1,4 @@
-//! Warnings before a run: a scene that has each, and one that does not.
+//! Warnings before a run: for each a scene with it, and one without it.
 
 use std::fs;
 
@@ -34,13 +34,13 @@ name = "top"
 point = [0.05, 0.05, 0.1]
 "#;
 
-/// The warnings of the quiet scene in which one place was changed.
+/// The warnings of the quiet scene with one text replaced.
 fn warned(from: &str, to: &str) -> Vec<Warning> {
     assert_eq!(QUIET.matches(from).count(), 1, "{from}");
     build(&QUIET.replace(from, to)).warnings()
 }
 
-/// The only warning of the quiet scene in which one place was changed.
+/// The only warning of the quiet scene with one text replaced.
 fn one(from: &str, to: &str) -> Warning {
     only(warned(from, to))
 }

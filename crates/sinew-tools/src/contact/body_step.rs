@@ -1,25 +1,23 @@
-//! The step of a tool that is a body of its own.
+//! The step of a tool that is a dynamic body.
 //!
-//! With d the offset from the path and w the velocity of the path, the step with tissue whose velocities are
-//! staggered is
-//! `m (v+ - v-) = -dt k (d_before + 2 d + d_after)/4 - dt b ((v+ + v-)/2 - (w+ + w-)/2) + dt f`,
-//! the average acceleration method (Newmark 1959) in the form of central difference, whose matrix is `P = m + dt/2 b + dt^2/4 k`. It is stable at any stiffness
-//! and step, and with the mean offset `D = d + dt/2 (v+ - w+)` the energy `(m v+^2 + k D^2)/2` changes by the work of
-//! the path, the dissipation of the damper, and
-//! `dt f (v+ + v-)/2`, exactly: contact treats it as it treats tissue. A body whose period the step does not resolve
-//! would oscillate from step to step forever: it gets additional damping and mass ([`Spring`]), which keep the
-//! balance.
+//! With d the offset from the path and w the velocity of the path, the step with tissue whose velocities are staggered
+//! is `m (v+ - v-) = -dt k (d_before + 2 d + d_after)/4 - dt b ((v+ + v-)/2 - (w+ + w-)/2) + dt f`, the average
+//! acceleration method (Newmark 1959) in the form of central difference, whose matrix is `P = m + dt/2 b + dt^2/4 k`.
+//! It is stable at any stiffness and step, and with the mean offset `D = d + dt/2 (v+ - w+)` the energy `(m v+^2 + k
+//! D^2)/2` changes by the work of the path, the dissipation of the damper, and `dt f (v+ + v-)/2`, exactly: contact
+//! treats it the same as tissue. A body whose period the step does not resolve would oscillate forever from step to
+//! step: it gets additional damping and mass ([`Spring`]), which keep the balance of energy.
 //!
-//! If the step before was of another length, impulses are those of the time between the two velocities, half of
-//! either step, as on the tissue, and `d_before` is `d - dt_before (v- - w-)`. The balance
-//! is then off by `k D (dt - dt_before)(v+ - v-)/4`, of order 2, once.
+//! If the step before had another length, impulses are those of the time between the two velocities, half of each step,
+//! the same as for the tissue, and `d_before` is `d - dt_before (v- - w-)`. The balance is then off by `k D (dt -
+//! dt_before)(v+ - v-)/4`, of order 2, in this step only.
 //!
-//! With tissue whose velocities are at the ends of steps it is implicit Euler,
-//! `m (v+ - v) = -dt k d_after - dt b (v+ - w+) + dt f`, of which `P = m + dt b + dt^2 k`:
-//! there contact works at `v+`, and `(m v+^2 + k d_after^2)/2` rises by no more than that and the work of the path.
+//! With tissue whose velocities are at the ends of steps it is implicit Euler, `m (v+ - v) = -dt k d_after - dt b (v+ -
+//! w+) + dt f`, of which `P = m + dt b + dt^2 k`: there contact works at `v+`, and `(m v+^2 + k d_after^2)/2` rises by
+//! no more than the work of contact and of the path.
 //!
-//! Rotation is treated likewise in the body's own axes, `J (W+ - W-) + dt W x J W = dt torque` with W the mean of
-//! both, or the new one; the gyroscopic term has no power.
+//! Rotation is treated in the same way in the body's own axes, `J (W+ - W-) + dt W x J W = dt torque` with W the mean
+//! of both, or the new one; the gyroscopic term has no power.
 
 use super::record::{Body, OF_BODY};
 use super::tool_body::ToolBody;
@@ -27,7 +25,7 @@ use super::twist::Twist;
 use crate::pose::Pose;
 use crate::vector::{Vector, add, cross, dot, scaled, sub};
 
-/// Solutions for the gyroscopic term, each with the spin of the one before. Each keeps the energy.
+/// Number of iterations for the gyroscopic term, each with the spin of the one before. Each conserves the energy.
 const GYROSCOPIC: usize = 3;
 
 /// A body during a step.
@@ -51,11 +49,11 @@ pub(super) struct BodyStep {
     offset: Twist,
     /// Velocity after the step without contact.
     free: Twist,
-    /// Displacement by contact within the step.
+    /// Displacement due to contact within the step.
     pub(super) pushed: Twist,
-    /// The displacement (m) by a force (N): `dt^2 / P`.
+    /// The displacement per force (m/N): `dt^2 / P`.
     along: f64,
-    /// The turn (rad) about its own axes by a torque (N m).
+    /// The rotation per torque (rad/(N m)) about its own axes.
     about: Vector,
 }
 
@@ -205,7 +203,7 @@ impl BodyStep {
         }
     }
 
-    /// The numbers that it keeps after the step.
+    /// Writes the numbers that are kept after the step.
     pub(super) fn keep(&self, numbers: &mut [f64; OF_BODY]) {
         let (velocity, [earlier, now]) = (self.velocity(), self.path);
         let known = Body::read(numbers);
@@ -273,8 +271,8 @@ impl Spring {
         }
     }
 
-    /// Effective mass that impulses are divided by, in a step of `dt` (s) with a time `kick` (s) between the velocities
-    /// before and after.
+    /// Effective mass by which impulses are divided, in a step of `dt` (s) with a time `kick` (s) between the
+    /// velocities before and after.
     fn metric(&self, [dt, kick]: [f64; 2], is_staggered: bool) -> f64 {
         let Self {
             mass,

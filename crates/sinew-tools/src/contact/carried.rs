@@ -12,8 +12,8 @@ use crate::vector::sub;
 
 impl Tools {
     /// Contact history ([`sinew_core::State::contact`]) of these tools after a cut. `before` are the same tools on the
-    /// cells before the cut, and `contact` is their history. For a touched cell, `of` gives the place among the old
-    /// cells of the cell that it is or is a copy of; `None` for a cell that could not be touched.
+    /// cells before the cut, and `contact` is their history. For a touched cell, `of` gives the index among the old
+    /// cells: of the cell itself, or of its original if it is a copy; `None` for a cell that could not be touched.
     ///
     /// Forces of the last step stay with the first of several copies, and a tool that grasps a cell grasps all of its
     /// copies.
@@ -94,7 +94,7 @@ impl Tools {
         own[1..=listed.len()].copy_from_slice(&listed);
     }
 
-    /// Stores for each pair of cut-face nodes the vector (m) from the one to the other at the beginning of the step
+    /// Stores for each pair of cut-face nodes the vector (m) from the first to the second at the beginning of the step
     /// that ended in the state.
     pub(super) fn keep_pairs(
         &self,

@@ -89,7 +89,7 @@ impl Count<'_> {
         }
     }
 
-    /// Grasps a cell at a place (m) with a tool, if its jaws are closed and no tool grasps the cell already.
+    /// Grasps a cell at a position (m) with a tool, if its jaws are closed and no tool grasps the cell already.
     pub(super) fn seize(&self, tool: usize, place: usize, at: Vector, record: &mut Record<'_>) {
         if !self.steps[tool].holds {
             return;
@@ -117,7 +117,7 @@ impl Count<'_> {
         }
     }
 
-    /// Counts a force (N) of a tool on a cell that ends at a place (m).
+    /// Counts a force (N) of a tool on a cell whose end position (m) is given.
     pub(super) fn of_node(
         &self,
         (tool, force): (usize, Vector),
@@ -130,7 +130,7 @@ impl Count<'_> {
         record.cells[place] = add(record.cells[place], force);
     }
 
-    /// Counts a force (N) of a tool at a place (m), against the tool.
+    /// Counts the reaction on the tool to its force (N) at a position (m).
     fn of_tool(&self, tool: usize, force: Vector, end: Vector, record: &mut Record<'_>) {
         let step = &self.steps[tool];
         let numbers = &mut record.tools[tool];

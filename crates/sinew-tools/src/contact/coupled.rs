@@ -14,16 +14,17 @@ use super::tools::Tools;
 use crate::shape::TriangleTouch;
 use crate::vector::{Vector, add, between, scaled, sub};
 
-/// Most rounds of finding contacts and solving for their forces: tissue pushed back by one surface may meet another.
+/// Largest number of rounds of finding contacts and solving for their forces: tissue pushed back by one surface may
+/// meet another.
 const MOST_ROUNDS: usize = 8;
 
-/// Share of a pass within which a contact has been there at its beginning.
+/// Share of a pass within which a contact counts as existing at its beginning.
 const BEGINNING: f64 = 1e-6;
 
-/// Most contacts of a triangle with a part of a tool in a step.
+/// Largest number of contacts of a triangle with a part of a tool in a step.
 const MOST_ON_TRIANGLE: usize = 4;
 
-/// Rounds in which the end position of a body that is turned by its contacts is checked.
+/// Number of rounds that check the end position of a body that its contacts rotate.
 const ROUNDS_OF_BODIES: usize = 2;
 
 impl Tools {
@@ -105,7 +106,7 @@ struct Ways<'a> {
     tools: &'a Tools,
     meeting: &'a Meeting<'a>,
     state: &'a State,
-    /// The shares of the step between which the pass is.
+    /// The shares of the step at the beginning and the end of the pass.
     shares: [f64; 2],
 }
 
@@ -153,15 +154,15 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// Displacement (m) of a cell over which friction does work, without contact.
+    /// Displacement (m) of a cell along which friction does work, without contact.
     fn swing(&self, place: usize) -> Vector {
         let (from, to) = self.ways.whole(place);
         let kept = self.velocities.get(place);
         swing(self.ways.meeting, kept, sub(to, from))
     }
 
-    /// Adds new contacts; returns true if there are any. At first, only triangles that touch at the beginning: the
-    /// others may not come into contact once these resist.
+    /// Adds new contacts; returns true if there are any. In the first round only triangles that touch at the beginning
+    /// are added: the forces of these may prevent contact with the others.
     fn all(&self, room: &mut Room, is_first: bool) -> bool {
         let count = |links: &Links| links.all.len() + links.lips.len();
         let before = count(&room.links);
@@ -184,13 +185,13 @@ impl Search<'_> {
         is_left || count(&room.links) > before
     }
 
-    /// Finds how cut faces lie as the step begins.
+    /// Finds the normals of cut faces at the beginning of the step.
     fn find_lips(&self, links: &mut Links) {
         let at = |corner: Corner| corner.at(|place| self.ways.whole(place as usize).0);
         self.tools.lips.find_normals(at, &mut links.normals);
     }
 
-    /// Adds the pairs of cut-face nodes that come together.
+    /// Adds the pairs of cut-face nodes that come into contact.
     fn of_lips(&self, links: &mut Links) {
         let [_, share] = self.ways.shares;
         for (number, pair) in (0..).zip(&self.tools.lips.pairs) {

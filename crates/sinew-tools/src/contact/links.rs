@@ -1,4 +1,4 @@
-//! Contacts that act on each other within a step, since they share a tool that is a body of its own, or a node.
+//! Contacts that act on each other within a step, since they share a tool that is a dynamic body, or a node.
 
 use super::body_step::BodyStep;
 use super::lips::{LipLink, Lips};
@@ -7,18 +7,19 @@ use super::tool_step::{ToolStep, Way};
 use super::twist::Twist;
 use crate::vector::{Vector, add, dot, length, scaled, sub};
 
-/// Difference of unit normals, and of places as a share of their distance from the tool's origin, below which contacts are the same.
+/// Difference of unit normals, and of positions as a share of their distance from the tool's origin, below which
+/// contacts are the same.
 const ALIKE: f64 = 1e-7;
 
-/// Nodes of a contact, at most.
+/// Largest number of nodes of a contact.
 const NODES: usize = 3;
 
 /// A node of a contact.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LinkedNode {
-    /// Its place among the touched cells.
+    /// Its index among the touched cells.
     pub(super) place: u32,
-    /// Its share of the point of contact.
+    /// Its weight at the point of contact.
     pub(super) weight: f64,
     pub(super) compliance: Compliance,
 }
@@ -26,9 +27,9 @@ pub(super) struct LinkedNode {
 /// Constraint of a contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Rule {
-    /// It does not pass the tool's surface, with this outward normal in the tool's frame.
+    /// The point does not pass the tool's surface, with this outward normal in the tool's frame.
     Outside(Vector),
-    /// It stays at its place in the tool's frame.
+    /// The point stays at its position in the tool's frame.
     Held,
 }
 
@@ -36,23 +37,23 @@ pub(super) enum Rule {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Link {
     nodes: [LinkedNode; NODES],
-    /// The share (m) of fixed corners in the point of contact.
+    /// The contribution (m) of fixed corners to the point of contact.
     still: Vector,
     pub(super) tool: usize,
     /// The part of the tool.
     pub(super) part: usize,
     /// The triangle; `None` for a contact of a node.
     pub(super) triangle: Option<u32>,
-    /// The place (m) of the contact in the tool's frame.
+    /// The position (m) of the contact in the tool's frame.
     own: Vector,
-    /// Depth (m) of that place inside the tool.
+    /// Depth (m) of that position inside the tool.
     below: f64,
     rule: Rule,
     /// The contact surface relative to the contact-free trial position of the step, without any force.
     constraint: Constraint,
-    /// From the tool's origin to the contact (m).
+    /// Vector (m) from the tool's origin to the contact.
     arm: Vector,
-    /// The displacement of tissue against tool by a force on the contact, and its inverse.
+    /// The displacement of tissue relative to the tool due to a force on the contact, and its inverse.
     response: Compliance,
     stiffness: Stiffness,
     /// The force (N) on the tissue.
@@ -66,11 +67,11 @@ pub(super) struct Link {
 #[derive(Debug, Default)]
 pub(super) struct Links {
     pub(super) all: Vec<Link>,
-    /// Places of the cells that are part of any, each once.
+    /// Indices of the cells that are part of any contact, each once.
     pub(super) places: Vec<u32>,
     /// Displacement (m) by contact, of each touched cell.
     pub(super) moved: Vec<Vector>,
-    /// The same before the pass.
+    /// Displacement (m) due to contact of each touched cell before the pass.
     pub(super) before: Vec<Vector>,
     /// Start and current position (m) of each touched cell, during the search for triangles.
     pub(super) ways: Vec<Way>,
@@ -80,7 +81,7 @@ pub(super) struct Links {
     is_linked: Vec<bool>,
     /// Pairs of cut-face nodes in contact.
     pub(super) lips: Vec<LipLink>,
-    /// The normals of cut faces as the step begins, times twice their area (m^2).
+    /// The normals of cut faces at the beginning of the step, times twice their area (m^2).
     pub(super) normals: Vec<[Vector; 2]>,
     /// One flag per pair of cut-face nodes: true if the pair is in contact.
     meets: Vec<bool>,
@@ -107,7 +108,7 @@ impl Links {
         }
     }
 
-    /// Forgets the last step.
+    /// Discards the contacts of the last step.
     pub(super) fn clear(&mut self) {
         self.lip_residual = 0.0;
         self.begin_pass();
@@ -118,7 +119,7 @@ impl Links {
         }
     }
 
-    /// Drops the contacts of the last pass, but keeps the displacements they caused.
+    /// Discards the contacts of the last pass, but keeps the displacements that they caused.
     pub(super) fn begin_pass(&mut self) {
         for place in &self.places {
             let place = *place as usize;
@@ -152,27 +153,27 @@ impl Links {
         self.lips.push(link);
     }
 
-    /// Records that the cell at a place is part of a contact.
+    /// Records that the cell with an index is part of a contact.
     fn link(&mut self, place: u32) {
         if !std::mem::replace(&mut self.is_linked[place as usize], true) {
             self.places.push(place);
         }
     }
 
-    /// True if the cell at a place is part of any contact.
+    /// True if the cell with an index is part of any contact.
     pub(super) fn is_linked(&self, place: usize) -> bool {
         self.is_linked
             .get(place)
             .is_some_and(|is_linked| *is_linked)
     }
 
-    /// True if the cell at a place has a contact of its own, without a triangle, with a part of a tool.
+    /// True if the cell with an index has a contact as a node, without a triangle, with a part of a tool.
     pub(super) fn knows(&self, place: usize, (tool, part): (usize, usize)) -> bool {
         let mut of_cell = self.of_cell(place as u32);
         of_cell.any(|link| link.triangle.is_none() && (link.tool, link.part) == (tool, part))
     }
 
-    /// The contacts that the cell at a place is part of, the last one first.
+    /// The contacts of which the cell with an index is a part, the last one first.
     fn of_cell(&self, place: u32) -> impl Iterator<Item = &Link> {
         let at = |number: u32| self.all.get(number as usize);
         let last = self.last[place as usize].and_then(at);
@@ -192,7 +193,7 @@ impl Links {
         on_triangle.filter(is_it).count()
     }
 
-    /// True if a node of a contact is part of another contact at the same place of a tool and with the same normal.
+    /// True if a node of a contact is part of another contact at the same position on a tool and with the same normal.
     pub(super) fn knows_alike(&self, link: &Link) -> bool {
         let Rule::Outside(normal) = link.rule else {
             return false;
@@ -207,7 +208,7 @@ impl Links {
             .any(|node| self.of_cell(node.place).any(is_alike))
     }
 
-    /// Adds one.
+    /// Adds a contact.
     pub(super) fn add(&mut self, mut link: Link) {
         let number = self.all.len() as u32;
         for (node, before) in link.nodes.iter().zip(&mut link.before) {
@@ -222,9 +223,9 @@ impl Links {
         self.all.push(link);
     }
 
-    /// Re-evaluates each contact at the positions that tools and tissue have been moved to so far. `stood` gives the
-    /// contact-free position of a node by its place, and `swing` the displacement (m) along which its friction works in
-    /// a step of `dt` (s).
+    /// Evaluates each contact again at the positions to which tools and tissue have been moved so far. `stood` gives
+    /// the contact-free position of a node by its index, and `swing` the displacement (m) along which its friction
+    /// works in a step of `dt` (s).
     pub(super) fn look(
         &mut self,
         tools: &[ToolStep],
@@ -251,10 +252,10 @@ impl Links {
         }
     }
 
-    /// Solves for all forces by projected Gauss and Seidel's iteration (Jourdan, Alart and Jean 1998): each contact
-    /// exactly for the forces of the others, in turn. Each tool gets the residual of its contacts, as all cut faces
-    /// together do: the largest change of a displacement in the last sweep, as a share of the largest displacement by a
-    /// contact.
+    /// Solves for all forces by projected Gauss and Seidel's iteration (Jourdan, Alart and Jean 1998): each contact in
+    /// turn is solved exactly for the forces of the others. Each tool gets the residual of its contacts, and so do all
+    /// cut faces together: the largest change of a displacement in the last sweep, as a share of the largest
+    /// displacement due to a contact.
     pub(super) fn solve(&mut self, tools: &mut [ToolStep]) {
         self.lip_residual = 0.0;
         if self.is_empty() {
@@ -304,7 +305,7 @@ impl Links {
 }
 
 impl Link {
-    /// A contact of one node with a tool, at a place (m) in its frame.
+    /// A contact of one node with a tool, at a position (m) in its frame.
     pub(super) fn of_node(
         node: (u32, Compliance),
         (tool, part): (usize, usize),
@@ -347,7 +348,7 @@ impl Link {
     }
 
     /// A contact of a triangle with a tool, made from that of its first node: all nodes with their weights, and the
-    /// share (m) of fixed corners.
+    /// contribution (m) of fixed corners.
     pub(super) fn of_triangle(
         self,
         triangle: u32,
@@ -366,12 +367,12 @@ impl Link {
         link
     }
 
-    /// The share (m) of fixed corners in the point of contact.
+    /// The contribution (m) of fixed corners to the point of contact.
     pub(super) fn still(&self) -> Vector {
         self.still
     }
 
-    /// The nodes that bear it.
+    /// The nodes of the contact.
     pub(super) fn nodes(&self) -> impl Iterator<Item = &LinkedNode> {
         self.nodes.iter().filter(|node| node.weight != 0.0)
     }
@@ -380,12 +381,12 @@ impl Link {
         self.rule == Rule::Held
     }
 
-    /// The place (m) of contact with the tool as it ends.
+    /// The position (m) of contact on the tool at its end pose.
     pub(super) fn place(&self, tool: &ToolStep) -> Vector {
         tool.now.to_world(self.own)
     }
 
-    /// Depth (m) in the tool at which tissue at a point (m) is left.
+    /// Depth (m) in the tool that remains for tissue at a point (m).
     pub(super) fn depth(&self, tool: &ToolStep, at: Vector) -> f64 {
         match self.rule {
             Rule::Outside(normal) => {
@@ -417,7 +418,7 @@ impl Link {
         self.stiffness = response.factor();
     }
 
-    /// The displacement (m) of tissue against tool by all forces.
+    /// The displacement (m) of tissue relative to the tool due to all forces.
     fn displacement(&self, moved: &[Vector], body: Option<&BodyStep>) -> Vector {
         let mut sum = [0.0; 3];
         for node in self.nodes() {
@@ -427,7 +428,7 @@ impl Link {
         sub(sum, pushed.at(self.arm))
     }
 
-    /// Takes the force that the others leave to it; its change (N).
+    /// Updates the force of the contact for the given forces of the others; returns its change (N).
     fn update(&mut self, moved: &[Vector], body: Option<&BodyStep>) -> Vector {
         let all = self.displacement(moved, body);
         let by_others = sub(all, self.response.displacement(self.force));

@@ -1,8 +1,8 @@
-//! Contact between the faces of cuts, which do not pass each other.
+//! Contact between cut faces, which do not pass through each other.
 //!
-//! A cut makes two nodes of one. While their faces still face each other, one may not pass the other along the
-//! mean normal of the faces around them: a unilateral constraint between two nodes, whose response is the sum of
-//! theirs. There is no friction, and both are pushed by opposite forces.
+//! A cut splits a node into two. As long as their faces still face each other, neither may pass the other along the
+//! mean normal of the faces around them: a unilateral constraint between two nodes, whose compliance is the sum of
+//! those of the nodes. There is no friction, and opposite forces push the two nodes.
 
 use super::node::{Compliance, HELD};
 use super::tool::Corner;
@@ -11,7 +11,7 @@ use crate::vector::{Vector, add, cross, dot, length, scaled, sub};
 /// Cosine of the angle between a cut face's normal and the mean of both, below which the two no longer face each other.
 const FACING: f64 = 0.5;
 
-/// The two faces that a cut made of one, which lie on each other at rest.
+/// The two faces that a cut made from one face; they coincide at rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CutFace {
     /// The corners of each: those of the first face counter-clockwise as seen from outside its tissue, those of the
@@ -19,10 +19,10 @@ pub struct CutFace {
     pub corners: [[Corner; 3]; 2],
 }
 
-/// Two nodes that a cut made of one.
+/// Two nodes that a cut made from one.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Pair {
-    /// The one, and the other.
+    /// The first and the second node.
     pub(super) nodes: [Corner; 2],
     /// The faces around them, by index, each with a flag: true if the first node belongs to its first face.
     faces: Vec<(u32, bool)>,
@@ -38,17 +38,17 @@ pub(super) struct Lips {
     pub(super) pairs: Vec<Pair>,
 }
 
-/// A pair that meets in a step.
+/// A pair in contact in a step.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LipLink {
-    /// Its place among the pairs.
+    /// Its index among the pairs.
     pub(super) pair: u32,
     /// Indices of both nodes among the touched cells; `None` for a fixed one.
     pub(super) nodes: [Option<u32>; 2],
     compliances: [Compliance; 2],
-    /// The unit normal, from the one to the other.
+    /// The unit normal, from the first to the second node.
     normal: Vector,
-    /// The distance (m) along the normal that contact leaves them at least.
+    /// The least distance (m) along the normal that contact allows.
     floor: f64,
     /// The contact-free distance (m) along the normal at the end of the step.
     gap: f64,
@@ -59,7 +59,7 @@ pub(super) struct LipLink {
 }
 
 impl Lips {
-    /// The pairs of nodes of cut faces, on touched cells that rest at these places (m).
+    /// The pairs of nodes of cut faces, on touched cells with these positions (m) at rest.
     pub(super) fn of(faces: Vec<CutFace>, rest: impl Fn(u32) -> Vector) -> Self {
         let at = |corner: Corner| corner.at(&rest);
         let mut ends = Vec::new();
@@ -111,7 +111,8 @@ impl Lips {
         self.faces.len()
     }
 
-    /// The normals of both sides of each face, times twice its area (m^2), where corners are at these places (m): out of the tissue behind the first.
+    /// The normals of both sides of each face, times twice its area (m^2), with the corners at these positions (m);
+    /// they point outwards from the tissue of the first side.
     pub(super) fn find_normals(
         &self,
         at: impl Fn(Corner) -> Vector,
@@ -127,7 +128,7 @@ impl Lips {
     }
 
     /// The contact of a pair that closes along the paths (m) of its nodes in spite of contact displacements so far.
-    /// `earlier` is the vector (m) from one to the other at the beginning of the step before.
+    /// `earlier` is the vector (m) from the first to the second node at the beginning of the step before.
     pub(super) fn meet(
         &self,
         pair: u32,
@@ -191,7 +192,8 @@ impl Lips {
 }
 
 impl LipLink {
-    /// Takes the force that the others leave to it, and moves its nodes by the change; by how much (m) it changed their distance.
+    /// Updates the force of the pair for the given forces of the others, and moves its nodes by the change; returns the
+    /// change (m) of their distance.
     pub(super) fn update(&mut self, moved: &mut [Vector]) -> f64 {
         let by = |node: Option<u32>| node.map_or([0.0; 3], |place| moved[place as usize]);
         let pushed = sub(by(self.nodes[1]), by(self.nodes[0]));

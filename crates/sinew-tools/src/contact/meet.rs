@@ -120,7 +120,7 @@ impl Contact for Tools {
     }
 }
 
-/// Displacement (m) of a cell by its velocity in the step that ended in a state.
+/// Displacement (m) of a cell, from its velocity, in the step that ended in a state.
 pub(super) fn way_of(meeting: &Meeting<'_>, state: &State, cell: u32) -> Vector {
     along_axes(&state.v, cell).map(|velocity| meeting.way(velocity))
 }
@@ -147,7 +147,7 @@ struct Step<'a> {
 }
 
 impl Step<'_> {
-    /// The displacement (m) by which a cell is pushed that a step took from one place (m) to another.
+    /// The displacement (m) by which contact pushes a cell that a step moved from one position (m) to another.
     fn meet(
         &self,
         place: usize,

@@ -4,7 +4,7 @@ use super::node::{Compliance, Constraint, MOST};
 use super::tool_step::{ToolStep, Way};
 use crate::vector::{Vector, add, dot, sub};
 
-/// Surfaces that a node met in a step; the buffer is reused for the next node.
+/// Surfaces with which a node came into contact in a step; the buffer is reused for the next node.
 #[derive(Debug)]
 pub(super) struct Met {
     count: usize,
@@ -20,7 +20,7 @@ pub(super) struct Met {
 }
 
 impl Met {
-    /// Nothing yet.
+    /// A buffer without contacts.
     pub(super) fn none() -> Self {
         let nothing = Constraint {
             normal: [0.0; 3],
@@ -39,7 +39,7 @@ impl Met {
         }
     }
 
-    /// Forgets the node before.
+    /// Discards the contacts of the node before.
     pub(super) fn clear(&mut self) {
         (self.count, self.residual) = (0, 0.0);
     }

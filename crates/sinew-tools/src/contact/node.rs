@@ -2,15 +2,14 @@
 
 use crate::vector::{Vector, add, dot, length, scaled, sub};
 
-/// Most constraints at a node that are solved together; more are left to the next step.
+/// Largest number of constraints at a node that are solved together; further ones are treated in the next step.
 pub(super) const MOST: usize = 8;
 
 /// Share of a node's largest response below which it counts as fixed in the direction of a normal: a normal almost
-/// along a fixed axis leaves 1e-3 of itself, and would need a force a million times as large.
-/// have to be answered with a force a million times as large.
+/// along a fixed axis has a component of 1e-3 in the free directions, and would need a force a million times as large.
 pub(super) const HELD: f64 = 1e-6;
 
-/// Most sweeps of an iteration for forces that act on each other.
+/// Largest number of sweeps of an iteration for forces that act on each other.
 pub(super) const MOST_SWEEPS: usize = 500;
 
 /// Change of a displacement in a sweep, as a share of the largest that any force causes, below which an iteration has
@@ -40,12 +39,12 @@ pub(super) struct Constraint {
     pub(super) normal: Vector,
     /// Distance (m) of the contact-free position from the plane through the first contact, negative beyond it.
     pub(super) gap: f64,
-    /// The displacement (m) that takes the node where the tool has carried the place at which it was touched.
+    /// The displacement (m) that moves the node with the point of the tool at which it was touched.
     pub(super) stick: Vector,
     /// Coefficient of Coulomb's friction.
     pub(super) friction: f64,
-    /// Displacement (m) over which friction does work: that of the node relative to the tool in the step, in
-    /// staggered steps together with that in the step before.
+    /// Displacement (m) along which friction does work: that of the node relative to the tool in the step, in staggered
+    /// steps together with that in the step before.
     pub(super) swing: Vector,
 }
 
@@ -81,7 +80,7 @@ impl Compliance {
         Self { block, free }
     }
 
-    /// The sum of this one and a share of another one, as of springs in series.
+    /// The sum of this one and a share of another one, as for springs in series.
     pub(super) fn plus(&self, other: &Self, share: f64) -> Self {
         Self {
             block: [0, 1, 2].map(|axis| add(self.block[axis], scaled(other.block[axis], share))),
@@ -95,7 +94,7 @@ impl Compliance {
         own.into_iter().fold(0.0, f64::max)
     }
 
-    /// The displacement (m) by a force (N).
+    /// The displacement (m) due to a force (N).
     pub(super) fn displacement(&self, force: Vector) -> Vector {
         self.block.map(|row| dot(row, force))
     }
@@ -105,7 +104,7 @@ impl Compliance {
         self.factor().force(displacement)
     }
 
-    /// Its factor, for many forces.
+    /// Its Cholesky factor, for the computation of many forces.
     pub(super) fn factor(&self) -> Stiffness {
         let mut block = self.block;
         for (axis, row) in block.iter_mut().enumerate() {
@@ -119,12 +118,12 @@ impl Compliance {
         }
     }
 
-    /// The force (N) of one constraint: the cone of friction in closed form.
+    /// The force (N) of one constraint: the friction cone in closed form.
     fn of_one(&self, constraint: &Constraint) -> Vector {
         self.of_one_by(|displacement| self.force(displacement), constraint)
     }
 
-    /// The same, with `force` in the place of [`Compliance::force`].
+    /// The same, with `force` instead of [`Compliance::force`].
     pub(super) fn of_one_by(
         &self,
         force: impl Fn(Vector) -> Vector,
@@ -170,8 +169,9 @@ impl Compliance {
         }
     }
 
-    /// The largest friction in a direction across the normal, as a share of the pressure, that does no work on tissue and tool together: in staggered steps forces work at the mean of the velocities
-    /// before and after, and friction against the latter alone would feed a motion that turns about from step to step.
+    /// The largest friction in a direction across the normal, as a share of the pressure, that does no work on tissue
+    /// and tool together: in staggered steps forces work at the mean of the velocities before and after, and friction
+    /// against the latter alone would add energy to a motion that reverses from step to step.
     ///
     /// With the force `lambda (n + s d)` that closes the gap, `d . (swing + C lambda (n + s d))` times `n . C (n + s d)` is `before + s by`.
     fn most_friction(&self, constraint: &Constraint, direction: Vector, swing: Vector) -> f64 {
@@ -195,8 +195,8 @@ impl Compliance {
         response > HELD * self.largest()
     }
 
-    /// Writes the force (N) of each constraint: at one exactly, with friction; at several exactly without it, and with it by an iteration, of which
-    /// the residual is returned.
+    /// Writes the force (N) of each constraint: for one constraint exactly, with friction; for several exactly without
+    /// friction, and with friction by an iteration, whose residual is returned.
     pub(super) fn solve(&self, constraints: &[Constraint], forces: &mut [Vector; MOST]) -> f64 {
         forces.fill([0.0; 3]);
         match constraints {
@@ -218,10 +218,10 @@ impl Compliance {
         }
     }
 
-    /// Finds the forces (N) with friction from those without it by Gauss-Seidel iteration: each constraint exactly
-    /// for the forces of the others. Returns the residual: the change of a displacement in the last sweep as a share
-    /// of the largest by a force. If surfaces wedge a node, no such bounded forces exist: it then gets those without
-    /// friction.
+    /// Finds the forces (N) with friction from those without it by Gauss-Seidel iteration: each constraint exactly for
+    /// the forces of the others. Returns the residual: the change of a displacement in the last sweep as a share of the
+    /// largest displacement due to a force. If a node is wedged between surfaces, no such bounded forces exist: it then
+    /// gets those without friction.
     fn rub(&self, constraints: &[Constraint], forces: &mut [Vector; MOST]) -> f64 {
         let (mut left, without) = (0.0, *forces);
         let stiffness = self.factor();
@@ -247,9 +247,10 @@ impl Compliance {
         left
     }
 
-    /// The linear complementarity problem `0 <= lambda, gap + N C N' lambda >= 0`, of which at most three constraints act in space: sets of one, two
-    /// and three are tried in turn. If no point satisfies all, as between closing jaws, the one with the least
-    /// violation is taken. Returns the remaining violation, as a share of that without forces.
+    /// The linear complementarity problem `0 <= lambda, gap + N C N' lambda >= 0`, in which at most three constraints
+    /// are active in three dimensions: sets of one, two and three are tried in turn. If no point satisfies all, as
+    /// between closing jaws, the one with the least violation is taken. Returns the remaining violation, as a share of
+    /// that without forces.
     fn of_several(&self, constraints: &[Constraint], forces: &mut [Vector; MOST]) -> f64 {
         let count = constraints.len().min(MOST);
         let violation = |displacement: Vector| {
@@ -326,7 +327,7 @@ fn solved(a: [Vector; 3], b: Vector) -> Option<Vector> {
     Some(Factor::of(a)?.solve(b))
 }
 
-/// Forces by displacements: the inverse of a compliance.
+/// Forces from displacements: the inverse of a compliance.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Stiffness {
     /// `None` if it is singular.
@@ -350,14 +351,14 @@ impl Stiffness {
 /// Cholesky's factor of a symmetric positive definite matrix.
 #[derive(Clone, Copy, Debug)]
 enum Factor {
-    /// The diagonal of a matrix that has nothing else.
+    /// The diagonal of a diagonal matrix.
     Diagonal(Vector),
     /// The lower triangle, row by row.
     Lower([f64; 6]),
 }
 
 impl Factor {
-    /// `None` if the matrix is singular.
+    /// The factor of a matrix; `None` if the matrix is singular.
     fn of(a: [Vector; 3]) -> Option<Self> {
         let positive = |pivot: f64, of: f64| (pivot > 1e-13 * of).then(|| pivot.sqrt());
         if [a[1][0], a[2][0], a[2][1]] == [0.0; 3] {
@@ -459,7 +460,7 @@ mod tests {
         assert!(x * left[0] + y * left[1] > 0.0);
     }
 
-    /// A motion that turns about in each step would be fed by friction that uses the velocity after the step alone.
+    /// Friction from the velocity after the step alone would add energy to a motion that reverses in each step.
     #[test]
     fn friction_does_no_work_whatever_the_motion_was_before() {
         let compliance = compliance([true; 3]);

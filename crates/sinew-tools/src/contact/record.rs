@@ -11,12 +11,12 @@ use crate::vector::{Vector, add, scaled};
 /// Numbers of a tool.
 pub(super) const OF_TOOL: usize = 21;
 
-/// Their places: the force (N) and the torque (N m) on it, its work (J), the largest depth (m) at which it had to
-/// leave a node so far, its contacts, the pieces of its path in the step, the impulse (N s) that it has received so
-/// far, the residual of the iteration for its contacts in the last step and the largest so far, the cells it has
-/// grasped so far, the number, from 1 on, of a tool that grasped a cell which it would have grasped, the most passes
-/// that a step would have needed so far if that is more than are made, and the angular impulse (N m s) about its own
-/// origin so far.
+/// Their places: the force (N) and the torque (N m) on it, its work (J), the largest depth (m) at which it had to leave
+/// a node so far, its contacts, the pieces of its path in the step, the impulse (N s) that it has received so far, the
+/// residual of the iteration for its contacts in the last step and the largest so far, the cells it has grasped so far,
+/// the number, from 1 on, of a tool that grasped a cell which it would have grasped, the largest number of passes that
+/// a step would have needed so far if that is more than the limit, and the angular impulse (N m s) about its own origin
+/// so far.
 pub(super) const FORCE: usize = 0;
 pub(super) const TORQUE: usize = 3;
 pub(super) const WORK: usize = 6;
@@ -31,7 +31,7 @@ pub(super) const RIVAL: usize = 16;
 pub(super) const NEEDED_PASSES: usize = 17;
 pub(super) const ANGULAR_IMPULSE: usize = 18;
 
-/// Numbers of a tool that is a body of its own.
+/// Numbers of a tool that is a dynamic body.
 pub(super) const OF_BODY: usize = 21;
 
 /// Numbers of a touched cell.
@@ -47,15 +47,15 @@ pub(super) const OF_HELD: usize = 4;
 pub(super) const OF_LIPS: usize = 3;
 pub(super) const OF_PAIR: usize = 3;
 
-/// Their places: the pairs that pushed each other in the last step, the residual of the iteration then, and the
+/// Their places: the pairs that pushed each other in the last step, the residual of the iteration in that step, and the
 /// largest so far.
 pub(super) const LIP_CONTACTS: usize = 0;
 pub(super) const LIP_RESIDUAL: usize = 1;
 pub(super) const LARGEST_LIP_RESIDUAL: usize = 2;
 
-/// Displacement (m) of a cell over which friction does work, in a step that moves it by `way` (m). `velocity` (m/s)
-/// is the velocity before the step, if it was kept: in staggered steps contact works at the mean of the velocities
-/// before and after, otherwise at the velocity after.
+/// Displacement (m) of a cell along which friction does work, in a step that moves it by `way` (m). `velocity` (m/s) is
+/// the velocity before the step, if it was kept: in staggered steps contact works at the mean of the velocities before
+/// and after, otherwise at the velocity after.
 pub(super) fn swing(
     meeting: &Meeting<'_>,
     velocity: Option<&[f64; OF_VELOCITY]>,
@@ -74,21 +74,21 @@ pub(super) fn swing(
 pub(super) struct Record<'a> {
     /// One row per tool.
     pub(super) tools: &'a mut [[f64; OF_TOOL]],
-    /// One row per tool that is a body of its own.
+    /// One row per tool that is a dynamic body.
     pub(super) bodies: &'a mut [[f64; OF_BODY]],
     /// Force (N) on each cell.
     pub(super) cells: &'a mut [[f64; OF_CELL]],
     /// Velocity (m/s) after the step of each cell that was near a tool, zeros for the others; empty if there is no
     /// friction.
     pub(super) velocities: &'a mut [[f64; OF_VELOCITY]],
-    /// Tool that grasps each cell, from 1 on, or 0, and the place (m) in that tool's frame; empty if no tool can
+    /// Tool that grasps each cell, from 1 on, or 0, and the position (m) in that tool's frame; empty if no tool can
     /// grasp.
     pub(super) held: &'a mut [[f64; OF_HELD]],
     /// One row for all cut faces together; empty without cut faces.
     pub(super) lips: &'a mut [[f64; OF_LIPS]],
     /// Vector (m) between the two nodes of each pair at cut faces, at the beginning of the last step.
     pub(super) pairs: &'a mut [[f64; OF_PAIR]],
-    /// Number of cells that were near a tool in the last step or linked to others, followed by their places. No other
+    /// Number of cells that were near a tool in the last step or linked to others, followed by their indices. No other
     /// cells have forces or velocities.
     listed: &'a mut [f64],
 }
@@ -159,7 +159,7 @@ impl Counts {
 }
 
 impl<'a> Record<'a> {
-    /// The record in these numbers, as many as [`Counts::numbers`] says.
+    /// The record in these numbers, whose count is [`Counts::numbers`].
     pub(super) fn of(numbers: &'a mut [f64], counts: &Counts) -> Self {
         let (numbers, listed) = numbers.split_at_mut(counts.of_pairs().end);
         let (numbers, of_pairs) = numbers.split_at_mut(counts.of_lips().end);
@@ -225,14 +225,14 @@ impl<'a> Record<'a> {
     }
 }
 
-/// The places in a list of them behind their number.
+/// The indices in a list that begins with their number.
 fn places(listed: &[f64]) -> impl Iterator<Item = usize> + '_ {
     let count = listed.first().map_or(0, |count| *count as usize);
     let listed = listed.iter().skip(1).take(count);
     listed.map(|place| *place as usize)
 }
 
-/// History variables of a tool that is a body of its own.
+/// History variables of a tool that is a dynamic body.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Body {
     pub(super) pose: Pose,
@@ -267,7 +267,7 @@ impl Body {
         })
     }
 
-    /// Writes them.
+    /// Encodes the numbers.
     pub(super) fn write(&self, numbers: &mut [f64; OF_BODY]) {
         let vectors = [
             self.pose.position(),

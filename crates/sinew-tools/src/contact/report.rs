@@ -11,35 +11,38 @@ use super::tools::Tools;
 use crate::pose::Pose;
 use crate::vector::dot;
 
-/// A tool after a step.
+/// Results for a tool after a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ToolReport {
-    /// The force on it (N), friction included: the mean over the step, or over the last part of one that is cut into parts.
+    /// The force on it (N), friction included: the mean over the step, or over the last substep if the step has
+    /// substeps.
     pub force: [f64; 3],
-    /// The torque on it (N m) about its origin, both at the end of the step, the time of the state. Each of the
-    /// forces that [`ToolReport::force`] adds up acts at the place of its contact then: for a single node the place
-    /// where the force leaves it, for coupled contacts the touched place of the tool. The moment of the forces on the
-    /// nodes at their places in the state is the opposite, apart from the remaining penetration.
+    /// The torque on it (N m) about its origin, both at the end of the step, the time of the state. Each of the forces
+    /// in [`ToolReport::force`] acts at the position of its contact at that time: for a single node the position of the
+    /// node after the contact, for coupled contacts the touched point of the tool. The moment of the forces on the
+    /// nodes at their positions in the state is the opposite, apart from the remaining penetration.
     pub torque: [f64; 3],
-    /// The impulse (N s) that it has received since the motion began: its growth over any time is the mean force then.
+    /// The impulse (N s) that it has received since the motion began: its growth over any time interval, divided by the
+    /// interval, is the mean force.
     pub impulse: [f64; 3],
-    /// The angular impulse (N m s) that it has received since the motion began, of torques about its own origin wherever that was.
+    /// The angular impulse (N m s) that it has received since the motion began, of torques about the current position
+    /// of its own origin.
     pub angular_impulse: [f64; 3],
     /// The work (J) that it did on the body since the motion began.
     pub work: f64,
-    /// Largest depth (m) at which it had to leave a node since the motion began: a node that is fixed in the direction
-    /// of the contact, or has no space between surfaces.
+    /// Largest depth (m) of a node that remained inside it since the motion began: a node that is fixed in the
+    /// direction of the contact, or has no space between surfaces.
     pub depth: f64,
     /// Contacts in which it pushed: nodes at each of its surfaces, and triangles.
     pub contacts: usize,
-    /// Pieces into which its path was divided because it turns, or so that no triangle is missed.
+    /// Number of pieces into which its path was divided because it turns, or so that no triangle is missed.
     pub passes: u32,
-    /// The most passes that a step since the motion began would have needed so that no triangle is missed, if more
-    /// than are made; else 0.
+    /// The largest number of passes that a step since the motion began would have needed so that no triangle is missed,
+    /// if it exceeds the limit; otherwise 0.
     pub needed_passes: f64,
     /// Residual of the iteration for contacts that act on each other: the largest change of a displacement in the last
-    /// sweep, relative to the largest displacement by a contact.
+    /// sweep, relative to the largest displacement due to a contact.
     pub residual: f64,
     /// The largest such residual since the motion began.
     pub largest_residual: f64,
@@ -47,25 +50,25 @@ pub struct ToolReport {
     pub seized: usize,
     /// A tool that grasped a cell which this one would have grasped; `None` if there was none.
     pub rival: Option<usize>,
-    /// Its own motion if it is a body; `None` before the first step.
+    /// Its own motion if it is a dynamic body; `None` before the first step.
     pub body: Option<BodyReport>,
 }
 
-/// A tool that is a body of its own, after a step.
+/// Results for a tool that is a dynamic body, after a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct BodyReport {
     /// The velocity (m/s) of its origin in the middle of the step.
     pub velocity: [f64; 3],
-    /// Its spin (rad/s) then.
+    /// Its spin (rad/s) in the middle of the step.
     pub spin: [f64; 3],
-    /// Its kinetic energy and that of its coupling (J) then.
+    /// Its kinetic energy and that of its coupling (J) in the middle of the step.
     pub energy: f64,
     /// The work (J) that drives the tool's path, since the motion began: that of the coupling's force along the path.
     pub hand_work: f64,
 }
 
-/// Cut faces after a step.
+/// Results for cut faces after a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct LipsReport {
@@ -83,7 +86,7 @@ pub struct LipsReport {
 pub struct Depth {
     /// The distance (m) to the tool's surface, negative inside.
     pub gap: f64,
-    /// The place of the cell among the touched cells, or of a corner of the triangle that is deepest.
+    /// The index of the cell among the touched cells, or of a corner of the deepest triangle.
     pub place: usize,
 }
 
@@ -97,7 +100,7 @@ impl Tools {
         }
     }
 
-    /// A tool after the last step of a state; at rest before the first.
+    /// Results for a tool after the last step of a state; those of rest before the first step.
     #[must_use]
     pub fn report(&self, state: &State, tool: usize) -> ToolReport {
         let body = self.body(state, tool);
@@ -126,7 +129,7 @@ impl Tools {
         }
     }
 
-    /// Cut faces after the last step of a state; zeros without any.
+    /// Results for cut faces after the last step of a state; zeros if there are none.
     #[must_use]
     pub fn lips_report(&self, state: &State) -> LipsReport {
         let numbers = state.contact.get(self.counts.of_lips());
@@ -140,7 +143,7 @@ impl Tools {
         }
     }
 
-    /// The motion of a tool that is a body of its own: after the last step, or as it begins; `None` for others.
+    /// The motion of a tool that is a dynamic body: after the last step, or at the beginning; `None` for other tools.
     #[must_use]
     pub fn body_report(&self, state: &State, inputs: &Inputs, tool: usize) -> Option<BodyReport> {
         let Tool { body, motion, .. } = &self.tools[tool];
@@ -161,7 +164,7 @@ impl Tools {
         })
     }
 
-    /// History variables of a tool that is a body of its own; `None` before its first step.
+    /// History variables of a tool that is a dynamic body; `None` before its first step.
     fn body(&self, state: &State, tool: usize) -> Option<Body> {
         let numbers = state.contact.get(self.counts.of_bodies())?;
         let numbers = numbers.as_chunks::<OF_BODY>().0;
@@ -178,7 +181,7 @@ impl Tools {
     }
 
     /// The cell, or triangle, that is nearest to a tool in a pose, or deepest in it, with the displacement `u` (m);
-    /// `None` if the tool may touch none.
+    /// `None` if the tool cannot touch any.
     #[must_use]
     pub fn deepest(&self, u: &[f64], pose: &Pose, tool: usize) -> Option<Depth> {
         let Self { tools, cells, .. } = self;

@@ -11,10 +11,10 @@ use super::tool_step::ToolStep;
 use crate::swept_box::around;
 use crate::vector::Vector;
 
-/// The longest path of a tool that meets triangles in a pass, in its smallest half widths.
+/// The longest path in a pass of a tool with contact to triangles, in its smallest half widths.
 const LONGEST_WAY: f64 = 0.5;
 
-/// Most passes of a step.
+/// Largest number of passes of a step.
 const MOST_PASSES: u32 = 100;
 
 /// Scratch space of a contact step: the tools' own steps, the cells that may meet them, and the contacts found.
@@ -23,9 +23,9 @@ pub(super) struct Room {
     pub(super) steps: Vec<ToolStep>,
     /// A box (m) outside of which no path meets any tool; `None` if a tool has no bounds.
     bounds: Option<[Vector; 2]>,
-    /// Places of the cells that may meet a tool in the step.
+    /// Indices of the cells that may meet a tool in the step.
     pub(super) near: Vec<u32>,
-    /// Indices of the cells that are shown, if these are not all.
+    /// Indices of the cells that are shown, if not all are.
     shown: Vec<u32>,
     are_all_shown: bool,
     /// True if cells far from all tools count, since tools grasp or release some.
@@ -40,7 +40,7 @@ pub(super) struct Room {
 
 impl Room {
     /// Scratch space for these tools and cells; `linked` are the numbers of cells and triangles that may take part in
-    /// coupled contacts, cut faces among them.
+    /// coupled contacts, including cut faces.
     pub(super) fn of(
         tools: &[Tool],
         linked: [usize; 2],
@@ -96,7 +96,7 @@ impl Room {
         self.bound();
     }
 
-    /// Follows the bodies to where contact has pushed them.
+    /// Updates the poses of the bodies to those after contact.
     pub(super) fn follow(&mut self, tools: &[Tool]) {
         for (tool, step) in tools.iter().zip(&mut self.steps) {
             step.follow(tool, self.share);
@@ -105,8 +105,7 @@ impl Room {
     }
 
     /// The passes in which a step is taken if tools meet triangles: in each of them such a tool moves by a quarter of
-    /// its smallest width at most. What needs more than are
-    /// made is noted.
+    /// its smallest width at most. A step that needs more passes than the limit is recorded.
     pub(super) fn passes_between_nodes(
         &self,
         tools: &[Tool],
@@ -160,7 +159,7 @@ impl Room {
     }
 
     /// Lists the cells that may meet a tool; all of them if a tool is unbounded or grasps some. This runs for every
-    /// cell that is shown in every step, so it does little.
+    /// cell that is shown in every step, so it must be cheap.
     pub(super) fn look(&mut self, cells: &[TouchedCell], state: &State, meeting: &Meeting<'_>) {
         self.near.clear();
         if self.steps.is_empty() {

@@ -14,23 +14,23 @@ pub struct Tool {
     pub name: String,
     /// Its shape.
     pub shape: Shape,
-    /// Prescribed motion, or the path to which the coupling draws the tool.
+    /// Prescribed motion, or the path to which the coupling pulls the tool.
     pub motion: Motion,
-    /// Mass and coupling of a tool that is a body of its own; `None` for a tool that follows its motion exactly.
+    /// Mass and coupling of a tool that is a dynamic body; `None` for a tool that follows its motion exactly.
     pub body: Option<ToolBody>,
     /// Coefficient of Coulomb's friction.
     pub friction: f64,
-    /// The cells that it may touch, by their places among the touched cells of [`crate::Tools`], increasing.
+    /// The cells that it may touch, by their indices among the touched cells of [`crate::Tools`], increasing.
     pub cells: Vec<u32>,
     /// Indices, among those of [`crate::Tools`], of the triangles that it may touch in addition to nodes: for a tool
     /// smaller than the triangles.
     pub triangles: Vec<u32>,
-    /// Time during which it grasps the tissue it touches; `None` if it never does.
+    /// Time during which it grasps the tissue that it touches; `None` if it never grasps.
     pub grasp: Option<Grasp>,
 }
 
 impl Tool {
-    /// True if it grasps the tissue it touches in a step that ends at `t` (s), under inputs from outside.
+    /// True if it grasps the tissue that it touches in a step that ends at `t` (s), under inputs from outside.
     pub(super) fn holds(&self, t: f64, inputs: &Inputs) -> bool {
         let own = self
             .grasp
@@ -47,8 +47,8 @@ impl Tool {
     }
 }
 
-/// An interval of time in which a tool grasps the tissue it touches: a cell that it pushes then moves with it until
-/// the end.
+/// An interval of time in which a tool grasps the tissue that it touches: a cell that it pushes in this interval moves
+/// with it until the end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grasp {
     /// Its beginning (s).
@@ -81,7 +81,7 @@ pub(super) fn along_axes(values: &[f64], cell: u32) -> [f64; 3] {
     [values[first], values[first + 1], values[first + 2]]
 }
 
-/// A triangle of the surface of a body by its corners, counter-clockwise as seen from outside.
+/// A triangle of the surface of a body, given by its corners, counter-clockwise as seen from outside.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TouchedTriangle {
     /// The corners.
@@ -91,14 +91,14 @@ pub struct TouchedTriangle {
 /// A corner of a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Corner {
-    /// A touched cell, by its place among them.
+    /// A touched cell, by its index among them.
     Cell(u32),
-    /// A fixed place (m).
+    /// A fixed position (m).
     Held([f64; 3]),
 }
 
 impl Corner {
-    /// Current position (m); `cell` gives that of the cell at a place.
+    /// Current position (m); `cell` gives that of the cell with an index.
     pub(super) fn at(self, cell: impl Fn(u32) -> [f64; 3]) -> [f64; 3] {
         match self {
             Self::Cell(place) => cell(place),
@@ -116,7 +116,7 @@ impl Corner {
 }
 
 impl ToolsError {
-    /// The name of the tool at fault; `None` if it is none alone.
+    /// The name of the tool at fault; `None` if it is not a single tool.
     #[must_use]
     pub fn tool(&self) -> Option<&str> {
         match self {
@@ -135,7 +135,7 @@ impl ToolsError {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ToolsError {
-    /// More tools than one body can meet.
+    /// More tools than one body can have.
     #[error("{count} tools: expected at most {most}")]
     TooMany {
         /// Their number.
@@ -143,7 +143,7 @@ pub enum ToolsError {
         /// The largest number.
         most: usize,
     },
-    /// Two tools of one name.
+    /// Two tools with the same name.
     #[error("two tools are named \"{name}\": give each a different name")]
     SameName {
         /// The name.
@@ -167,7 +167,7 @@ pub enum ToolsError {
         /// The end (s).
         to: f64,
     },
-    /// A body that there cannot be.
+    /// A dynamic body that is not physical.
     #[error("\"{name}\": {source}")]
     Body {
         /// The tool.
@@ -175,7 +175,7 @@ pub enum ToolsError {
         /// Reason why its body is refused.
         source: ToolBodyError,
     },
-    /// A place beyond the triangles.
+    /// An index beyond the triangles.
     #[error(
         "\"{name}\" may touch triangle {place} of {triangles}: expected a place below their number, and corners below that of cells"
     )]
@@ -195,7 +195,7 @@ pub enum ToolsError {
         /// Number of touched cells.
         cells: usize,
     },
-    /// A place beyond the touched cells.
+    /// An index beyond the touched cells.
     #[error("\"{name}\" may touch cell {place} of {cells}: expected a place below their number")]
     NoCell {
         /// The tool.

@@ -1,7 +1,7 @@
-//! Tools that are bodies of their own.
+//! Tools that are dynamic bodies.
 
-/// A tool as a rigid body of six degrees of freedom, coupled to its path by a spring and a damper: a virtual
-/// coupling. It is without gravity.
+/// A tool as a rigid body of six degrees of freedom, coupled to its path by a spring and a damper: a virtual coupling.
+/// Gravity does not act on it.
 ///
 /// Its own origin is its centre of mass, and its own axes are those of its inertia. It begins on its path, with the velocity of the path.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -12,7 +12,8 @@ pub struct ToolBody {
     pub inertia: [f64; 3],
     /// Stiffness (N/m) of the spring between its origin and the path; 0 leaves it free.
     pub coupling: f64,
-    /// Stiffness (N m/rad) of the spring between its rotation and that of the path, which knows angles below pi alone; 0 lets it turn.
+    /// Stiffness (N m/rad) of the spring between its rotation and that of the path, which is defined for angles below
+    /// pi only; 0 leaves it free to turn.
     pub rotational_coupling: f64,
     /// Damping of the coupling as a share of critical damping of the body alone.
     pub damping: f64,
@@ -28,12 +29,12 @@ pub enum ToolBodyError {
     /// A moment of inertia that is not positive and finite.
     #[error("inertia = {0:?} kg m^2: expected three finite moments above 0")]
     Inertia([f64; 3]),
-    /// Moments of inertia that no distribution of mass has.
+    /// Moments of inertia that are not possible for any distribution of mass.
     #[error(
         "inertia = {0:?} kg m^2: expected no moment to be larger than the sum of the other two, as it is for every body"
     )]
     NoBody([f64; 3]),
-    /// A stiffness or a damping that is none.
+    /// A stiffness or a damping that is negative or not finite.
     #[error("{key} = {value}: expected a finite number, 0 or above")]
     Coupling {
         /// Its name.

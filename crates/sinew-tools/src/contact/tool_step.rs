@@ -8,12 +8,12 @@ use crate::shape::{Touch, Triangle, TriangleTouch};
 use crate::stroke::Stroke;
 use crate::vector::{Vector, add, between, dot, length, scaled, sub};
 
-/// The path (m) of a cell in a step, straight from one place to another.
+/// The path (m) of a cell in a step, a straight line from one position to another.
 pub(super) type Way = (Vector, Vector);
 
 /// Largest depth of a node in a part, at the beginning of a step, from which it is pushed out, as a share of the part's
-/// half width or of the tissue's size. Contact leaves no node so deep if there is space between the surfaces, even in
-/// single precision.
+/// half width or of the tissue's size. Contact leaves no node at such a depth if there is space between the surfaces,
+/// even in single precision.
 const LEFT: f64 = 1e-4;
 
 /// The surface that a node meets, in the frame of a part of a tool.
@@ -22,7 +22,7 @@ pub(super) struct Surface {
     /// A point of it (m), and its normal there.
     pub(super) point: Vector,
     pub(super) normal: Vector,
-    /// Depth (m) of it in the part: above 0 if tissue that began the step there is left there.
+    /// Depth (m) of the surface in the part: above 0 if tissue that began the step at this depth stays there.
     pub(super) below: f64,
 }
 
@@ -38,10 +38,10 @@ pub(super) struct ToolStep {
     earlier: Option<(Pose, f64)>,
     /// Steps over which contact works: 2 if velocities are staggered, else 1.
     steps_at_work: f64,
-    /// The step of a tool that is a body of its own.
+    /// The step of a tool that is a dynamic body.
     pub(super) body: Option<BodyStep>,
     pub(super) friction: f64,
-    /// True if the tool grasps the tissue it touches.
+    /// True if the tool grasps the tissue that it touches.
     pub(super) holds: bool,
     /// True if the motion begins with this step.
     is_first: bool,
@@ -106,7 +106,7 @@ pub(super) fn is_near(steps: &[ToolStep], tools: u64, way: Way) -> bool {
 }
 
 impl ToolStep {
-    /// A step that is not begun yet, for tissue of a size (m).
+    /// A step that has not begun yet, for tissue of a size (m).
     pub(super) fn of(tool: &Tool, tissue: f64) -> Self {
         Self {
             before: Pose::identity(),
@@ -151,7 +151,7 @@ impl ToolStep {
         self.stroke(tool);
     }
 
-    /// Follows a body to where contact has pushed it, in a pass that ends at a share of the step.
+    /// Updates the pose of a body to that after contact, in a pass that ends at a share of the step.
     pub(super) fn follow(&mut self, tool: &Tool, share: f64) {
         if let Some(body) = &self.body {
             self.after = body.after();
@@ -230,10 +230,10 @@ impl ToolStep {
         })
     }
 
-    /// The constraint plane, by a point on a part's surface and its normal, for tissue at a place (m) at a share of
-    /// the pass; if the tissue was deeper in the part than `most` (m), a parallel plane at that depth. Tissue that a
-    /// cut exposes within a tool, or that an iteration left there, gets no deeper: to push it out within one step
-    /// would add energy, the more the shorter the step. Only initial overlaps are pushed out.
+    /// The constraint plane, given by a point on a part's surface and its normal, for tissue at a position (m) at a
+    /// share of the pass; if the tissue was deeper in the part than `most` (m), a parallel plane at that depth. Tissue
+    /// that a cut exposes within a tool, or that an iteration left there, gets no deeper: pushing it out within one
+    /// step would add energy, more for shorter steps. Only initial overlaps are pushed out.
     fn reached(
         &self,
         stroke: &Stroke,
@@ -254,7 +254,7 @@ impl ToolStep {
         }
     }
 
-    /// The most pieces into which paths are divided for one of its parts.
+    /// The largest number of pieces into which paths are divided for one of its parts.
     pub(super) fn pieces(&self) -> f64 {
         let pieces = self.strokes.iter().map(|(stroke, _)| stroke.pieces());
         f64::from(pieces.max().unwrap_or(1))
@@ -295,8 +295,8 @@ impl ToolStep {
     }
 
     /// The same contact, with its depth (m): the depth in the part of the triangle, with its corners at the contact's
-    /// share of the pass and a path (m) in it, if that is more than the iteration leaves to any triangle that moves
-    /// that far in a pass; see [`Self::reached`].
+    /// share of the pass and a path (m) in it, if that is more than the depth at which the iteration may leave a
+    /// triangle that moves that far in a pass; see [`Self::reached`].
     fn reached_by_triangle(
         &self,
         stroke: &Stroke,
@@ -326,7 +326,7 @@ impl ToolStep {
         self.near_strokes((low, high))
     }
 
-    /// The velocity (m/s) of the tool at a place (m) after the step, for the work of contact: in staggered steps the
+    /// The velocity (m/s) of the tool at a position (m) after the step, for the work of contact: in staggered steps the
     /// mean of this step's and the last one's, which conserves the energy of the step.
     pub(super) fn velocity(&self, place: Vector, dt: f64) -> Vector {
         if let Some(body) = &self.body {
@@ -344,8 +344,9 @@ impl ToolStep {
         }
     }
 
-    /// Displacement (m) of the tool over which friction does work, in a step of `dt` (s), at a place (m) after the
-    /// step and without the push of contact on a body. In staggered steps the displacement in the step before is added.
+    /// Displacement (m) of the tool along which friction does work, in a step of `dt` (s), at a position (m) after the
+    /// step and without the displacement of a dynamic body due to contact. In staggered steps the displacement in the
+    /// step before is added.
     pub(super) fn swing(&self, place: Vector, dt: f64) -> Vector {
         match &self.body {
             Some(body) => body.swing(sub(place, self.now.position())),
@@ -387,8 +388,8 @@ mod tests {
         step
     }
 
-    /// Distances (m) from the centre of a ball of 10 mm at which it leaves a node, and the middle of a triangle, that a
-    /// step takes from one height above the centre to another.
+    /// Distances (m) from the centre of a ball of 10 mm at which it leaves a node, and the centroid of a triangle,
+    /// which a step moves from one height above the centre to another.
     fn left_at(is_first: bool, from: f64, to: f64) -> [Option<f64>; 2] {
         let step = step(Convex::Sphere { radius: 0.01 }, is_first);
         let node = step.touches(([0.0, 0.0, from], [0.0, 0.0, to])).next();

@@ -10,7 +10,7 @@ use super::tool_body::ToolBody;
 use crate::motion::Motion;
 use crate::steering::Steering;
 
-/// Most tools of a body.
+/// Largest number of tools of a body.
 pub(super) const MOST_TOOLS: usize = 64;
 
 /// Rigid tools that touch the surface of a body.
@@ -19,7 +19,7 @@ pub struct Tools {
     pub(super) tools: Vec<Tool>,
     pub(super) cells: Vec<TouchedCell>,
     pub(super) triangles: Vec<TouchedTriangle>,
-    /// The numbers of `cells`, and their places (m) at rest.
+    /// The numbers of `cells`, and their positions (m) at rest.
     pub(super) numbers: Vec<u32>,
     pub(super) rest: Vec<[f64; 3]>,
     /// The tools that may touch each cell, one bit each.
@@ -39,7 +39,7 @@ impl Tools {
     /// Tools, and the cells that any of them may touch.
     ///
     /// # Errors
-    /// [`ToolsError`] for what does not fit together.
+    /// [`ToolsError`] for tools, cells or triangles that do not fit together.
     pub fn new(tools: Vec<Tool>, cells: Vec<TouchedCell>) -> Result<Self, ToolsError> {
         Self::with_triangles(tools, cells, Vec::new())
     }
@@ -47,7 +47,7 @@ impl Tools {
     /// Tools, the cells that any of them may touch, and triangles between these.
     ///
     /// # Errors
-    /// [`ToolsError`] for what does not fit together.
+    /// [`ToolsError`] for tools, cells or triangles that do not fit together.
     pub fn with_triangles(
         tools: Vec<Tool>,
         cells: Vec<TouchedCell>,
@@ -130,7 +130,7 @@ impl Tools {
         Self::sound(tools, surface, tools_at, lips)
     }
 
-    /// Tools that were found to fit together.
+    /// Tools that were checked to fit together.
     fn sound(
         tools: Vec<Tool>,
         (cells, triangles): (Vec<TouchedCell>, Vec<TouchedTriangle>),
@@ -179,7 +179,8 @@ impl Tools {
         }
     }
 
-    /// These tools on a body with cut faces, which do not pass each other. Corners are places among the touched cells.
+    /// These tools on a body with cut faces, which do not pass through each other. Corners are indices among the
+    /// touched cells.
     ///
     /// # Errors
     /// [`ToolsError::NoLip`] for a corner beyond these.
@@ -201,7 +202,7 @@ impl Tools {
         Ok(Self::sound(self.tools, surface, self.tools_at, lips))
     }
 
-    /// Number of pairs of nodes that cuts made of one and that may not pass each other.
+    /// Number of pairs of nodes that cuts made from one node and that may not pass each other.
     #[must_use]
     pub fn lip_pairs(&self) -> usize {
         self.lips.pairs.len()
@@ -225,7 +226,7 @@ impl Tools {
         self.linking >> tool & 1 == 1
     }
 
-    /// Indices of the touched cells that tools grasp after a step, by the contact variables
+    /// Indices of the touched cells that tools grasp after a step, from the contact variables
     /// ([`sinew_core::State::contact`]).
     pub fn held<'s>(&'s self, contact: &'s [f64]) -> impl Iterator<Item = usize> + 's {
         let numbers = contact.get(self.counts.of_held());
@@ -234,7 +235,7 @@ impl Tools {
         rows.filter_map(|(place, held)| (held[0] != 0.0).then_some(place))
     }
 
-    /// Place of a tool among those that are bodies of their own.
+    /// Index of a tool among those that are dynamic bodies.
     pub(super) fn body_of(&self, tool: usize) -> Option<usize> {
         let is_body = |tool: &&Tool| tool.body.is_some();
         self.tools[tool].body?;

@@ -1,4 +1,4 @@
-//! Motions of rigid bodies, along and about.
+//! Motions of rigid bodies: translation and rotation.
 
 use crate::pose::Pose;
 use crate::vector::{Vector, add, cross, dot, scaled, sub};

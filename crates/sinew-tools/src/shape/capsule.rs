@@ -4,7 +4,7 @@ use super::sphere;
 use super::touch::{Nearest, Touch};
 use crate::vector::{add, length, length_and_direction, scaled, sub};
 
-/// Rounding of a place, as a share of the radius.
+/// Rounding error of a position, as a share of the radius.
 const ROUNDING: f64 = 1e-12;
 
 pub(super) fn nearest(point: [f64; 3], radius: f64, half_length: f64) -> Nearest {
@@ -16,7 +16,7 @@ pub(super) fn nearest(point: [f64; 3], radius: f64, half_length: f64) -> Nearest
     }
 }
 
-/// Contact at which a point outside enters.
+/// Contact at which a point from outside enters.
 pub(super) fn first_contact(
     from: [f64; 3],
     motion: [f64; 3],
@@ -56,7 +56,7 @@ pub(super) fn first_contact(
     })
 }
 
-/// The contact of a point that comes into the cylinder past its round end without entering that.
+/// The contact of a point that enters the cylinder past its round end without entering the end.
 ///
 /// Such a point exists only by rounding, if the line is nearly a tangent of the end.
 fn through_the_seam(

@@ -1,4 +1,4 @@
-//! Convex shapes: how far points are from them and where moving points enter them.
+//! Convex shapes: distances of points from them, and first contacts of moving points.
 
 use super::error::ShapeError;
 use super::touch::{Nearest, Touch};
@@ -7,7 +7,7 @@ use crate::vector::{cross, dot, length, scaled, sub};
 
 /// A convex shape in its own frame. Lengths are in metres, points finite.
 ///
-/// The constructors check their arguments; variants can be read, but not made without them:
+/// The constructors check their arguments; variants can be read, but only made by the constructors:
 ///
 /// ```
 /// use sinew_tools::Convex;
@@ -45,7 +45,7 @@ pub enum Convex {
 
 /// Distance up to which a point counts as on the surface, as a share of the shape's size.
 ///
-/// That is far above the rounding of a point that a contact has put there, and far below anything visible.
+/// It is far above the rounding of a point that a contact has moved there, and far below any visible length.
 const ON_SURFACE: f64 = 1e-12;
 
 impl Convex {
@@ -119,9 +119,9 @@ impl Convex {
 
     /// The first contact of a point that moves straight from `from` to `to` (m).
     ///
-    /// A point that begins inside is in contact immediately, with the nearest point of the surface. One that begins
-    /// outside, or on the surface, is in contact when it enters, if it does: not if it only touches, slides or moves
-    /// away. At an edge or corner of a cuboid the normal is that of a face which the motion opposes.
+    /// A point that begins inside is in contact immediately, with the nearest point of the surface. A point that begins
+    /// outside, or on the surface, is in contact when it enters. It is not in contact if it only touches, slides or
+    /// moves away. At an edge or corner of a cuboid the normal is that of a face which the motion opposes.
     #[must_use]
     pub fn first_contact(&self, from: [f64; 3], to: [f64; 3]) -> Option<Touch> {
         let nearest = self.nearest(from);
@@ -177,11 +177,11 @@ impl Convex {
         }
     }
 
-    /// Half the smallest width (m) of the shape's projection along a direction in its own frame: nodes that are
-    /// nearer to each other do not let it pass between them that way. Infinite for a plane.
+    /// Half the smallest width (m) of the shape's projection along a direction in its own frame: it cannot pass in that
+    /// direction between nodes that are nearer to each other. Infinite for a plane.
     ///
-    /// The width of a cuboid with half edges a_i along e, across d, is `sum a_i |e_i|`; between its kinks that is a
-    /// sine above 0: so the least is at a kink, with e across d and an edge.
+    /// The width of a cuboid with half edges a_i along e, across d, is `sum a_i |e_i|`; between its kinks this is a
+    /// positive sine, so the minimum is at a kink, with e perpendicular to d and to an edge.
     #[must_use]
     pub fn half_width_across(&self, direction: [f64; 3]) -> f64 {
         let Self::Cuboid { size } = *self else {

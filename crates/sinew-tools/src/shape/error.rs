@@ -21,7 +21,7 @@ pub enum ShapeError {
         /// The length (m).
         length: f64,
     },
-    /// A union of nothing.
+    /// A union without parts.
     #[error("the shape has no part: expected at least one")]
     NoPart,
 }

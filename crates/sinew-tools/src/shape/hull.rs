@@ -1,4 +1,4 @@
-//! Shapes as all that lies within a radius of a point, a rod or a box, and how far triangles are from them.
+//! Shapes as the set of points within a radius of a point, a rod or a box, and their distances from triangles.
 
 use super::convex::Convex;
 use crate::triangle::nearest_of_triangle;
@@ -10,7 +10,7 @@ pub(crate) type Triangle = [Vector; 3];
 /// Share of half the smallest edge of a cuboid by which its edges are rounded for triangles.
 const ROUNDED: f64 = 0.05;
 
-/// The corners of a cuboid with their signs along x, y and z as bits, and its edges.
+/// The edges of a cuboid, given by its corners; the bits of a corner are its signs along x, y and z.
 const EDGES_OF_CUBOID: [[usize; 2]; 12] = [
     [0, 1],
     [2, 3],
@@ -26,7 +26,7 @@ const EDGES_OF_CUBOID: [[usize; 2]; 12] = [
     [3, 7],
 ];
 
-/// All that lies within a radius of a point, a rod along z or a box along the axes, about the origin.
+/// The set of points within a radius of a point, a rod along z or a box along the axes, about the origin.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Hull {
     /// Half the sizes (m) of the core.
@@ -254,7 +254,7 @@ fn crossing(triangle: &Triangle, [from, to]: [Vector; 2]) -> Option<Vector> {
 mod tests {
     use super::*;
 
-    /// A number from 0 to 1 by a simple generator.
+    /// A number from 0 to 1 from a simple generator.
     fn random(seed: &mut u64) -> f64 {
         *seed = seed
             .wrapping_mul(6364136223846793005)

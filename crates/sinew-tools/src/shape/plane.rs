@@ -12,7 +12,7 @@ pub(super) fn nearest([x, y, z]: [f64; 3]) -> Nearest {
     }
 }
 
-/// Contact at which a point above or on the plane enters.
+/// Contact at which a point from above or on the plane enters.
 pub(super) fn first_contact(from: [f64; 3], motion: [f64; 3]) -> Option<Touch> {
     if motion[2] >= 0.0 {
         return None;

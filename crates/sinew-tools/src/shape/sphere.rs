@@ -1,9 +1,9 @@
-//! Spheres about the origin, of which capsules are made too.
+//! Spheres about the origin, used for capsules too.
 
 use super::touch::{Nearest, Touch};
 use crate::vector::{add, dot, length, length_and_direction, scaled, sub};
 
-/// The nearest point of the surface; that of the centre lies along `otherwise`, a unit vector.
+/// The nearest point of the surface; for the centre it is the one along `otherwise`, a unit vector.
 pub(super) fn nearest(point: [f64; 3], radius: f64, otherwise: [f64; 3]) -> Nearest {
     let (from_centre, normal) = length_and_direction(point, otherwise);
     Nearest {
@@ -13,7 +13,7 @@ pub(super) fn nearest(point: [f64; 3], radius: f64, otherwise: [f64; 3]) -> Near
     }
 }
 
-/// Contact at which a point outside enters.
+/// Contact at which a point from outside enters.
 pub(super) fn first_contact(from: [f64; 3], motion: [f64; 3], radius: f64) -> Option<Touch> {
     let share = entry(from, motion, radius)?;
     let (_, normal) = length_and_direction(add(from, scaled(motion, share)), [0.0, 0.0, 1.0]);
@@ -26,8 +26,8 @@ pub(super) fn first_contact(from: [f64; 3], motion: [f64; 3], radius: f64) -> Op
 
 /// The share, of any size, of a motion at which a point outside enters a sphere, or in a plane a circle.
 ///
-/// Of the two roots of `a s^2 + 2 b s + c = 0` the smaller one, as `c / (-b + sqrt(b^2 - a c))`, where nothing cancels; the
-/// discriminant comes from the distance in which the line passes the centre.
+/// Of the two roots of `a s^2 + 2 b s + c = 0` the smaller one, as `c / (-b + sqrt(b^2 - a c))`, which is free of
+/// cancellation; the discriminant is computed from the distance of the line from the centre.
 pub(super) fn entry(from: [f64; 3], motion: [f64; 3], radius: f64) -> Option<f64> {
     let b = dot(from, motion);
     if b >= 0.0 {

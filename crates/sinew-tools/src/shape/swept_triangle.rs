@@ -6,14 +6,14 @@ use crate::vector::{Vector, add, between, dot, scaled, sub};
 /// Gap, as a share of a hull's radius, below which a triangle touches it.
 const TOUCHES: f64 = 1e-9;
 
-/// Depth, as a share of a hull's radius, from which on a triangle that was in contact elsewhere gets another contact.
+/// Least depth, as a share of a hull's radius, at which a triangle that is in contact elsewhere gets another contact.
 /// Contacts much closer together would be nearly the same, with indeterminate forces.
 const OVERLAPS: f64 = 0.1;
 
-/// Depth, as a share of a hull's radius, up to which a triangle is pushed out however little it moves.
+/// Depth, as a share of a hull's radius, up to which a triangle is pushed out for any size of its motion.
 const LEFT: f64 = 1e-3;
 
-/// Most advances towards a first contact; a triangle that is still approaching then counts as touching.
+/// Largest number of advances towards a first contact; a triangle that is still approaching then counts as touching.
 const MOST_ADVANCES: usize = 200;
 
 /// The contact of a triangle with a shape.
@@ -30,11 +30,11 @@ pub(crate) struct TriangleTouch {
 }
 
 impl Hull {
-    /// The first contact with a triangle whose corners move straight from one place to another (m), from its outer
-    /// side.
+    /// The first contact with a triangle whose corners move along straight lines from one position to another (m), from
+    /// its outer side.
     ///
-    /// By conservative advancement: as the nearest points show a plane between triangle and core, none of the corners can be in contact before that which approaches
-    /// the plane fastest has come as near as the radius.
+    /// Method: conservative advancement. The nearest points define a plane between triangle and core. No corner can be
+    /// in contact before the corner that approaches the plane fastest is as near as the radius.
     pub(crate) fn first_contact(&self, from: &Triangle, to: &Triangle) -> Option<TriangleTouch> {
         let motion = [0, 1, 2].map(|corner| sub(to[corner], from[corner]));
         let mut share = 0.0;
@@ -62,15 +62,15 @@ impl Hull {
         None
     }
 
-    /// The contact with a triangle that is deep in the shape (m), its radius included; the next step finds less deep
-    /// ones.
+    /// The contact with a triangle that is deep in the shape (m), its radius included; contacts that are less deep are
+    /// found by the next step.
     pub(crate) fn overlap(&self, triangle: &Triangle) -> Option<TriangleTouch> {
         let (gap, touch) = self.look(triangle)?;
         (gap < -OVERLAPS * self.radius).then_some(touch)
     }
 
-    /// The depth (m) beyond which a triangle cannot have been left in contact by the step before, if both steps move
-    /// it `way` (m) against the shape: twice the depth of another contact, and no deeper than it can have come.
+    /// The depth (m) beyond which a triangle cannot have been left in contact by the step before, if both steps move it
+    /// `way` (m) against the shape: twice the depth of another contact, but no deeper than it can have moved.
     pub(crate) fn left(&self, way: f64) -> f64 {
         (2.0 * OVERLAPS * self.radius).min(way + LEFT * self.radius)
     }
@@ -104,7 +104,7 @@ mod tests {
     use crate::shape::Convex;
     use crate::vector::length;
 
-    /// A number from -1 to 1 by a simple generator.
+    /// A number from -1 to 1 from a simple generator.
     fn random(seed: &mut u64) -> f64 {
         *seed = seed
             .wrapping_mul(6_364_136_223_846_793_005)
@@ -116,7 +116,8 @@ mod tests {
         [0; 3].map(|_: i32| random(seed))
     }
 
-    /// A ball meets a large triangle that comes down on it after the share that its height says, at its top.
+    /// A large triangle that comes down on a ball has contact at the ball's top, after the share of the motion that
+    /// follows from its height.
     #[test]
     fn a_triangle_that_comes_down_on_a_ball_meets_its_top() {
         let ball = Hull::of(&Convex::sphere(0.01).unwrap()).unwrap();
@@ -132,7 +133,8 @@ mod tests {
         assert_eq!(ball.first_contact(&at(-0.05), &at(0.15)), None);
     }
 
-    /// Up to the first contact the triangle is outside, there it touches, and without one it is outside throughout.
+    /// The triangle is outside before the first contact, touches at the contact, and is outside at all times if there
+    /// is none.
     #[test]
     fn nothing_is_met_too_late_or_too_early() {
         let shapes = [

@@ -6,7 +6,7 @@ use super::hull::Hull;
 use crate::pose::Pose;
 use crate::vector::length;
 
-/// A convex shape with its place in a tool.
+/// A convex shape with its pose in a tool.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Part {
     /// The shape.
@@ -43,7 +43,7 @@ impl Shape {
         Ok(Self { parts })
     }
 
-    /// The distance (m) of a place in the world to the surface, negative inside, where the tool has this pose.
+    /// The distance (m) of a position in the world from the surface, negative inside, with the tool in this pose.
     #[must_use]
     pub fn distance(&self, pose: &Pose, place: [f64; 3]) -> f64 {
         let distances = self.parts.iter().map(|part| {
@@ -53,8 +53,8 @@ impl Shape {
         distances.fold(f64::INFINITY, f64::min)
     }
 
-    /// The distance (m) of a triangle of places in the world, whose corners are counter-clockwise as seen from its outer side, to the surface, negative
-    /// inside; infinite for planes and for parts behind the triangle.
+    /// The distance (m) of a triangle in the world, with corners counter-clockwise as seen from its outer side, from
+    /// the surface, negative inside; infinite for planes and for parts behind the triangle.
     #[must_use]
     pub(crate) fn distance_of_triangle(&self, pose: &Pose, corners: &[[f64; 3]; 3]) -> f64 {
         let distances = self.parts.iter().filter_map(|part| {

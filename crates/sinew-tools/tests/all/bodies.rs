@@ -1,4 +1,4 @@
-//! Tools that are bodies of their own, against closed forms and the laws of motion.
+//! Tools that are dynamic bodies, against closed forms and the laws of motion.
 
 use crate::common::pressed;
 
@@ -34,7 +34,8 @@ fn pose(pressed: &Pressed, state: &State, tool: usize) -> Pose {
     pressed.tools.pose(state, Inputs::none(), tool)
 }
 
-/// A rule that keeps the energy of what it does not resolve would turn such a body about in every step, for ever.
+/// A rule that conserves the energy of motions that it does not resolve would reverse such a body in every step,
+/// forever.
 #[test]
 fn a_tool_that_swings_faster_than_steps_tell_comes_to_rest_on_its_path() {
     let cube = Block::of([0.02; 3], [1; 3]);
@@ -107,7 +108,7 @@ fn a_free_top_keeps_its_energy_and_turns_as_euler_says() {
     }
 }
 
-/// A cube between two bodies and a ball that is led, which rub and seize.
+/// A cube between two dynamic bodies and a ball on a prescribed path, with friction and grasping.
 fn squeezed() -> Pressed {
     let mut cube = Block::of([0.06; 3], [6; 3]).with_mass_damping(10.0);
     cube.nu = 0.3;

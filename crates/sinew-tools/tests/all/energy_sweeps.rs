@@ -1,4 +1,5 @@
-//! Cellular energy steps of bodies that tools press: the energy never rises by more than the work of tools and loads, whatever the step and the sweeps.
+//! Cellular energy steps of bodies that tools press: the energy never rises by more than the work of tools and loads,
+//! for any step and any number of sweeps.
 
 use crate::common::pressed;
 
@@ -39,7 +40,7 @@ fn largest_rise(
     (rise, largest)
 }
 
-/// No bound of the potential leads back from where a tool has to be.
+/// No bound of the potential leads back from the prescribed position of a tool.
 #[test]
 fn a_plate_that_pushes_tissue_inside_out_within_a_step_is_refused_by_the_law() {
     let mut block = Block::of([0.06; 3], [3; 3]);
@@ -98,8 +99,8 @@ fn work_is_the_force_of_a_step_times_the_way_of_the_tool_in_it() {
     assert!((found / expected - 1.0).abs() < 1e-12, "{found} {expected}");
 }
 
-/// A ball that is finer than the surface: contacts that act on each other are found by an iteration, and what it leaves may bring in some millionths of the
-/// energy, which the certificate counts. It must not end the run.
+/// A ball that is finer than the surface: contacts that act on each other are found by an iteration, whose residual may
+/// add some millionths of the energy, which the certificate counts. This must not end the run.
 #[test]
 fn a_ball_rests_on_elements_that_do_not_lock_for_as_long_as_it_likes() {
     let down = [(0.0, [0.05, 0.05, 0.1205]), (0.3, [0.05, 0.05, 0.108])];

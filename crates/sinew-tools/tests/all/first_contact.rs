@@ -1,10 +1,10 @@
-//! The first contact of moving points, beside a march along their way.
+//! The first contact of moving points, compared with a march along their path.
 
 use crate::common::{add, dot, is_inside, length, scaled, shapes, size, sub, vectors};
 use proptest::prelude::*;
 use sinew_tools::{Convex, Touch};
 
-/// A shape and the two ends of a way in its neighbourhood.
+/// A shape and the two ends of a path in its neighbourhood.
 fn ways() -> impl Strategy<Value = (Convex, [f64; 3], [f64; 3])> {
     // A long way from anywhere, one next to a long thin shape, one along an axis.
     let aims = (shapes(), vectors(), vectors(), 0.5..4.0_f64, 0..5_usize);
@@ -20,7 +20,7 @@ fn ways() -> impl Strategy<Value = (Convex, [f64; 3], [f64; 3])> {
     })
 }
 
-/// A way that begins on the surface.
+/// A path that begins on the surface.
 fn ways_from_the_surface() -> impl Strategy<Value = (Convex, [f64; 3], [f64; 3])> {
     (shapes(), vectors(), vectors(), -3.0..1.0_f64).prop_map(|(convex, from, motion, power)| {
         let unit = size(&convex);
@@ -140,7 +140,7 @@ proptest! {
         prop_assert_eq!(convex.first_contact(lifted, add(lifted, motion)), None);
     }
 
-    /// One that was put there by a projection, with the rounding of that.
+    /// A point that a projection moved onto the surface, with its rounding.
     #[test]
     fn rounding_at_the_surface_loses_no_contact(
         (convex, from, _) in ways_from_the_surface(),
@@ -199,7 +199,7 @@ fn a_way_that_ends_before_the_surface_is_no_contact_and_one_that_ends_on_it_is()
     }
 }
 
-/// A touch that is too flat for the surface to tell is a contact as long as it goes inwards.
+/// A path at a very small angle to the surface is a contact if it goes inwards.
 #[test]
 fn the_flattest_way_in_from_the_surface_is_a_contact_at_once() {
     for (convex, top) in [

@@ -1,4 +1,4 @@
-//! Cellular energy steps beside tools: what no tool pushes moves as it would without any.
+//! Cellular energy steps with tools: tissue that no tool pushes moves the same as without tools.
 
 use crate::common::pressed;
 
@@ -24,7 +24,7 @@ fn far_ball() -> Tool {
     tool(Convex::sphere(0.01).unwrap(), Motion::Held(pose))
 }
 
-/// A plane whose tissue is above it, or below.
+/// A plane with the tissue above or below it.
 fn plane(height: f64, tissue_is_above: bool) -> Tool {
     let turn = if tissue_is_above { 0.0 } else { PI };
     let pose = Pose::new([0.0, 0.0, height], [turn, 0.0, 0.0]);
@@ -122,7 +122,8 @@ fn a_body_swings_beneath_a_plate_that_rests_on_it_in_order_1() {
     }
 }
 
-/// Galileo's relativity beyond the stable step: a block under a smooth plate that presses it answers alike whether what holds it stands still or glides along the plate.
+/// Galileo's relativity beyond the stable step: a block under a smooth plate that presses it responds equally if its
+/// support rests or glides along the plate.
 #[test]
 fn a_pressed_block_on_a_support_that_glides_answers_as_one_that_stands() {
     let velocity = [0.3, -0.2, 0.0];

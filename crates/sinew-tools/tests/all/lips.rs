@@ -1,4 +1,5 @@
-//! The lips of a cut: they carry weight, push each other by opposite forces and make no energy, and what does not fit a surface is refused.
+//! Contact of cut faces: they carry weight, push each other by opposite forces and add no energy, and invalid faces are
+//! refused.
 
 use crate::common::pressed;
 
@@ -14,7 +15,8 @@ use sinew_tools::{
     Convex, Corner, CutFace, Motion, Pose, Tool, Tools, ToolsError, TouchedCell, TouchedTriangle,
 };
 
-/// A block that is cut through at half its height, and the pairs of its lips: the cell below and the one above.
+/// A block that is cut through at half its height, and the pairs of nodes of its cut faces: the cell below and the one
+/// above.
 struct Cut {
     pressed: Pressed,
     lips: Vec<[u32; 2]>,
@@ -76,7 +78,8 @@ impl Cut {
 /// The height (m) of all blocks here.
 const HEIGHT: f64 = 0.04;
 
-/// Parts a mesh at a height (m): nodes there with those that are made of them for the tetrahedra above, and the faces of both sides.
+/// Splits a mesh at a height (m): returns the nodes there with their copies for the tetrahedra above, and the faces of
+/// both sides.
 fn split(mesh: &mut TetMesh, height: f64) -> (Vec<[u32; 2]>, Vec<[[u32; 3]; 2]>) {
     let is_at = |mesh: &TetMesh, node: u32| (mesh.points[node as usize][2] - height).abs() < 1e-9;
     let mut double: BTreeMap<u32, u32> = BTreeMap::new();
@@ -154,7 +157,7 @@ fn the_upper_half_of_a_block_rests_on_its_lips_by_its_weight() {
     assert!(cut.overlap(&state) < 1e-4, "{}", cut.overlap(&state));
 }
 
-/// Nothing rubs, and nothing brakes: the upper half slides as far as a point would.
+/// Without friction and damping the upper half slides as far as a point mass.
 #[test]
 fn the_upper_half_slides_on_its_lips_by_its_own_weight_alone() {
     let mut shape = Block::of([0.04, 0.04, HEIGHT], [2, 2, 4]);
@@ -225,7 +228,7 @@ fn halves_that_meet_keep_their_momentum_and_make_no_energy() {
     assert!(apart.fold(f64::INFINITY, f64::min) > 0.0, "they part again");
 }
 
-/// A ball that rubs on the upper half, which slides on its lips.
+/// A ball with friction on the upper half, which slides on the cut faces.
 fn pressed_by_a_ball() -> Cut {
     let shape = Block::of([0.04, 0.04, HEIGHT], [4; 3]).with_mass_damping(2.0);
     let rows = [(0.0, [0.02, 0.02, 0.0502]), (0.1, [0.023, 0.02, 0.044])];

@@ -1,4 +1,4 @@
-//! The nearest point of a surface, beside points spread over it.
+//! The nearest point of a surface, compared with points spread over it.
 
 use std::f64::consts::{PI, TAU};
 
@@ -22,7 +22,8 @@ fn on_sphere(radius: f64, latitude: f64, longitude: f64) -> [f64; 3] {
     ]
 }
 
-/// Points spread over the whole surface of a bounded shape, and a bound of how far any of its points is from one.
+/// Points spread over the whole surface of a bounded shape, and an upper bound of the distance of any surface point
+/// from the nearest of them.
 fn surface(convex: &Convex) -> (Vec<[f64; 3]>, f64) {
     let latitudes = steps(-PI / 2.0, PI / 2.0);
     let globe = latitudes.flat_map(|latitude| steps(0.0, TAU).map(move |l| (latitude, l)));
@@ -100,7 +101,7 @@ proptest! {
         prop_assert!(nearest.distance >= 0.0 || is_inside(&convex, point, -tiny));
     }
 
-    /// The tangent half-space at the nearest point holds nothing of the inside.
+    /// The tangent half-space at the nearest point contains no inner point.
     #[test]
     fn what_is_above_the_tangent_plane_is_outside(
         convex in shapes(),

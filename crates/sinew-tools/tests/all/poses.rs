@@ -1,4 +1,4 @@
-//! Poses take points to the world and back, and rotation vectors keep their digits.
+//! Poses transform points to the world and back, and rotation vectors keep their precision.
 
 use std::f64::consts::{PI, TAU};
 

@@ -1,4 +1,5 @@
-//! Bodies that tools press on and seize, by any machine and from any state. Closed forms and the laws of motion are in the verification.
+//! Bodies that tools press and grasp, on any machine and from any state. Closed forms and the laws of motion are in the
+//! verification.
 
 use crate::common::pressed;
 
@@ -166,7 +167,8 @@ fn a_node_that_one_ball_pushes_into_another_is_outside_of_both() {
     assert!(both > 10, "{both} steps in which both touch");
 }
 
-/// A ball at 1 m/s hits a free cube, which stiffens so much that its steps are cut into more parts while they touch: no momentum and no energy comes from that.
+/// A ball at 1 m/s hits a free cube, which stiffens so much that its steps have more substeps during contact: this adds
+/// no momentum and no energy.
 #[test]
 fn a_hit_gives_tool_and_tissue_the_same_impulse_where_steps_become_shorter() {
     for id in ["central-difference", "symplectic-euler"] {

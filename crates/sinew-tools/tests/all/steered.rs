@@ -8,7 +8,7 @@ use sinew_tools::{Convex, Motion, Steering};
 
 const DT: f64 = 1e-3;
 
-/// Places (m) of a ball above and in a cube of 40 mm, at the ends of 80 steps.
+/// Positions (m) of a ball above and in a cube of 40 mm, at the ends of 80 steps.
 fn path() -> Vec<[f64; 3]> {
     let place = |step: u32| {
         let phase = f64::from(step) / 12.0;
@@ -28,7 +28,7 @@ fn cube(motion: Motion) -> Pressed {
     cube.with(vec![ball])
 }
 
-/// The ball on its path by a table.
+/// The ball on its path, given by a table.
 fn by_table() -> Motion {
     let places = (0..).zip(path());
     let rows: Vec<_> = places
@@ -37,7 +37,7 @@ fn by_table() -> Motion {
     through(&rows, [0.0; 3])
 }
 
-/// The state after 80 steps; `steer` is asked before each for the pose at its end.
+/// The state after 80 steps; before each step `steer` is called for the pose at its end.
 fn driven(
     pressed: &Pressed,
     inputs: &mut Inputs,

@@ -1,4 +1,4 @@
-//! Tools that move and turn over steps: nothing passes through them, and the frame of the world does not matter.
+//! Tools that move and turn over steps: no node passes through them, and the frame of the world does not matter.
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
@@ -16,14 +16,14 @@ fn upright(position: [f64; 3]) -> Pose {
     Pose::new(position, [0.0; 3])
 }
 
-/// A pose some way and some turn on from another.
+/// A pose displaced and rotated from another.
 fn moved(pose: &Pose, by: [f64; 3], turn: [f64; 3]) -> Pose {
     let turned = Pose::new([0.0; 3], turn).then(&Pose::new([0.0; 3], pose.rotation_vector()));
     Pose::new(add(pose.position(), by), turned.rotation_vector())
 }
 
 proptest! {
-    /// Nodes from beside the tool to well inside it, so that each is met and not only touched.
+    /// Nodes from the side of the tool to well inside it, so that each is hit and not only grazed.
     #[test]
     fn a_scene_that_is_turned_as_a_whole_has_the_same_contacts(
         (convex, inner, before) in (shapes(), poses(), poses()),
@@ -130,7 +130,8 @@ fn the_box_of_a_tool_that_does_not_turn_fits_it() {
     assert_eq!(swept_box(&shape, &before, &after), None);
 }
 
-/// Steps of a node at rest that a sphere crosses: whether any step sees it, by the whole stroke and by its end alone.
+/// Steps in which a sphere crosses a node at rest: two flags, true if any step finds it from the whole stroke, and from
+/// its end alone.
 fn crossing(velocity: f64, dt: f64, offset: [f64; 2], phase: f64) -> (bool, bool) {
     let convex = Convex::sphere(0.005).unwrap();
     let start = upright([-0.006 - phase * velocity * dt, 0.0, 0.0]);

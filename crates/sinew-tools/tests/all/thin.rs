@@ -1,4 +1,4 @@
-//! Tips that are finer than the surface.
+//! Tips that are smaller than the surface triangles.
 
 use crate::common::pressed;
 
@@ -17,7 +17,7 @@ fn gap(pressed: &Pressed, state: &State, tool: usize) -> f64 {
     pressed.tools.deepest(&state.u, &pose, tool).unwrap().gap
 }
 
-/// Places between nodes, by a simple sequence that fills the square.
+/// Positions between nodes, from a simple sequence that fills the square.
 fn places() -> impl Iterator<Item = [f64; 2]> {
     (1..=12).map(|n: i32| {
         [0.754_877_666, 0.569_840_291]
@@ -38,8 +38,8 @@ fn solid_angle([a, b, c]: [[f64; 3]; 3]) -> f64 {
     2.0 * dot(a, cross).atan2(below)
 }
 
-/// The largest force (N) on a tip that is shot through a free block, and whether its axis ever was inside of its surface: a point that does not pass through a closed surface keeps
-/// its winding number, however that folds.
+/// The largest force (N) on a tip that is shot through a free block, and true if its axis ever was inside the surface:
+/// a point that does not pass through a closed surface keeps its winding number, for any folding of the surface.
 fn shot(
     (shape, rotation): (Convex, [f64; 3]),
     (speed, dt): (f64, f64),
@@ -161,7 +161,7 @@ fn a_tip_within_a_triangle_presses_its_corners_by_their_weights() {
     );
 }
 
-/// A body on a coupling as a tip, and a led one beside it, which share nodes.
+/// A tip that is a dynamic body on a coupling, and next to it a tip on a prescribed path, which share nodes.
 #[test]
 fn energy_rises_by_no_more_than_normals_turn_and_bodies_meet_triangles_too() {
     let cube = Block::of([0.04; 3], [4; 3]);

@@ -15,7 +15,7 @@ pub enum LogError {
         /// The error.
         source: io::Error,
     },
-    /// A line that makes no sense.
+    /// A line that is not valid.
     #[error("{path}:{line}: {fault}", path = .path.display())]
     Line {
         /// The file.

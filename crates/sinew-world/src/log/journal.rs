@@ -1,4 +1,4 @@
-//! Files that are kept up to date with a session.
+//! Files that are updated during a session.
 
 use std::fs::{File, OpenOptions};
 use std::io::{self, Seek, SeekFrom, Write};
@@ -9,17 +9,17 @@ use sinew_core::Revision;
 use super::Log;
 use super::text::{end, head, push_entry};
 
-/// A file that is kept up to date with the log of a session, so that the log of a killed session is not lost:
-/// [`Log::read`] reads it up to its last command.
+/// A file that is updated with the log of a session, so that the log of a killed session is not lost: [`Log::read`]
+/// reads it up to its last command.
 #[derive(Debug)]
 pub struct Journal {
     path: PathBuf,
     file: File,
     /// Number of commands in the file; `None` while it is empty.
     entries: Option<usize>,
-    /// The list of commands that they begin.
+    /// The revision of the log that begins with these commands.
     beginning: Option<Revision>,
-    /// Bytes of the file that are whole lines.
+    /// Number of bytes of the file that are whole lines.
     length: u64,
     /// True if something could not be written.
     has_failed: bool,
@@ -100,8 +100,8 @@ impl Journal {
     }
 
     /// Adds the commands that are new in a log, except those after the last step: poses among them may be replaced by
-    /// later ones. If the log went back, as that of a restored world, the file is rewritten. Commands that could not
-    /// be written are tried again, and the failure is reported once.
+    /// later ones. If the log became shorter, as after a restore of the world, the file is rewritten. Commands that
+    /// could not be written are tried again, and the failure is reported once.
     ///
     /// # Errors
     /// [`JournalError`].
@@ -134,7 +134,7 @@ impl Journal {
         written.map_err(|source| self.error(source))
     }
 
-    /// Takes back all that was written if it does not begin the log.
+    /// Discards everything that was written if it is not the beginning of the log.
     fn go_back_with(&mut self, log: &Log) {
         if self.beginning.replace(log.beginning) == Some(log.beginning) {
             return;

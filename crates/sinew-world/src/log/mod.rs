@@ -62,7 +62,7 @@ impl Header {
 pub struct Entry {
     /// Steps taken before it.
     pub step: usize,
-    /// Time (s) of the state then.
+    /// Time (s) of the state at that step.
     pub t: f64,
     /// The command.
     pub command: Command,
@@ -76,7 +76,7 @@ pub struct Log {
     steps: usize,
     #[serde(skip)]
     is_cut_off: bool,
-    /// Revision that stays the same while commands are only appended, so that a file needs only new ones.
+    /// Revision that stays the same as long as commands are only appended, so that a file needs only the new ones.
     #[serde(skip)]
     beginning: Revision,
 }
@@ -140,7 +140,7 @@ impl Log {
         &self.entries[..last.map_or(0, |last| last + 1)]
     }
 
-    /// Replaces its commands by these, of a session that has taken as many steps as there are before the last of them.
+    /// Replaces its commands by these, of a session whose number of steps is that before the last command.
     pub(crate) fn begin_with(&mut self, entries: &[Entry]) {
         self.restore(entries, entries.last().map_or(0, |last| last.step));
     }
@@ -150,7 +150,7 @@ impl Log {
         self.steps = steps;
     }
 
-    /// Replaces its commands by these, of a session that has taken as many steps.
+    /// Replaces its commands by these, of a session with this number of steps.
     pub(crate) fn restore(&mut self, entries: &[Entry], steps: usize) {
         self.entries = entries.to_vec();
         self.steps = steps;
@@ -161,7 +161,7 @@ impl Log {
         self.header.values = values;
     }
 
-    /// True if its end is missing, for example because the session was killed: it ends with its last command then.
+    /// True if its end is missing, for example because the session was killed: it then ends with its last command.
     #[must_use]
     pub fn is_cut_off(&self) -> bool {
         self.is_cut_off
@@ -173,7 +173,7 @@ impl Log {
         &self.header
     }
 
-    /// The commands in the order in which they came.
+    /// The commands in the order in which they were given.
     #[must_use]
     pub fn entries(&self) -> &[Entry] {
         &self.entries

@@ -16,7 +16,7 @@ use crate::input_file::InputFile;
 const COMMANDS: &str = "pose, grasp, release, factor, forces, integrator, dt, reset, cut or end";
 
 impl Log {
-    /// Reads a file that [`Log::to_text`] gave.
+    /// Reads a file with the text of [`Log::to_text`].
     ///
     /// # Errors
     /// [`LogError`] with file and line of the fault.
@@ -28,7 +28,7 @@ impl Log {
         Self::parse(path, &text)
     }
 
-    /// Reads a text that [`Log::to_text`] gave; messages name it by a path.
+    /// Reads a text of [`Log::to_text`]; messages name it by a path.
     ///
     /// # Errors
     /// [`LogError::Line`] with the line of the fault.

@@ -99,7 +99,7 @@ impl Log {
     /// The log as text, from which [`Log::parse`] reads all commands back without loss.
     ///
     /// The first lines identify program and scene; then there is a line for each command: the steps taken before it,
-    /// the time (s) of the state then, and the command; the last line has the number of all steps.
+    /// the time (s) of the state at that step, and the command; the last line has the number of all steps.
     #[must_use]
     pub fn to_text(&self) -> String {
         let mut text = head(&self.header);

@@ -48,8 +48,8 @@ impl World {
         self.advance_shown(steps, &mut shown)
     }
 
-    /// Takes the steps of [`World::dt`] that cover the time up to `t` (s): none for the present time, and for one that the
-    /// last step passed.
+    /// Takes the steps of [`World::dt`] that cover the time up to `t` (s): no steps for the present time, and for a
+    /// time that the last step passed.
     ///
     /// # Errors
     /// [`AdvanceToError`], also for a time before the last step, and one that is not finite.
@@ -121,13 +121,13 @@ impl World {
         }
     }
 
-    /// Takes steps under the eyes of a recorder that may have seen others.
+    /// Takes steps observed by a recorder that may have received other steps before.
     ///
-    /// Between two acts of a blade steps are taken in batches, as by [`sinew_core::simulate()`].
+    /// Between two actions of a blade, steps are taken in batches, as in [`sinew_core::simulate()`].
     ///
     /// # Errors
-    /// [`AdvanceError`] if a step or the recorder fails, and for a motion that failed already, also for no steps. A
-    /// step that fails is counted as in [`World::step`].
+    /// [`AdvanceError`] if a step or the recorder fails, and for a motion that has already failed, also if no steps are
+    /// requested. A step that fails is counted as in [`World::step`].
     pub fn advance_shown<R: Recorder + ?Sized>(
         &mut self,
         steps: usize,
@@ -152,7 +152,7 @@ impl World {
         }
     }
 
-    /// Takes steps within which nothing is cut or steered.
+    /// Takes steps during which nothing is cut or steered.
     fn take<R: Recorder + ?Sized>(
         &mut self,
         steps: usize,
@@ -190,7 +190,7 @@ impl World {
         }
     }
 
-    /// Keeps the failure of a step.
+    /// Stores the failure of a step.
     fn guarded<T>(
         &mut self,
         act: impl FnOnce(&mut Self) -> Result<T, WorldStepError>,
@@ -219,7 +219,8 @@ impl World {
         }
     }
 
-    /// Steers, turns loads and cuts at the beginning of a step; the number of steps until it must be called again.
+    /// Steers tools, scales loads and cuts at the beginning of a step; returns the number of steps until it must be
+    /// called again.
     fn begin_step(&mut self) -> Result<usize, WorldStepError> {
         let dt = self.method.dt;
         let mut clock = self.state.clock;

@@ -15,7 +15,7 @@ pub(super) const FARTHEST: f64 = 1e6;
 pub(super) const STRONGEST: f64 = 1e6;
 
 impl World {
-    /// Checks a command, which takes effect with the next step, and keeps it in the log.
+    /// Checks a command, which takes effect with the next step, and adds it to the log.
     ///
     /// # Errors
     /// [`CommandError`] for a command that cannot be followed: the session continues as before.
@@ -87,8 +87,7 @@ impl World {
         Ok(())
     }
 
-    /// Begins in the state in which the last of these commands, a reset, left a session: the motion before it is only
-    /// in the log.
+    /// Begins in the state after the last of these commands, which is a reset: the motion before it is only in the log.
     pub(crate) fn begin_at_reset(&mut self, commands: &[Entry]) -> Result<(), CommandError> {
         self.command(Command::Reset)?;
         self.log.begin_with(commands);
@@ -167,8 +166,8 @@ impl World {
         }
     }
 
-    /// Moves a tool to a pose at the end of the next step: see [`Command::Pose`]. It allocates nothing but the entry of
-    /// the log.
+    /// Moves a tool to a pose at the end of the next step: see [`Command::Pose`]. It allocates only the entry of the
+    /// log.
     ///
     /// # Errors
     /// [`CommandError`]; the session continues as before.
@@ -200,8 +199,8 @@ impl World {
         })
     }
 
-    /// The factor that multiplies a load with the next step, besides its own course over time; `None` for the id of a
-    /// world of another scene.
+    /// The factor that multiplies a load with the next step, in addition to its own course over time; `None` for the id
+    /// of a world of another scene.
     #[must_use]
     pub fn load_factor(&self, load: LoadId) -> Option<f64> {
         let own = (load.scene == self.identity.key).then(|| self.loads.get(load.place));
@@ -217,7 +216,7 @@ impl World {
         }
     }
 
-    /// The tool of a name.
+    /// The tool with a name.
     ///
     /// # Errors
     /// [`CommandError::NoTool`].
@@ -238,7 +237,7 @@ impl World {
         })
     }
 
-    /// The load of a name: that of the scene, `load 2` for the second if it has none, or `gravity`.
+    /// The load with a name: that of the scene, `load 2` for the second if it has none, or `gravity`.
     ///
     /// # Errors
     /// [`CommandError::NoLoad`].

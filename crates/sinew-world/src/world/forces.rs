@@ -9,7 +9,7 @@ use super::World;
 use crate::command::CommandError;
 
 impl World {
-    /// Takes forces (N) on nodes of the present body, which act from the next step on.
+    /// Stores forces (N) on nodes of the present body, which act from the next step on.
     pub(super) fn take_forces(&mut self, forces: &[(u32, [f64; 3])]) -> Result<(), CommandError> {
         let body = self.body.model().body().ok_or(CommandError::NoNodes)?;
         body.model.forces_into(forces, &mut self.forces.next)?;
@@ -17,7 +17,7 @@ impl World {
         Ok(())
     }
 
-    /// Gives the forces that are new to a step that begins at `t` (s).
+    /// Applies new forces to a step that begins at `t` (s).
     pub(super) fn give_forces(&mut self, t: f64) -> Result<(), ForceInputError> {
         if std::mem::take(&mut self.forces.is_new) {
             self.inputs.set_forces(t, &self.forces.next.entries)?;
@@ -29,8 +29,8 @@ impl World {
     }
 }
 
-/// Has the forces on record act on the nodes of a body after a cut on which they acted before it. Nodes that are gone
-/// take theirs with them, and of several copies the first keeps it.
+/// Transfers the recorded forces to the same nodes of a body after a cut. Forces on removed nodes are dropped, and of
+/// several copies the first keeps the force.
 pub(super) fn carry(
     inputs: &mut Inputs,
     before: &SceneBody,

@@ -13,7 +13,7 @@ use crate::error::ReportError;
 
 /// Values over the mesh are written into slices with one entry for each node or tetrahedron of the current body.
 impl World {
-    /// Number of meshes that the body has had: surfaces, nodes and tetrahedra are others once it has grown, by a cut, a
+    /// Number of meshes that the body has had: surfaces, nodes and tetrahedra have changed if it has grown, by a cut, a
     /// reset or a restored state.
     #[must_use]
     pub fn topology_epoch(&self) -> u64 {
@@ -54,7 +54,7 @@ impl World {
         Ok(model.velocities_at(self.now(), &self.field, out)?)
     }
 
-    /// Writes the strain of each tetrahedron, as [`sinew_fem::Model::strain`].
+    /// Writes the strain of each tetrahedron, see [`sinew_fem::Model::strain`].
     ///
     /// # Errors
     /// [`ReportError`].
@@ -63,8 +63,8 @@ impl World {
         Ok(model.strain(self.now(), &self.state.u, out)?)
     }
 
-    /// Writes the stress (Pa) of each tetrahedron, with its memory, as [`sinew_fem::Model::stress`];
-    /// [`sinew_fem::stress::von_mises`] makes one number of each.
+    /// Writes the stress (Pa) of each tetrahedron, with its history variables, see [`sinew_fem::Model::stress`];
+    /// [`sinew_fem::stress::von_mises`] turns each into one number.
     ///
     /// # Errors
     /// [`ReportError`], also for a body with a network of springs, which has no stress.
@@ -142,8 +142,8 @@ impl World {
         })
     }
 
-    /// The pose to which a tool moves, or to which the user's coupling pulls it: that of the last command, else that
-    /// of its own path now. Ids of a world of another scene give the identity.
+    /// The pose to which a tool moves, or to which the user's coupling pulls it: that of the last command, otherwise
+    /// the current one of its own path. Ids of a world of another scene give the identity.
     #[must_use]
     pub fn hand_pose(&self, tool: ToolId) -> Pose {
         let own = || {
@@ -164,8 +164,8 @@ impl World {
         Some(self.tools_with(tool)?.report(&self.state, tool.place))
     }
 
-    /// The signed distance (m) between a tool and the nearest cell or triangle, negative inside; `None` if it may
-    /// touch none.
+    /// The signed distance (m) between a tool and the nearest cell or triangle, negative inside; `None` if it cannot
+    /// touch any.
     #[must_use]
     pub fn tool_gap(&self, tool: ToolId) -> Option<Depth> {
         let pose = self.tool_pose(tool);
@@ -173,7 +173,7 @@ impl World {
             .deepest(&self.state.u, &pose, tool.place)
     }
 
-    /// Deepest overlap now of parts or surfaces of the body, between which there is no contact. A check costs some
+    /// Deepest current overlap of parts or surfaces of the body without contact between them. A check costs some
     /// microseconds per triangle of the surface: a session makes none automatically.
     #[must_use]
     pub fn overlap(&self) -> Option<Overlap> {

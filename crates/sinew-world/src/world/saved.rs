@@ -1,4 +1,4 @@
-//! A motion that is kept and continued.
+//! A motion that is saved and continued.
 
 use std::sync::Arc;
 
@@ -17,18 +17,18 @@ const KIND: Kind = Kind {
     words: "saved world",
 };
 
-/// All that the motion of a world continues from: a value that other processes read.
+/// All data that the motion of a world needs to continue, as a value that other processes can read.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Saved {
     /// SHA-256 of the scene with the files that it reads, in hexadecimal digits.
     scene: String,
-    /// Time (s) after the last step that was taken whole.
+    /// Time (s) after the last complete step.
     reached: f64,
     failure: Option<SavedFailure>,
-    /// `None` if nothing can cut.
+    /// The cuts; `None` if nothing can cut.
     cuts: Option<SavedCuts>,
     state: SavedState,
-    /// `None` of a world that follows its scene.
+    /// The effects of commands; `None` for a world that follows its scene.
     commanded: Option<Commanded>,
 }
 
@@ -36,11 +36,12 @@ pub struct Saved {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct Commanded {
     inputs: SavedInputs,
-    /// Target of each tool, true if it was steered, and the state of its jaws at the beginning of the next step.
+    /// Target of each tool, a flag that is true if it was steered, and the state of its jaws at the beginning of the
+    /// next step.
     tools: Vec<(Target, bool, Option<bool>)>,
-    /// Forces (N) on degrees of freedom that the next step begins with.
+    /// Forces (N) on degrees of freedom at the beginning of the next step.
     forces: Option<Vec<(u32, f64)>>,
-    /// Factor of each load that the next step begins with.
+    /// Factor of each load at the beginning of the next step.
     factors: Vec<Option<f64>>,
     drives_loads: bool,
     method: (String, Options),
@@ -102,7 +103,7 @@ impl SavedFailure {
 }
 
 impl Commanded {
-    /// The first part that no commands lead to.
+    /// The first part that no sequence of commands can produce.
     fn impossible_part(&self) -> Option<&'static str> {
         let within = |values: &[f64], most: f64| values.iter().all(|value| value.abs() <= most);
         let is_place = |ends: &[[f64; 3]]| within(ends.as_flattened(), FARTHEST);
@@ -137,7 +138,7 @@ impl Commanded {
 }
 
 impl World {
-    /// Keeps all that the motion continues from.
+    /// Saves all data that the motion needs to continue.
     #[must_use]
     pub fn save(&self) -> Saved {
         let commanded = (!self.follows).then(|| Commanded {
@@ -170,7 +171,7 @@ impl World {
     /// saved motion; if that had failed, the world needs a reset here too.
     ///
     /// # Errors
-    /// [`RestoreError`] for data of another scene, and for impossible values; the world is unchanged then.
+    /// [`RestoreError`] for data of another scene, and for values that are not possible; the world is then unchanged.
     pub fn restore(&mut self, saved: &Saved) -> Result<(), RestoreError> {
         if saved.scene != self.identity.sha256 {
             return Err(RestoreError::OtherScene);

@@ -12,7 +12,7 @@ use sinew_scene::{CutTotals, Cutter, Scene, SceneBody, Simulation};
 
 const STROKES: &str = "stroke,t_s,ax_m,ay_m,az_m,bx_m,by_m,bz_m\n";
 
-/// A bar along z with its foot held.
+/// A bar along z with a fixed foot.
 fn bar(cutting: &str, run: &str) -> String {
     format!(
         "gravity = [0.0, 0.0, 9.81]\n[mesh]\nblock = {{ cells = [2, 2, 6], size = [0.02, 0.02, 0.06] }}\n[[region]]\ndensity = 1000.0\nmodel = \"linear\"\n\
@@ -23,7 +23,7 @@ fn bar(cutting: &str, run: &str) -> String {
 
 const EXPLICIT: &str = "integrator = \"central-difference\"\ndt = 2e-4\n";
 
-/// A blade along y that goes along x through the middle, from `begin` to `end` (s).
+/// A blade along y that moves along x through the middle, from `begin` to `end` (s).
 fn across(begin: f64, end: f64) -> String {
     format!(
         "{STROKES}1,{begin},-0.001,-0.01,0.03,-0.001,0.03,0.03\n1,{end},0.021,-0.01,0.03,0.021,0.03,0.03\n"
@@ -37,7 +37,7 @@ fn load(folder: &Path, text: &str, strokes: &str) -> Simulation {
     Scene::load(path).and_then(Scene::build).unwrap()
 }
 
-/// A run to its end: the scene on the body that is left, its state, and what was cut.
+/// A run to its end: the scene on the remaining body, its state, and the cuts.
 struct Ended {
     body: Arc<SceneBody>,
     state: State,
@@ -46,7 +46,7 @@ struct Ended {
     pieces: usize,
 }
 
-/// Runs a scene, in runs of so many steps each.
+/// Runs a scene in parts of `steps` steps each.
 fn run_in_parts(simulation: Simulation, steps: usize) -> Ended {
     let mut left = simulation.run().steps;
     let mut run = following(simulation);
@@ -70,7 +70,7 @@ fn run(simulation: Simulation) -> Ended {
     run_in_parts(simulation, usize::MAX)
 }
 
-/// Places of the centre of mass (m) of the nodes that this picks by their place at rest.
+/// Position of the centre of mass (m) of the nodes that `picks` selects by their position at rest.
 fn centre(ended: &Ended, picks: impl Fn([f64; 3]) -> bool) -> [f64; 3] {
     let body = ended.body.model().body().unwrap();
     let mut u = vec![[0.0; 3]; body.mesh.points.len()];
@@ -93,7 +93,7 @@ fn centre(ended: &Ended, picks: impl Fn([f64; 3]) -> bool) -> [f64; 3] {
     sum.map(|sum| sum / whole)
 }
 
-/// Beyond 100 of its sizes, at which a body that is held counts as diverged.
+/// A piece may fall beyond 100 times its size, at which a supported body counts as diverged.
 #[test]
 fn a_piece_may_fall_far() {
     let folder = tempfile::tempdir().unwrap();
@@ -222,7 +222,7 @@ fn a_scene_whose_blade_never_comes_has_the_motion_of_one_without() {
     assert_eq!(ended.state.u, state.u);
 }
 
-/// The strokes of a table, a tool that goes the same way, and sheets from outside.
+/// The strokes of a table, a tool on the same path, and sheets from outside make the same cut.
 #[test]
 fn one_way_of_a_blade_makes_one_cut_whoever_leads_it() {
     let folder = tempfile::tempdir().unwrap();
@@ -339,7 +339,7 @@ fn a_frozen_piece_stays_where_it_came_off_and_keeps_its_mass() {
     assert_eq!(frozen.state.u, removed.state.u);
 }
 
-/// Loads on a frozen piece move nothing, as if the piece were removed with its load.
+/// Loads on a frozen piece have no effect, as if the piece were removed with its load.
 #[test]
 fn a_frozen_piece_keeps_the_loads_that_were_on_it() {
     let folder = tempfile::tempdir().unwrap();
@@ -441,7 +441,7 @@ fn a_piece_that_a_tool_holds_is_no_loose_one() {
     }
 }
 
-/// A jaw that holds the top goes on holding it, copies included, and its work goes on.
+/// A jaw that grasps the top continues to grasp it, copies included, and its work continues.
 #[test]
 fn a_grasp_outlives_a_cut() {
     let folder = tempfile::tempdir().unwrap();
@@ -477,8 +477,8 @@ fn a_grasp_outlives_a_cut() {
     }
 }
 
-/// Steps so short that most of them reach no edge or face of a tetrahedron: the blade still counts as in the tissue,
-/// also in a cutter that is restored from its bytes.
+/// Steps so short that most of them reach no edge or face of a tetrahedron: the blade still counts as being in the
+/// tissue, also in a cutter that is restored from its bytes.
 #[test]
 fn a_tool_cuts_in_any_steps_what_a_table_cuts() {
     let folder = tempfile::tempdir().unwrap();
@@ -517,8 +517,8 @@ fn a_tool_cuts_in_any_steps_what_a_table_cuts() {
     assert!(cutter.totals().report.faces > 0);
 }
 
-/// A blade of the scene outside the tissue is not lifted again and again: tetrahedra that a user's blade has entered in
-/// part stay so.
+/// A blade of the scene outside the tissue is not lifted repeatedly: tetrahedra that a user's blade has partly entered
+/// keep that state.
 #[test]
 fn a_blade_in_the_air_leaves_the_cut_of_a_hand_alone() {
     let area = |tables: &str| {
@@ -546,8 +546,8 @@ fn a_blade_in_the_air_leaves_the_cut_of_a_hand_alone() {
     assert_eq!(area(scalpel), alone);
 }
 
-/// A node that a jaw holds would be accelerated if its rest position were moved: snapping does not move it, and its
-/// copy is held as well.
+/// A node that a jaw grasps would be accelerated if its rest position were moved: snapping does not move it, and its
+/// copy is grasped as well.
 #[test]
 fn what_a_jaw_holds_is_not_snapped() {
     let folder = tempfile::tempdir().unwrap();

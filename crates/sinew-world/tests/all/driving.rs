@@ -1,4 +1,4 @@
-//! Sessions: what commands do, and what is refused.
+//! Sessions: the effects of commands, and errors.
 
 use crate::common::{CUBE, scene, session};
 use sinew_core::{LinearModel, LinearOperators, Load, Options, Ramp, Run, State, simulate};
@@ -67,8 +67,8 @@ fn ids_of_another_world_are_refused_as_such() {
     assert!(bare.log().entries().is_empty());
 }
 
-/// An id means the same in each world of its scene, and nothing in those of others, though they have a tool at its
-/// place.
+/// An id means the same in each world of its scene, and is not valid in those of other scenes, even if they have a tool
+/// with this index.
 #[test]
 fn ids_are_of_a_scene_and_not_of_the_place_in_its_list() {
     let (own, mut same) = (session(CUBE), session(CUBE));
@@ -385,7 +385,7 @@ fn a_motion_that_diverges_ends_by_name_and_can_be_reset() {
     assert!(session.failure().is_none());
 }
 
-/// A run makes one step of it that ends with the duration; what a hand drives has no end.
+/// A run takes one step instead that ends with the duration; a session steered by the user has no end.
 #[test]
 fn a_step_longer_than_the_duration_is_refused_at_its_line() {
     let text = CUBE.replace("dt = 0.002", "dt = 100.0");
@@ -399,7 +399,7 @@ fn a_step_longer_than_the_duration_is_refused_at_its_line() {
     );
 }
 
-/// Nothing holds the cube, so that each of its pieces is loose.
+/// The cube has no supports, so that each of its pieces is loose.
 #[test]
 fn a_cut_that_leaves_nothing_fails_by_name_and_leaves_the_body_before_it() {
     let held = "[[fixed]]\ngroup = \"bottom\"\n";

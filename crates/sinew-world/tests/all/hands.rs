@@ -1,11 +1,11 @@
-//! Hands of a program: forces on nodes, jaws of tools, and times that are no whole steps.
+//! Actions of a program: forces on nodes, jaws of tools, and times that are not whole steps.
 
 use sinew_scene::SceneBody;
 use sinew_world::{AdvanceToError, Advanced, Command, CommandError, Ended, World};
 
 use crate::common::{CUBE, session};
 
-/// A block that floats freely, of which nothing moves by itself.
+/// A free block at rest.
 const FREE: &str = r#"
 [mesh]
 block = { cells = [2, 2, 4], size = [0.04, 0.04, 0.08] }
@@ -48,7 +48,7 @@ fn momentum(world: &mut World, z: [f64; 2]) -> [f64; 3] {
     sum
 }
 
-/// A load of the scene on a group is the same forces on its nodes: the methods meet both alike.
+/// A load of the scene on a group equals the same forces on its nodes: the methods treat both equally.
 #[test]
 fn forces_on_nodes_move_the_body_as_a_load_of_the_scene_does() {
     for method in [
@@ -95,7 +95,7 @@ fn forces_on_nodes_move_the_body_as_a_load_of_the_scene_does() {
     }
 }
 
-/// `F = dp/dt` before and after the cut, of the piece that is drawn alone.
+/// `F = dp/dt` before and after the cut, of the piece on which the force acts.
 #[test]
 fn a_force_stays_with_its_node_when_the_body_is_cut() {
     let mut world = session(FREE);
@@ -170,7 +170,7 @@ fn forces_that_cannot_be_are_refused_by_node() {
     assert!(matches!(refused, Err(CommandError::NoNodes)));
 }
 
-/// A ball that is pressed on the cube takes its top with it while its jaws are closed.
+/// A ball that is pressed on the cube moves its top along while its jaws are closed.
 #[test]
 fn a_tool_takes_with_it_what_it_holds_and_lets_go_of_it() {
     let text = CUBE
@@ -261,7 +261,7 @@ fn a_time_ends_with_its_last_step_and_all_its_steps_have_one_length() {
     }
 }
 
-/// A leapfrog whose steps change from long to short and back, near its limit, brings energy in.
+/// A leapfrog whose steps change from long to short and back, near its limit, adds energy.
 #[test]
 fn a_body_comes_to_rest_however_its_time_is_divided() {
     let text = "gravity = [0.0, 0.0, -1.0]\n[mesh]\ncube = { cells = 4, edge = 0.1 }\n[[region]]\ndensity = 1000.0\n\

@@ -1,4 +1,4 @@
-//! Lips of cuts, which do not pass each other.
+//! Cut faces, which do not pass through each other.
 
 use std::fs;
 use std::path::Path;
@@ -12,12 +12,12 @@ use sinew_scene::{Overlap, OverlapWatch, Scene, Simulation};
 const E: f64 = 3500.0;
 const EXPLICIT: &str = "integrator = \"symplectic-euler\"\ndt = 4e-4\n";
 
-/// A bar along z whose foot is held, cut through between these heights (m).
+/// A bar along z with a fixed foot, cut through between these heights (m).
 fn cut_bar(folder: &Path, height: [f64; 2], more: &str, lips: &str, run: &str) -> Simulation {
     bar_of_strokes(folder, &across(height), more, lips, run)
 }
 
-/// A blade along y that goes along x before the motion begins.
+/// A blade along y that moves along x before the motion begins.
 fn across([low, high]: [f64; 2]) -> String {
     format!(
         "1,-2,-0.001,-0.01,{low},-0.001,0.03,{low}\n1,-1,0.021,-0.01,{high},0.021,0.03,{high}\n"
@@ -48,7 +48,7 @@ fn overlap(run: &World) -> Option<Overlap> {
     watch.into_deepest()
 }
 
-/// The mean displacement (m) of the top along -z at the end of a run, and the world then.
+/// The mean displacement (m) of the top along -z at the end of a run, and the world at that time.
 fn sunk(scene: Simulation) -> (f64, World) {
     let steps = scene.run().steps;
     let mut run = following(scene);

@@ -12,7 +12,7 @@ fn parse(text: &str) -> Result<Log, String> {
     Log::parse(Path::new("s.log"), text).map_err(|error| error.to_string())
 }
 
-/// A log of every command there is.
+/// A log with every command.
 fn log() -> String {
     let mut session = session(CUBE);
     let block = ("kind".to_owned(), OptionValue::Text("block".to_owned()));
@@ -193,7 +193,7 @@ fn a_journal_holds_what_no_later_pose_can_replace_and_in_the_end_all() {
     assert_eq!(text(), session.log().to_text());
 }
 
-/// A world that is restored goes back in its log, and so does the file.
+/// A world that is restored has a shorter log, and the file follows.
 #[test]
 fn a_journal_follows_a_log_that_goes_back() {
     let folder = tempfile::tempdir().unwrap();

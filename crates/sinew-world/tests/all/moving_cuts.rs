@@ -8,7 +8,7 @@ use sinew_scene::Scene;
 
 const STROKES: &str = "stroke,t_s,ax_m,ay_m,az_m,bx_m,by_m,bz_m\n";
 
-/// Runs a scene whose strokes stand in a table: the pieces, and what is said of the strokes.
+/// Runs a scene whose strokes are in a table: returns the number of pieces, and the messages about strokes.
 fn cut(text: &str, strokes: &str) -> (usize, Vec<String>) {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("scene.toml");
@@ -122,8 +122,8 @@ fn what_a_hand_leaps_over_is_told_with_its_area_and_place() {
     assert_eq!(restored.left_by_strokes(), [said]);
 }
 
-/// A blade that moves down at x through a cube, four cells of 25 mm along an edge, that moves sideways: the pieces, and
-/// the messages about strokes.
+/// A blade that moves down at x through a cube, four cells of 25 mm along an edge, that moves sideways: returns the
+/// number of pieces, and the messages about strokes.
 fn side_stroke(x: f64, split: &str) -> (usize, Vec<String>) {
     let scene = cube(
         "[[initial]]\nvelocity = [0.0, 0.2, 0.0]\n[cutting]\ntable = \"strokes.csv\"\nsnap = 0.0\n",

@@ -1,4 +1,4 @@
-//! Recorders of a world: what each sees, and how steps are batched between them.
+//! Recorders of a world: the states that each receives, and the batches of steps between them.
 
 use sinew_core::{Moment, RecordError, Recorder as _, Verdict};
 use sinew_scene::{Scene, SceneSource};
@@ -9,7 +9,7 @@ use crate::common::{build, following};
 const SPRING: &str = "[oscillator]\nmass = 0.1\nstiffness = 100.0\ndamping = 1.0\nvelocity = -5.0\n\
                       [run]\nduration = 1.0\nintegrator = \"central-difference\"\ndt = 0.01\n";
 
-/// Wants every nth step, and watches degrees of freedom.
+/// A recorder that requests every nth step, and watches degrees of freedom.
 #[derive(Default)]
 struct Wishes {
     every: usize,
@@ -106,7 +106,7 @@ fn recorders_that_want_little_do_not_cut_batches() {
     assert_eq!(Recorders::new().next(0), None);
 }
 
-/// However a motion is taken, by steps, in parts or at once, its states are the same and each is seen once.
+/// A motion taken in steps, in parts or at once has the same states, and each is received once.
 #[test]
 fn a_motion_in_parts_is_one_motion() {
     let (mut at_once, mut in_parts, mut by_steps) = (spring(), spring(), spring());
@@ -136,7 +136,7 @@ fn a_recorder_ends_a_motion_of_any_number_of_steps() {
     assert_eq!((ended, shown.steps()), (Ended::Stopped, 5));
 }
 
-/// Stops a motion after so many steps.
+/// A recorder that stops a motion after this number of steps.
 struct StopsAt(usize);
 
 impl sinew_core::Recorder for StopsAt {

@@ -1,4 +1,4 @@
-//! Sessions repeated by their logs: every state has the same bits.
+//! Sessions repeated from their logs: every state has the same bits.
 
 use std::path::Path;
 
@@ -8,7 +8,7 @@ use proptest::test_runner::{RngAlgorithm, TestRng};
 use sinew_core::Options;
 use sinew_world::{Command, Log, Replay, World};
 
-/// Numbers at random, the same in every run.
+/// Random numbers, the same in every run.
 struct Dice(TestRng);
 
 impl Dice {
@@ -29,7 +29,7 @@ impl Dice {
     }
 }
 
-/// Any command, also such as are refused.
+/// A random command, possibly one that is refused.
 fn command(dice: &mut Dice) -> Command {
     match dice.0.next_u32() % 24 {
         20 => Command::Grasp {
@@ -107,7 +107,7 @@ fn so_are_cuts_by_hand_while_a_blade_and_a_burner_go_their_way() {
     repeated(&text, 400);
 }
 
-/// Drives a scene by random commands, and repeats the session by its log.
+/// Steers a scene with random commands, and repeats the session from its log.
 fn repeated(text: &str, commands: usize) {
     let (mut session, mut dice) = (session(text), Dice::new());
     let (mut states, mut refused, mut failed) = (vec![bytes(&session)], 0, 0);
@@ -151,7 +151,7 @@ fn repeated(text: &str, commands: usize) {
 
 /// A session up to before one of its resets, or to its end.
 struct Part {
-    /// Steps before the reset with which it begins.
+    /// Number of steps before the reset with which it begins.
     begins: usize,
     ends: usize,
     /// The log.

@@ -1,4 +1,4 @@
-//! Fields, forces and tools as a world reports them, held beside forces that balance and closed forms.
+//! Fields, forces and tools in the reports of a world, compared with balances of forces and closed forms.
 
 use sinew_core::{Options, State};
 use sinew_fem::stress::von_mises;
@@ -16,7 +16,7 @@ fn norm(vector: [f64; 3]) -> f64 {
     vector.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
-/// A bar that is drawn out evenly: its end faces slide, so that its stress is uniform.
+/// A bar under uniform tension: its end faces slide, so that its stress is uniform.
 const BAR: &str = r#"
 [mesh]
 block = { cells = [4, 2, 3], size = [0.2, 0.1, 0.1] }
@@ -109,7 +109,7 @@ fn the_forces_on_nodes_are_the_force_on_the_tool_and_what_is_left_moves_the_body
     assert!(world.work_of_tools() > 0.0);
 }
 
-/// The velocity of a leapfrog lies in the middle of a step; that of the report is at the time of the state.
+/// The velocity of a leapfrog is that in the middle of a step; that of the report is at the time of the state.
 #[test]
 fn velocities_are_those_at_the_time_of_the_state() {
     let text = "[oscillator]\nmass = 0.1\nstiffness = 100.0\ndamping = 0.0\nvelocity = 1.0\n\
@@ -162,7 +162,7 @@ fn the_topology_epoch_grows_with_every_other_mesh_and_with_nothing_else() {
     world.positions(&mut positions).unwrap();
 }
 
-/// A restored world keeps the set-up of its method, and continues as one that was built for it.
+/// A restored world keeps the set-up of its method, and continues with the same bits as a world that was built for it.
 #[test]
 fn every_method_continues_from_a_saved_world_with_the_same_bits() {
     let free = CUBE.split("[[tool]]").next().unwrap();

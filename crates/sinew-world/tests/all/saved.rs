@@ -1,4 +1,4 @@
-//! A motion that is kept and continued: undone, and carried over to another world.
+//! A motion that is saved and continued: undone, and transferred to another world.
 
 use std::fmt::Debug;
 
@@ -116,7 +116,7 @@ fn a_world_takes_the_motion_of_its_own_scene_and_kind_only() {
 }
 
 /// Every difference between scenes counts, also one that neither the body nor the numbers of tools and loads show; and
-/// what was cut brings a body of its own along.
+/// saved cuts contain their own body.
 #[test]
 fn the_state_of_another_scene_is_refused_also_after_a_cut() {
     let mut world = session(&cube());
@@ -205,7 +205,7 @@ fn a_motion_that_failed_is_restored_as_one_that_failed() {
     assert_eq!(world.log(), fresh.log());
 }
 
-/// Numbers that no motion has are refused at once, and do not end the program later.
+/// Numbers that are not possible in any motion are refused immediately, and do not end the program later.
 #[test]
 fn a_motion_with_numbers_that_cannot_be_is_refused() {
     let mut world = session(&cube());

@@ -1,12 +1,12 @@
-//! The nodes of a body by its uncut faces alone, to be compared with what strokes make of them.
+//! The nodes of a body, derived from its uncut faces alone, for comparison with the results of strokes.
 
 use std::collections::HashMap;
 
 use sinew_cutting::CuttableBody;
 use sinew_mesh::TetMesh;
 
-/// Checks a body against the mesh that it was made of: its nodes are exactly the classes of corners that uncut faces join, in
-/// whatever order faces were cut, and lists at nodes are what tetrahedra say.
+/// Checks a body against the mesh that it was made of: its nodes are exactly the classes of corners that uncut faces
+/// join, for any order in which faces were cut, and the lists at nodes agree with the tetrahedra.
 pub(crate) fn check(body: &CuttableBody, mesh: &TetMesh) {
     let tets = body.tets();
     let is_left = |tet: &u32| !body.is_removed()[*tet as usize];

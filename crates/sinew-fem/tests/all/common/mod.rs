@@ -1,4 +1,5 @@
-//! Shared by the verification tests: small models, static solutions, and figures beside their references.
+//! Code that the verification tests share: small models, static solutions, and comparison of figures with their
+//! references.
 
 use sinew_core::{
     ElasticLaw, ElementStiffness, Elements, LinearSystem, LoadTime, System, TangentKind, Trial,
@@ -10,7 +11,7 @@ use sinew_mesh::{Group, GroupMembers, TetMesh};
 /// Density of soft tissue (kg/m^3).
 pub(crate) const DENSITY: f64 = 1060.0;
 
-/// Prints a figure beside its reference; fails where they differ by more than `tolerance`.
+/// Prints a figure with its reference; fails if they differ by more than `tolerance`.
 #[track_caller]
 pub(crate) fn figure(name: &str, reached: f64, expected: f64, tolerance: f64) {
     println!("{name}: {reached:.6e}, expected {expected} +- {tolerance:e}");
@@ -21,7 +22,7 @@ pub(crate) fn figure(name: &str, reached: f64, expected: f64, tolerance: f64) {
     );
 }
 
-/// Prints an error; fails where it is above `limit` or no number.
+/// Prints an error; fails if it is above `limit` or NaN.
 #[track_caller]
 pub(crate) fn at_most(name: &str, error: f64, limit: f64) {
     println!("{name}: {error:.2e}, at most {limit:e}");
@@ -113,7 +114,7 @@ pub(crate) fn stiffness_times(model: &Model, u: &[f64]) -> Vec<f64> {
 }
 
 /// The solution of K u = force, to rounding: conjugate gradients preconditioned by the diagonal (Saad, Iterative
-/// Methods for Sparse Linear Systems, algorithm 9.1). Held components stay zero.
+/// Methods for Sparse Linear Systems, algorithm 9.1). Fixed components stay zero.
 pub(crate) fn solve(model: &Model, force: &[f64]) -> Vec<f64> {
     let stiffness = model.operators().stiffness();
     let inverse_diagonal: Vec<f64> = (0..model.dofs())
@@ -176,14 +177,14 @@ pub(crate) fn relative_difference(reached: &[f64], expected: &[f64]) -> f64 {
     max_abs(&difference) / max_abs(expected)
 }
 
-/// A cube of 10 cm whose inner and outer nodes are moved about.
+/// A cube of 10 cm whose inner and outer nodes are moved irregularly.
 pub(crate) fn uneven_cube() -> TetMesh {
     let mut mesh = structured::cube(3, 0.1, Split::Kuhn).unwrap_or_else(|error| panic!("{error}"));
     jitter(&mut mesh, 0.006, 11);
     mesh
 }
 
-/// Any numbers for the degrees of freedom.
+/// Arbitrary numbers for the degrees of freedom.
 pub(crate) fn waves(dofs: usize, seed: f64) -> Vec<f64> {
     (0..dofs).map(|i| (seed * i as f64 + seed).sin()).collect()
 }
@@ -193,7 +194,7 @@ pub(crate) fn moved(u: &[f64], h: f64, w: &[f64]) -> Vec<f64> {
     u.iter().zip(w).map(|(u, w)| u + h * w).collect()
 }
 
-/// A point of a body that remembers nothing, at t = 0.
+/// A trial point of a body without history variables, at t = 0.
 pub(crate) fn at<'a>(u: &'a [f64], v: &'a [f64]) -> Trial<'a> {
     Trial {
         load: LoadTime::at(0.0),
@@ -248,7 +249,7 @@ pub(crate) fn bent(mesh: &TetMesh, model: &Model, size: f64) -> Vec<f64> {
     })
 }
 
-/// The forces (N) of a displacement by the stiffness of the parts of a body at rest.
+/// The forces (N) of a displacement, from the stiffness of the parts of a body at rest.
 pub(crate) fn by_elements(model: &Model, u: &[f64]) -> Vec<f64> {
     let mut by_elements = vec![0.0; u.len()];
     let mut part = ElementStiffness::default();

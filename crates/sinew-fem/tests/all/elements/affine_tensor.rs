@@ -28,8 +28,8 @@ fn affine_tensor(mesh: &TetMesh, model: &Model) -> Matrix6<f64> {
     Matrix6::from_fn(|a, b| dot(&fields[a], &forces[b]) / model.report().volume)
 }
 
-/// Young's modulus (Pa) and Poisson's ratio of the isotropic tensor nearest to C (Voigt's average),
-/// and how far C is from it, relative to its size.
+/// Young's modulus (Pa) and Poisson's ratio of the isotropic tensor nearest to C (Voigt's average), and the distance of
+/// C from it, relative to its size.
 fn isotropic_part(tensor: &Matrix6<f64>) -> (f64, f64, f64) {
     let iijj = tensor.fixed_view::<3, 3>(0, 0).sum();
     let ijij = tensor.trace();

@@ -1,4 +1,4 @@
-//! The sizes by which a guard cuts steps: closed forms.
+//! The element sizes that a guard uses to limit steps, against closed forms.
 
 use crate::common::{body, build, figure, held, linear};
 use sinew_core::{Layers, System};

@@ -33,7 +33,7 @@ fn uneven_cube() -> TetMesh {
     mesh
 }
 
-/// The work of stresses on strains is twice the energy: what is shown as stress is what makes the forces.
+/// The work of stresses on strains is twice the energy: the reported stress is the one that makes the forces.
 #[test]
 fn stresses_do_the_work_that_the_energy_tells() {
     let mesh = uneven_cube();

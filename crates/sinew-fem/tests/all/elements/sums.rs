@@ -1,4 +1,4 @@
-//! The stiffness matrix is the sum of its elements, each of which can be asked for.
+//! The stiffness matrix is the sum of its elements, each of which can be requested.
 
 use crate::common::{DENSITY, at_most, linear, springs};
 use sinew_core::{

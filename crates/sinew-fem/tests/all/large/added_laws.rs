@@ -74,7 +74,7 @@ fn a_boxed_law_is_the_compiled_one_in_forces_and_tangents() {
     }
 }
 
-/// The id of the law stands in the refusal.
+/// The error message contains the id of the law.
 #[test]
 fn a_boxed_law_refuses_a_mirrored_body_by_its_name() {
     let parameters = LawParameter::MODULI;

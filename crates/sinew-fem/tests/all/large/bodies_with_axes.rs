@@ -1,5 +1,5 @@
-//! Bodies of a law with axes: forces, tangents and stiffness at rest belong together, whatever the axes are and however
-//! they are stated.
+//! Bodies of a law with axes: forces, tangents and stiffness at rest are consistent, for any axes and any way to state
+//! them.
 
 use crate::common::{
     ELEMENTS, at_most, bent, body, build, by_elements, dot, elastic, moved, product,

@@ -449,7 +449,7 @@ const PULLED_AT_WIDTH: &[[f64; 2]] = &[
     [4.96, 1.79],
 ];
 
-/// The nominal stress (MPa) of a law at constant volume, pressure being what leaves the last axis free.
+/// The nominal stress (MPa) of a law at constant volume, with the pressure that makes the last axis free of stress.
 fn of_constant_volume(law: &Hyperelastic, load: Load, stretch: f64) -> f64 {
     let free = match load {
         Load::Uniaxial => stretch.powf(-0.5),
@@ -462,9 +462,9 @@ fn of_constant_volume(law: &Hyperelastic, load: Load, stretch: f64) -> f64 {
 }
 
 /// Ogden's own terms (Proceedings of the Royal Society A 326, 1972; Holzapfel, Nonlinear Solid Mechanics, 2000, section
-/// 6.5): mu_p = .63, .0012 and -.01 MPa, which are mu_p alpha_p/2 here. The known fit: near the points where the curves
-/// are steep, above them by up to an eighth near a stretch of 2, and below the last of the points of the pull, where the
-/// rubber crystallises.
+/// 6.5): mu_p = .63, .0012 and -.01 MPa, which are mu_p alpha_p/2 here. The known fit is near the points in the steep
+/// part of the curves, up to an eighth above them near a stretch of 2, and below the last points of the pull, at which
+/// the rubber crystallises.
 #[test]
 fn rubber_of_treloar_is_fitted_by_ogdens_terms() {
     let own = |mu: f64, alpha: f64| [0.5 * mu * alpha, alpha];
@@ -517,7 +517,8 @@ fn rubber_of_treloar_is_fitted_by_ogdens_terms() {
     }
 }
 
-/// What ends at a limit ends with the tetrahedron and the law's own reason, on every element, in forces and tangents.
+/// Evaluations beyond a limit fail with the tetrahedron and the law's own reason, on every element, in forces and
+/// tangents.
 #[test]
 fn a_body_beyond_the_limit_of_its_law_is_refused_by_the_reason_of_the_law() {
     let mesh = uneven_cube();
@@ -582,7 +583,7 @@ fn a_body_beyond_the_limit_of_its_law_is_refused_by_the_reason_of_the_law() {
     }
 }
 
-/// An exponential of fibres ends by its own reason, before its squares are beyond all numbers.
+/// An exponential of fibres fails with its own reason, before its squares overflow.
 #[test]
 fn fibres_that_are_stretched_beyond_all_numbers_are_refused() {
     let mesh = uneven_cube();

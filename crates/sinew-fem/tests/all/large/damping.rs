@@ -65,7 +65,7 @@ fn bent(mesh: &TetMesh, squeeze: f64) -> Vec<f64> {
     mesh.points.iter().flat_map(|point| of(*point)).collect()
 }
 
-/// The force (N) of damping on a free body: what a velocity changes in the net force.
+/// The force (N) of damping on a free body: the change of the net force by a velocity.
 fn damping(model: &Model, u: &[f64], v: &[f64]) -> Vec<f64> {
     let still = vec![0.0; u.len()];
     let net = |v: &[f64]| {
@@ -77,7 +77,7 @@ fn damping(model: &Model, u: &[f64], v: &[f64]) -> Vec<f64> {
     resting.iter().zip(moving).map(|(a, b)| a - b).collect()
 }
 
-/// The velocities (m/s) of a turn about the origin, of the body where it is.
+/// The velocities (m/s) of a rotation of the deformed body about the origin.
 fn turning(mesh: &TetMesh, u: &[f64], omega: [f64; 3]) -> Vec<f64> {
     let places = mesh.points.iter().zip(u.as_chunks::<3>().0);
     let places = places.map(|(point, u)| [0, 1, 2].map(|k| point[k] + u[k]));
@@ -114,7 +114,7 @@ fn a_turn_of_a_strained_body_is_not_damped_and_damping_never_turns_it() {
     }
 }
 
-/// Under pressure and in bodies pressed flat the tangent has directions in which it pushes.
+/// Under pressure and in bodies pressed flat the tangent is not positive semidefinite.
 #[test]
 fn damping_takes_energy_in_any_state() {
     let mesh = uneven_cube();
@@ -214,8 +214,8 @@ fn products_matrices_and_own_blocks_of_damping_are_one() {
     }
 }
 
-/// The power of damping with moved supports, by its own sum over tetrahedra: `2 mu E':E' + lambda (J')^2` for the neo-Hookean law, with E' and J' from
-/// differences of two places.
+/// The power of damping with moved supports, from an independent sum over tetrahedra: `2 mu E':E' + lambda (J')^2` for
+/// the neo-Hookean law, with E' and J' from differences of two places.
 #[test]
 fn the_power_of_damping_counts_supports_in_motion() {
     let mesh = uneven_cube();

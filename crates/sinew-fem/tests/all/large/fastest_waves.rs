@@ -1,4 +1,4 @@
-//! The fastest wave through a tetrahedron, beside the fastest motion of the body.
+//! The fastest wave through a tetrahedron, compared with the fastest motion of the body.
 
 use nalgebra::{Matrix3, Vector3};
 use sinew_core::{ElasticLaw, State, System};
@@ -33,7 +33,7 @@ fn squares(model: &Model, u: &[f64]) -> Option<[f64; 2]> {
     Some([wave, omega * omega])
 }
 
-/// The principal stretches of bodies along the axes: pulled, pushed, and with or without sides that give way.
+/// The principal stretches of bodies along the axes: pulled, pushed, and with or without free sides.
 const STRETCHES: [[f64; 3]; 9] = [
     [1.0, 1.0, 1.35],
     [0.87, 0.87, 1.35],

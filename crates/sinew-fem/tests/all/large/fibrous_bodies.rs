@@ -18,7 +18,7 @@ const DISPERSED: Stiffening = Stiffening::Exponential {
     dispersion: 0.1,
 };
 
-/// E = 3500 Pa, nu = .45.
+/// A problem with fibres, E = 3500 Pa and nu = .45.
 fn with_fibres(id: &'static str, fibres: Fibres, direction: [f64; 3]) -> Problem {
     with_families(id, vec![FibreFamily::new(fibres, direction)])
 }
@@ -29,8 +29,8 @@ fn with_families(id: &'static str, fibres: Vec<FibreFamily>) -> Problem {
     problem
 }
 
-/// Laws with and without a meaning when inverted, with one that has a rotation, and fibres of all kinds, of one family and
-/// of four, on every element.
+/// Laws that are defined or not defined for inverted elements, among them one that has a rotation, and fibres of all
+/// kinds, of one family and of four, on every element.
 fn all() -> impl Iterator<Item = (String, Problem)> {
     let kinds = [QUADRATIC, DISPERSED].map(|kind| Fibres::new(kind).unwrap());
     let kinds = [kinds[0], kinds[1], kinds[0].split(), kinds[1].split()];
@@ -154,7 +154,8 @@ fn own_blocks_stay_definite_and_are_no_less_than_those_of_the_tangent() {
     }
 }
 
-/// A step that is stable with idle fibres is so too when they are pulled: the bound of the fastest motions takes them as pulled.
+/// A step that is stable with fibres in compression is also stable when they are pulled: the bound of the fastest
+/// motions takes them as pulled.
 #[test]
 fn the_elements_and_the_spectrum_at_rest_have_the_fibres_as_if_they_were_pulled() {
     let mesh = uneven_cube();

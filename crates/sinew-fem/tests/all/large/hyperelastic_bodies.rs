@@ -306,7 +306,8 @@ fn regions_of_different_laws_and_elements_add_up() {
     at_most("force", relative_difference(&force, &sum), 1e-13);
 }
 
-/// A block that is stretched, sheared and turned as one has the stress `P F'/J` of its law, Green's strain and the reactions that hold it so.
+/// A block that is stretched, sheared and turned uniformly has the stress `P F'/J` of its law, Green's strain and the
+/// reactions that keep this state.
 #[test]
 fn a_uniform_deformation_has_its_stress_strain_and_reactions() {
     use nalgebra::{Matrix3, Vector3};
@@ -348,7 +349,7 @@ fn a_uniform_deformation_has_its_stress_strain_and_reactions() {
     }
 }
 
-/// The supports hold what the loads bring, with stiffness damping of a motion too.
+/// The supports balance the loads, also with stiffness damping of a motion.
 #[test]
 fn reactions_are_the_forces_that_are_missing() {
     let mesh = uneven_cube();
@@ -386,7 +387,8 @@ fn reactions_are_the_forces_that_are_missing() {
     }
 }
 
-/// A tangent without a block for each coupling would be another matrix, also of linear regions; with more blocks it is the same.
+/// A tangent without a block for each coupling would be a different matrix, also for linear regions; with more blocks
+/// it is the same.
 #[test]
 fn a_tangent_on_another_pattern_is_refused_and_on_a_larger_one_taken() {
     let mesh = uneven_cube();

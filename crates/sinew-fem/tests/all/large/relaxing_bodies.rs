@@ -30,7 +30,7 @@ fn memory(part: ViscousPart) -> Memory {
     series(&[(0.3, 0.05), (0.2, 0.5)], part)
 }
 
-/// E = 3500 Pa, nu = .45.
+/// A problem with E = 3500 Pa and nu = .45.
 fn of(id: &'static str, element: Element, memory: Option<Memory>) -> Problem {
     let parameters = Hyperelastic::parameters(id, 3500.0, 0.45).unwrap();
     let mut problem = body(Law::hyperelastic(id, parameters));
@@ -79,7 +79,7 @@ fn bent(mesh: &TetMesh, model: &Model, size: f64) -> Vec<f64> {
     })
 }
 
-/// A state that remembers nothing but rest.
+/// A state with the history variables of rest.
 fn at_rest(model: &Model) -> State {
     let mut state = State::at_rest(model.dofs());
     state.internal = vec![0.0; model.internal_variables()];
@@ -198,7 +198,8 @@ fn apart(a: &[[f64; 6]], b: &[[f64; 6]]) -> f64 {
     max_abs(&differences) / max_abs(b.as_flattened())
 }
 
-/// Held for ever, a body is one of the long-term moduli, which its stresses, forces and energy tell when they are asked without memory.
+/// A body under constant deformation for an infinite time has the long-term moduli. Its stresses, forces and energy
+/// without history variables show them.
 #[test]
 fn in_the_long_term_a_body_has_the_long_term_moduli() {
     let mesh = uneven_cube();

@@ -1,11 +1,11 @@
-//! Questions about a body that follows inputs, asked without them.
+//! Queries of a body that follows inputs, without these inputs.
 
 use crate::common::{body, build, held, linear};
 use sinew_core::{Between, Inputs, LoadTime, Ramp, System};
 use sinew_fem::{Course, FieldError, LoadKind, LoadSpec, Model, Moving};
 use sinew_mesh::structured::{self, Split};
 
-/// All that a model says of a state at a time: what depends on where supports are, and the forces of
+/// All results of a model for a state at a time: those that depend on the positions of supports, and the forces of
 /// supports.
 fn answers(model: &Model, when: LoadTime<'_>) -> [Vec<Result<(), FieldError>>; 2] {
     let (u, v) = (vec![0.0; model.dofs()], vec![0.0; model.dofs()]);

@@ -1,4 +1,4 @@
-//! Models: supports, loads, regions, questions.
+//! Models: supports, loads, regions, queries.
 
 mod loads;
 mod missing_inputs;

@@ -1,4 +1,4 @@
-//! The faults for which a problem is refused, and the words.
+//! The faults for which a problem is refused, and the messages.
 
 use crate::common::{DENSITY, add_node_group, body, held, held_along, linear, load, springs};
 use sinew_core::{Ramp, RampError};
@@ -11,7 +11,7 @@ use sinew_mesh::{Group, GroupMembers, TetMesh};
 const KNOWN: &str = "the groups are \"tissue\" (dimension 3), \"sides\" (dimension 2), \
                      \"top\" (dimension 2), \"bottom\" (dimension 2)";
 
-/// Two hexahedra along each edge, tags from 101.
+/// A mesh of two hexahedra along each edge, tags from 101.
 fn mesh() -> TetMesh {
     let mut mesh = structured::cube(2, 0.1, Split::Kuhn).unwrap();
     mesh.tet_tags.iter_mut().for_each(|tag| *tag += 100);

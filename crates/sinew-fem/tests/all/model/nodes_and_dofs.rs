@@ -1,4 +1,4 @@
-//! Between nodes and degrees of freedom, and forces on nodes.
+//! Conversions between nodes and degrees of freedom, and forces on nodes.
 
 use crate::common::{body, build, held, held_along, linear};
 use sinew_core::{LinearSystem, Load, LoadTime, Ramp, System};
@@ -6,7 +6,7 @@ use sinew_fem::{FieldError, ForceError, Model, NodalForces};
 use sinew_mesh::TetMesh;
 use sinew_mesh::structured::{self, Split};
 
-/// Held at the bottom, and in x at the top.
+/// A block that is fixed at the bottom, and in x at the top.
 fn block() -> (TetMesh, Model) {
     let mesh = structured::block([2; 3], [0.1, 0.2, 0.3], Split::Kuhn).unwrap();
     let mut problem = body(linear(3500.0, 0.3));
@@ -15,7 +15,7 @@ fn block() -> (TetMesh, Model) {
     (mesh, model)
 }
 
-/// The components of a node that are held, by its place.
+/// The fixed components of a node, from its position.
 fn held_axes(mesh: &TetMesh, node: usize) -> [bool; 3] {
     let height = mesh.points[node][2];
     if height == 0.0 {
@@ -77,7 +77,7 @@ fn slices_of_the_wrong_length_are_refused() {
     );
 }
 
-/// The top corner, held in x, gets a force in all directions; so does the bottom corner, held altogether.
+/// The top corner, fixed in x, gets a force in all directions; so does the bottom corner, fixed in all directions.
 #[test]
 fn forces_on_held_components_move_nothing_and_are_listed() {
     let (mesh, model) = block();
@@ -111,7 +111,7 @@ fn forces_on_held_components_move_nothing_and_are_listed() {
     }
 }
 
-/// Against sums at each node in the order in which the forces are given.
+/// Comparison with sums at each node in the order in which the forces are given.
 #[test]
 fn forces_in_any_order_take_the_place_of_those_before() {
     let (mesh, model) = block();

@@ -110,7 +110,7 @@ fn held_and_moved(law: Law, damping: Rayleigh) -> Problem {
     }
 }
 
-/// Newton's first law: what holds and what moves a body together bear all loads.
+/// Newton's first law: the fixed and the moved parts together bear all loads.
 #[test]
 fn reactions_of_held_and_moved_parts_balance_all_loads() {
     let mesh = bar();
@@ -210,7 +210,7 @@ fn reactions_in_motion_are_the_change_of_momentum() {
     }
 }
 
-/// A load on what is moved changes its reaction and nothing else.
+/// A load on a moved part changes its reaction and nothing else.
 #[test]
 fn a_load_on_a_moved_part_changes_its_reaction_alone() {
     let mesh = bar();

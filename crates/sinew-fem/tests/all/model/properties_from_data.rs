@@ -1,4 +1,5 @@
-//! Young's modulus, density and the direction of fibres by the data of a mesh: closed forms, equal regions, one energy, refusals.
+//! Young's modulus, density and the direction of fibres from the data of a mesh: closed forms, equal regions, one
+//! energy, errors.
 
 use crate::common::{
     ELEMENTS, at, at_most, body, build, dot, elastic, equilibrium, held, held_along, linear, load,
@@ -42,7 +43,7 @@ fn memory(part: ViscousPart) -> Option<Memory> {
     })
 }
 
-/// Gives a mesh data by a function of the tetrahedron.
+/// Adds data to a mesh, from a function of the tetrahedron.
 fn add<const N: usize>(mesh: &mut TetMesh, name: &str, of: impl Fn(usize) -> [f64; N]) {
     let values = (0..mesh.tets.len()).flat_map(of);
     mesh.data.push(TetData {
@@ -98,7 +99,7 @@ fn bent(mesh: &TetMesh, model: &Model, size: f64) -> Vec<f64> {
     })
 }
 
-/// All laws on all elements they go with, with fibres and memory where a law takes them.
+/// All laws on all elements that support them, with fibres and memory if a law supports them.
 fn kinds() -> Vec<(String, Problem)> {
     let mut kinds = Vec::new();
     for element in ELEMENTS {
@@ -140,7 +141,8 @@ fn used(mesh: &TetMesh, model: &Model) -> State {
     state
 }
 
-/// Energy (J), force (N), a product of the tangent (N), stresses (Pa), own blocks and the squares of frequencies in a state with a past.
+/// Energy (J), force (N), a product of the tangent (N), stresses (Pa), own blocks and the squares of frequencies in a
+/// state with a history.
 fn everything(mesh: &TetMesh, model: &Model) -> Vec<Vec<f64>> {
     let state = used(mesh, model);
     let u = bent(mesh, model, 0.3);
@@ -378,7 +380,7 @@ fn stresses_of_linear_bodies_do_the_work_that_the_energy_tells() {
     }
 }
 
-/// Six motions take no force, and nothing else does, where neighbours are a thousand times as stiff.
+/// Only the six rigid motions need no force, also if neighbours are a thousand times as stiff.
 #[test]
 fn jumps_of_the_modulus_leave_the_matrix_symmetric_and_its_only_null_vectors_rigid() {
     let mut mesh = structured::cube(2, 0.1, Split::Kuhn).unwrap();
@@ -426,7 +428,8 @@ fn pulled(mesh: &TetMesh, mut problem: Problem, traction: f64) -> Model {
     build(mesh, &problem)
 }
 
-/// Two halves in series under a traction t: `u = t (l1/E1 + l2/E2)`, where nothing shrinks across (Poisson's ratio 0).
+/// Two halves in series under a traction t: `u = t (l1/E1 + l2/E2)`, without transverse contraction (Poisson's ratio
+/// 0).
 #[test]
 fn two_layers_in_series_give_way_by_the_sum_of_their_compliances() {
     let mut mesh = bar();
@@ -456,8 +459,8 @@ fn two_layers_in_series_give_way_by_the_sum_of_their_compliances() {
     }
 }
 
-/// The same of a law of large deformation: neo-Hookean without Poisson's ratio has `P = mu (l - 1/l)` and does not shrink, and so do two
-/// halves of their own stretches.
+/// The same for a law of large deformation: with Poisson's ratio 0 a neo-Hookean bar has `P = mu (l - 1/l)` and does
+/// not contract, and the same holds for two halves with their own stretches.
 #[test]
 fn two_layers_in_series_have_the_stretches_of_their_law() {
     let mut mesh = bar();
@@ -547,7 +550,7 @@ fn a_bar_of_two_densities_weighs_and_hangs_as_it_should() {
     at_most("tip", (mean(0.0) / -(below + above) - 1.0).abs(), 2e-3);
 }
 
-/// A region for each layer, which has a direction of its own, in the order of the tetrahedra.
+/// A region for each layer, which has its own direction, in the order of the tetrahedra.
 #[test]
 fn fibres_that_turn_through_a_bar_have_the_bits_of_regions_with_a_direction_each() {
     let mut mesh = bar();

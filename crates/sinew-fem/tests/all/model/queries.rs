@@ -1,4 +1,4 @@
-//! Questions that a model answers about a state and about itself.
+//! Queries of a model about a state and about the model.
 
 use crate::common::{body, build, figure, held, linear, on_cells};
 use sinew_core::System;
@@ -9,7 +9,7 @@ use sinew_mesh::structured::{self, Split};
 const SIZE: [f64; 3] = [0.1, 0.2, 0.3];
 const YOUNGS_MODULUS: f64 = 3500.0;
 
-/// Two hexahedra along each edge, node tags from 101, free to move.
+/// A free block of two hexahedra along each edge, node tags from 101.
 fn block() -> (TetMesh, Model) {
     let mut mesh = structured::block([2; 3], SIZE, Split::Kuhn).unwrap();
     mesh.node_tags.iter_mut().for_each(|tag| *tag += 100);

@@ -33,7 +33,7 @@ fn damped_springs() -> Law {
     }
 }
 
-/// Any three numbers for each node.
+/// Three arbitrary numbers for each node.
 fn field(nodes: usize, seed: f64) -> Vec<[f64; 3]> {
     let value = |node: usize, axis: usize| ((3 * node + axis) as f64 * seed).sin();
     (0..nodes)
@@ -45,7 +45,7 @@ fn sum(forces: &[[f64; 3]]) -> [f64; 3] {
     std::array::from_fn(|axis| forces.iter().map(|force| force[axis]).sum())
 }
 
-/// Held in various ways, loaded on what is held and on what is not.
+/// A problem with various supports, with loads on fixed and on free parts.
 fn held_and_loaded(law: Law) -> Problem {
     Problem {
         fixed: vec![
@@ -63,7 +63,7 @@ fn held_and_loaded(law: Law) -> Problem {
     }
 }
 
-/// Newton's first law: all that supports do is the opposite of all loads.
+/// Newton's first law: the sum of all reactions is the opposite of all loads.
 #[test]
 fn at_rest_reactions_balance_all_loads() {
     let mesh = bar();
@@ -136,8 +136,8 @@ fn a_pulled_bar_is_held_by_the_opposite_force() {
     assert_eq!(free, Ok([0.0; 3]));
 }
 
-/// The supports carry M a + D v + K u - F at what they hold, by the rows of the same body held nowhere,
-/// whatever the motion.
+/// The supports carry M a + D v + K u - F at fixed components, from the rows of the same body without supports, for any
+/// motion.
 #[test]
 fn moving_supports_feel_the_rows_of_the_free_body() {
     let mesh = bar();

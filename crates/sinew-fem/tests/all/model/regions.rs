@@ -11,7 +11,7 @@ use sinew_mesh::{Group, GroupMembers, TetMesh};
 
 const LENGTH: f64 = 0.1;
 
-/// A bar along z whose lower 2/5 and upper 3/5 are groups of their own.
+/// A bar along z whose lower 2/5 and upper 3/5 are separate groups.
 fn bar() -> TetMesh {
     let mut mesh = structured::block([2, 2, 5], [0.04, 0.04, LENGTH], Split::Kuhn).unwrap();
     let centre = |tet: &[u32; 4]| {
@@ -99,8 +99,8 @@ fn cutting_a_body_into_regions_changes_nothing() {
     }
 }
 
-/// All six springs of a tetrahedron are alike under Lloyd's rule, and so are its four masses:
-/// D = gamma 2 sqrt(2 m/k) K.
+/// All six springs of a tetrahedron are equal under Lloyd's rule, and so are its four masses: D = gamma 2 sqrt(2 m/k)
+/// K.
 #[test]
 fn dashpots_are_the_share_of_critical_damping_asked_for() {
     let corners = vec![

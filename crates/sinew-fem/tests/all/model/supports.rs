@@ -1,4 +1,4 @@
-//! Nodes held in some directions only.
+//! Nodes fixed in some directions only.
 
 use crate::common::{
     add_node_group, at_most, body, build, equilibrium, figure, held_along, jitter, linear, load,

@@ -21,7 +21,7 @@ fn problem(law: Law) -> Problem {
     }
 }
 
-/// Another material, damping and load each.
+/// Problems that each have another material, damping and load.
 fn others() -> Vec<Problem> {
     let damped = Law::Springs {
         youngs_modulus: 900.0,
@@ -47,7 +47,7 @@ fn bits(values: &[f64]) -> Vec<u64> {
     values.iter().map(|value| value.to_bits()).collect()
 }
 
-/// Every number that integrators and users see.
+/// Every number that integrators and users can read.
 fn fingerprint(model: &Model) -> Vec<Vec<u64>> {
     let operators = model.operators();
     let mut all = vec![bits(operators.mass()), bits(model.node_masses())];

@@ -1,4 +1,4 @@
-//! Supports and loads on nodes and triangles are those on groups.
+//! Supports and loads on nodes and triangles equal those on groups.
 
 use crate::common::{body, build, linear, springs};
 use sinew_core::{LinearSystem, Load};
@@ -21,7 +21,7 @@ fn nodes(mesh: &TetMesh, group: &str) -> Vec<u32> {
     mesh.group_nodes(mesh.group(group).unwrap())
 }
 
-/// Held at two places and loaded in every way at others.
+/// A problem with supports at two places and loads of all kinds at others.
 fn problem(on: impl Fn(&str, bool) -> On) -> Problem {
     let fixed = |group, axes| Fixed::at(on(group, false)).along(axes);
     let load = |group, surface, kind| LoadSpec::new(on(group, surface), kind);

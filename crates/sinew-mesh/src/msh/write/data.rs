@@ -1,4 +1,4 @@
-//! Data fields, which both versions write alike.
+//! Data fields, which are written in the same way in both versions.
 
 use std::io::Write;
 
@@ -165,7 +165,7 @@ fn cell_rows<'r>(
     rows.collect()
 }
 
-/// Tags of rows have 4 bytes in binary files of either version.
+/// Writes the tag of a row, which has 4 bytes in binary files of both versions.
 fn write_tag(tag: u64, to: &mut Sink<impl Write>) -> Result<(), WriteMshError> {
     match i32::try_from(tag) {
         Ok(tag) => to.int(tag)?,

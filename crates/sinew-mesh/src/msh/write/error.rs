@@ -6,7 +6,7 @@ use std::io;
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum WriteMshError {
-    /// The destination refused.
+    /// The destination cannot be written.
     #[error("the mesh cannot be written: {0}")]
     Io(#[from] io::Error),
     /// A coordinate is infinite or NaN.

@@ -14,7 +14,7 @@ pub enum MshEncoding {
 pub(super) struct Sink<W> {
     to: W,
     encoding: MshEncoding,
-    /// True if, in text, the row has a number already.
+    /// True if, in text, the row already has a number.
     is_inside_row: bool,
 }
 

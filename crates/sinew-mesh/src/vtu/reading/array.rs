@@ -10,10 +10,10 @@ use crate::reading::fault::Fault;
 use crate::reading::number;
 use crate::unstructured::Scalar;
 
-/// An array as its tag describes it.
+/// An array, as described by its tag.
 pub(super) struct Array {
     pub(super) name: String,
-    /// The type of its numbers, as the file calls it.
+    /// The type of its numbers, by its name in the file.
     type_name: String,
     pub(super) components: usize,
     /// The tag's place.
@@ -25,7 +25,7 @@ pub(super) struct Array {
 enum Place {
     Text(Range<usize>),
     Base64(Range<usize>),
-    /// Bytes behind the beginning of the appended numbers.
+    /// Offset in bytes from the beginning of the appended numbers.
     Appended(usize),
 }
 
@@ -37,7 +37,7 @@ pub(super) enum Appended<'a> {
     Base64(&'a [u8]),
 }
 
-/// All bytes of a file, with what is needed to find an array's numbers among them.
+/// All bytes of a file, with the data needed to find an array's numbers among them.
 pub(super) struct File<'a> {
     pub(super) bytes: &'a [u8],
     pub(super) encoding: Encoding,
@@ -83,7 +83,7 @@ impl Array {
         }
     }
 
-    /// The type of the numbers; `None` for texts, bits and what is not known.
+    /// The type of the numbers; `None` for texts, bits and unknown types.
     pub(super) fn scalar(&self) -> Option<Scalar> {
         Some(match self.type_name.as_str() {
             "Int8" => Scalar::I8,
@@ -182,7 +182,7 @@ impl Array {
         }
     }
 
-    /// The bytes of the numbers, of which there are whole ones.
+    /// The bytes of the numbers, after a check that they are whole numbers of bytes.
     fn whole_bytes(&self, file: &File<'_>, scalar: Scalar) -> Result<Vec<u8>, Fault> {
         let source = match (&self.place, file.appended) {
             (Place::Base64(range) | Place::Text(range), _) => {

@@ -1,6 +1,6 @@
 //! Base64 decoded piece by piece.
 
-/// Base64 of RFC 4648 that follows one another: what is encoded in pieces, each filled up with `=`, reads as one.
+/// A reader of consecutive base64 texts of RFC 4648: pieces that are each padded with `=` are read as one.
 pub(super) struct Base64<'a> {
     text: &'a [u8],
     /// Decoded bytes that were not requested yet, the next one last.
@@ -35,7 +35,7 @@ impl<'a> Base64<'a> {
         }
     }
 
-    /// The next `length` bytes; `None` if there are fewer, or the text is no base64.
+    /// The next `length` bytes; `None` if there are fewer, or the text is not base64.
     pub(super) fn take(&mut self, length: usize) -> Option<Vec<u8>> {
         // Four characters make at most three bytes.
         if length > self.waiting.len().saturating_add(self.text.len()) {

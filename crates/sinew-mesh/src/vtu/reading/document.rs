@@ -7,7 +7,7 @@ use crate::reading::cursor::quoted;
 use crate::reading::fault::Fault;
 use crate::unstructured::{ByteOrder, Scalar};
 
-/// A file as its tags describe it.
+/// A file, as described by its tags.
 pub(super) struct Document {
     encoding: Encoding,
     unread_compressor: Option<UnreadCompressor>,
@@ -27,10 +27,10 @@ pub(super) struct Piece {
     pub(super) cell_data: Vec<Array>,
 }
 
-/// The numbers behind the tags.
+/// The numbers after the tags.
 #[derive(Clone, Copy)]
 struct AppendedData {
-    /// Offset of their first byte, behind the underscore.
+    /// Offset of their first byte, after the underscore.
     start: usize,
     is_base64: bool,
 }
@@ -156,7 +156,7 @@ enum Section {
     Cells,
     PointData,
     CellData,
-    /// Values of the grid as a whole, which are no data of a mesh.
+    /// Values of the grid as a whole, which are not data of a mesh.
     FieldData,
 }
 

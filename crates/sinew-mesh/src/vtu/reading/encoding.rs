@@ -1,4 +1,4 @@
-//! The bytes of an array: plain or as base64, compressed or not.
+//! The bytes of an array: plain or as base64, compressed or uncompressed.
 
 use super::base64::Base64;
 use crate::reading::cursor::quoted;
@@ -75,8 +75,8 @@ impl Encoding {
         usize::try_from(*numbers.first()?).ok()
     }
 
-    /// The numbers of a compressed array: the number of blocks, the size of a block before compression and that of the last one if it
-    /// is smaller, the size of each after compression, then the blocks, each a zlib stream of its own.
+    /// The numbers of a compressed array: the number of blocks, the size of a block before compression and that of the
+    /// last one if it is smaller, the size of each after compression, then the blocks, each a separate zlib stream.
     #[cfg(feature = "compress")]
     fn inflated(self, source: &mut Source<'_>) -> Option<Vec<u8>> {
         use std::io::Read;

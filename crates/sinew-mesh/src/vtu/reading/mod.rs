@@ -1,8 +1,8 @@
 //! Reads `.vtu` files: XML with an unstructured grid, its numbers as text, as base64, or appended as bytes or base64, plain or
 //! compressed by zlib, of either byte order.
 //!
-//! The tags are read first (`document`), up to the appended numbers, which are no XML; then the numbers of each array
-//! (`array`, `encoding`), and the pieces are put together to one mesh.
+//! The tags are read first (`document`), up to the appended numbers, which are not XML; then the numbers of each array
+//! (`array`, `encoding`), and the pieces are joined to one mesh.
 //!
 //! | case | what the reader does |
 //! |---|---|
@@ -39,12 +39,12 @@ use document::{Document, Piece};
 
 /// Reads the bytes of a .vtu file.
 ///
-/// Integer arrays keep their values as data of points and cells; [`Mesh::groups_from_data`] makes groups of labels. What
-/// [`write_vtu`](super::write_vtu) wrote gives its groups and tags back.
+/// Integer arrays keep their values as data of points and cells; [`Mesh::groups_from_data`] makes groups of labels.
+/// Files of [`write_vtu`](super::write_vtu) give back their groups and tags.
 ///
 /// # Errors
 ///
-/// If the bytes are no such file, or are inconsistent; the error names the place and what was expected there.
+/// If the bytes are not such a file, or are inconsistent; the error names the place and the expected content.
 ///
 /// ```
 /// use sinew_mesh::structured::{Split, cube};

@@ -1,4 +1,4 @@
-//! Tags and texts of XML, as far as .vtu files have them.
+//! Tags and texts of XML, as far as .vtu files need them.
 
 use crate::reading::cursor::quoted;
 use crate::reading::fault::Fault;
@@ -22,7 +22,7 @@ pub(super) struct Tag<'a> {
 }
 
 impl Tag<'_> {
-    /// The value of an attribute on one line, with the characters that XML reserves in their place.
+    /// The value of an attribute on one line, with the characters that XML reserves restored.
     pub(super) fn attribute(&self, name: &str) -> Option<String> {
         let given = self.attributes.iter().find(|(given, _)| *given == name);
         given.map(|(_, value)| unescaped(value).replace(char::is_control, " "))
@@ -63,7 +63,7 @@ impl<'a> Xml<'a> {
         self.bytes.get(self.offset..).unwrap_or_default()
     }
 
-    /// The next tag or text; `None` at the end of the file. Comments, declarations and instructions are passed over.
+    /// The next tag or text; `None` at the end of the file. Comments, declarations and instructions are skipped.
     pub(super) fn next(&mut self) -> Result<Option<Part<'a>>, Fault> {
         loop {
             let rest = self.rest();
@@ -142,7 +142,7 @@ fn not_text(offset: usize) -> Fault {
     Fault::new(offset, "a tag has bytes that are no text", "text in UTF-8")
 }
 
-/// The bytes of the tag that begins here, its `>` among them; one in an attribute's value does not end it.
+/// Number of bytes of the tag that begins here, including its `>`; a `>` in an attribute's value does not end it.
 fn length_of_tag(bytes: &[u8]) -> Option<usize> {
     let mut quote = None;
     let end = bytes.iter().position(|&byte| match quote {
@@ -188,7 +188,7 @@ fn attributes_of(mut text: &str, offset: usize) -> Result<Vec<(&str, &str)>, Fau
     }
 }
 
-/// Text with characters in the place of their names and numbers; names that are not known stay.
+/// Text with names and numbers of characters replaced by the characters; unknown names stay.
 fn unescaped(text: &str) -> String {
     let mut plain = String::with_capacity(text.len());
     let mut rest = text;

@@ -1,4 +1,4 @@
-//! Damaged files, and what must hold for whatever is read from them.
+//! Damaged files, and checks of any mesh read from them.
 
 use proptest::prelude::*;
 use proptest::sample::{Index, select};
@@ -10,13 +10,13 @@ pub(crate) enum Damage {
     Truncate(Index),
     FlipBits(Index, u8),
     Overwrite(Index, Vec<u8>),
-    /// Copies a piece of the file over another place.
+    /// Copies a piece of the file to another position.
     Splice(Index, usize, Index),
     RemoveLine(Index),
     SwapLines(Index, Index),
     /// Replaces a number by a hostile one.
     Number(Index, &'static str),
-    /// Writes a hostile number of so many bytes over another.
+    /// Overwrites bytes by a hostile number of this many bytes.
     Bytes(Index, u64, usize),
 }
 
@@ -116,7 +116,7 @@ pub(crate) fn apply(damage: &Damage, bytes: &mut Vec<u8>) {
     }
 }
 
-/// Checks what holds for every mesh that was read, however odd the file.
+/// Checks the properties of every mesh that was read, for any file.
 pub(crate) fn assert_consistent(mesh: &Mesh) {
     assert_eq!(mesh.node_tags.len(), mesh.points.len());
     assert!(mesh.points.iter().flatten().all(|x| x.is_finite()));

@@ -9,7 +9,7 @@ pub(crate) enum Encoding {
     Text,
     Little,
     Big,
-    /// With a `size_t` of 4 bytes.
+    /// Little-endian with a `size_t` of 4 bytes.
     LittleNarrow,
     BigNarrow,
 }
@@ -90,14 +90,14 @@ impl Out {
         }
     }
 
-    /// In text, ends a row.
+    /// Ends a row, in text.
     fn end_row(&mut self) {
         if self.encoding == Encoding::Text {
             self.bytes.push(b'\n');
         }
     }
 
-    /// In binary, ends the bytes of a section.
+    /// Ends the bytes of a section, in binary.
     fn end(&mut self, section: &str) {
         if self.encoding != Encoding::Text {
             self.bytes.push(b'\n');

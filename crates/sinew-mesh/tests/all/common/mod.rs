@@ -79,12 +79,12 @@ $Elements
 $EndElements
 ";
 
-/// Reads a file that must be right.
+/// Reads a file that must be valid.
 pub(crate) fn read(text: &str) -> Mesh {
     read_msh(text.as_bytes()).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// A mesh with all there is: data with gaps, links, groups, sparse tags.
+/// A mesh with all features: data with gaps, links, groups, sparse tags.
 pub(crate) fn full_mesh() -> Mesh {
     let mut mesh = read(TWO_REGIONS_41);
     let nan = f64::NAN;
@@ -162,7 +162,7 @@ pub(crate) fn only_warning(mesh: &Mesh) -> String {
     all[0].clone()
 }
 
-/// Line and byte of the first occurrence, as messages show them.
+/// Line and byte of the first occurrence, in the form of messages.
 pub(crate) fn place(text: &str, part: &str) -> String {
     let byte = text.find(part).expect("the part occurs");
     let line = 1 + text[..byte].matches('\n').count();

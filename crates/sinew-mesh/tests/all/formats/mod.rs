@@ -1,6 +1,6 @@
 //! Meshes in formats other than .msh.
 //!
-//! The files under `data/formats` are one small mesh as VTK 9.7 and meshio 5.3.5 write it in each encoding.
+//! The files under `data/formats` are one small mesh, written by VTK 9.7 and meshio 5.3.5 in each encoding.
 
 mod abaqus;
 mod by_hand;

@@ -14,7 +14,7 @@ fn written(mesh: &Mesh, encoding: VtuEncoding) -> Vec<u8> {
     bytes
 }
 
-/// Dimension, name and members of each group. Its tag may be another where all its cells have another group first.
+/// Dimension, name and members of each group. Its tag may differ if all its cells have another group first.
 fn groups(mesh: &Mesh) -> Vec<(u8, String, GroupMembers)> {
     let groups = mesh.to_tet_mesh().expect("tetrahedra").groups.into_iter();
     let mut groups: Vec<_> = groups

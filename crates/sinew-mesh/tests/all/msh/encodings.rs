@@ -1,5 +1,5 @@
-//! Every version in every encoding, with files encoded here, not by the crate: byte orders and widths that no writer at
-//! hand makes.
+//! Every version in every encoding, with files encoded here, not by the crate: byte orders and widths that no available
+//! writer produces.
 
 use crate::common::encode::{ALL, Encoding, Layout, encoded};
 use crate::common::{TWO_REGIONS_41, messages, read};
@@ -10,7 +10,7 @@ fn decoded(layout: Layout, mesh: &Mesh) -> Mesh {
     read_msh(&bytes).unwrap_or_else(|error| panic!("{layout:?}: {error}"))
 }
 
-/// Removes what a version cannot hold from the mesh that should come back.
+/// Removes the parts that a version cannot store from the expected mesh.
 fn as_held_by(layout: Layout, mesh: &Mesh) -> Mesh {
     let mut mesh = mesh.clone();
     if layout.version == "1" {

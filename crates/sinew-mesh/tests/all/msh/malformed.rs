@@ -1,4 +1,4 @@
-//! Files that break the format: each is refused, with the place and what was expected.
+//! Files that break the format: each is refused, with the place and the expected content.
 
 use crate::common::{TWICE_22, TWO_REGIONS_41, refusal, with};
 

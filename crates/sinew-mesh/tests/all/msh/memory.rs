@@ -6,12 +6,12 @@ use sinew_core::CountingAllocator;
 use sinew_mesh::structured::{Split, cube};
 use sinew_mesh::{MshEncoding, MshVersion, read_msh, write_msh};
 
-/// The most bytes that are in use at a time while a file is read.
+/// The largest number of bytes in use while a file is read.
 fn peak(bytes: &[u8]) -> usize {
     CountingAllocator::peak(|| drop(read_msh(bytes))).1
 }
 
-/// Small files pay for messages and first allocations.
+/// Allowance of small files for messages and first allocations.
 const START: usize = 32 << 10;
 
 #[test]

@@ -8,7 +8,7 @@ use std::str::SplitAsciiWhitespace;
 
 use sinew_mesh::{CellType, Mesh, read_msh};
 
-/// The files of a pack, and what meshio reads from each, where it reads it.
+/// The files of a pack, and meshio's result for each that it reads.
 struct Pack {
     files: BTreeMap<String, Vec<u8>>,
     expected: BTreeMap<String, String>,
@@ -42,7 +42,7 @@ fn pack(name: &str) -> Pack {
     pack
 }
 
-/// Dimension and entities, transformation, pairs of node tags less one.
+/// Dimension and entities, transformation, pairs of node tags minus one.
 type Link = (Vec<i32>, Vec<f64>, Vec<Vec<u64>>);
 
 /// meshio's arrays.
@@ -168,7 +168,7 @@ fn rows(values: &[f64], components: usize) -> Vec<Vec<f64>> {
         .collect()
 }
 
-/// The mesh in meshio's arrangement, as far as meshio has it.
+/// The mesh in meshio's arrangement, limited to meshio's contents.
 fn arrays_of(mesh: &Mesh) -> Arrays {
     let singles = |values: Vec<i32>| values.into_iter().map(|x| vec![f64::from(x)]).collect();
     let mut arrays = Arrays {
@@ -236,7 +236,7 @@ fn arrays_of(mesh: &Mesh) -> Arrays {
     arrays
 }
 
-/// Compares what meshio has; what it leaves out is left out here, too.
+/// Compares the contents of meshio; contents that it leaves out are not compared.
 fn assert_same(name: &str, mesh: &Mesh, expected: &Arrays) {
     let mut read = arrays_of(mesh);
     read.point_data

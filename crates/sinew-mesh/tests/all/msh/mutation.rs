@@ -1,4 +1,4 @@
-//! Damaged files: whatever happens to the bytes, reading ends with a mesh or an error, never with a panic.
+//! Damaged files: for any change of the bytes, reading ends with a mesh or an error, never with a panic.
 
 use std::sync::LazyLock;
 
@@ -41,7 +41,7 @@ fn valid_files() -> &'static [Vec<u8>] {
     &VALID
 }
 
-/// Checks what the reader promises for any bytes.
+/// Checks the guarantees of the reader for any bytes.
 fn assert_survives(bytes: &[u8]) {
     let mesh = match read_msh(bytes) {
         Err(error) => {
@@ -112,7 +112,7 @@ fn every_single_byte_may_be_wrong() {
     }
 }
 
-/// Every prefix is refused or warned about, except those that lack nothing but optional sections, or a part of the last
+/// Every prefix is refused or gives a warning, except those that lack only optional sections, or a part of the last
 /// line break.
 #[test]
 fn no_cut_file_passes_unnoticed() {

@@ -1,9 +1,9 @@
-//! Valid files: what is read, what is warned about.
+//! Valid files: contents and warnings.
 
 use crate::common::{TWICE_22, TWO_REGIONS_41, messages, only_warning, place, read, refusal, with};
 use sinew_mesh::{CellSet, CellType, Entity, Mesh};
 
-/// The mesh without its warnings, to compare two files that differ in what they are warned about.
+/// The mesh without its warnings, to compare two files that differ in their warnings.
 fn without_warnings(mut mesh: Mesh) -> Mesh {
     mesh.warnings.clear();
     mesh.skipped_sections.clear();

@@ -21,7 +21,7 @@ $ELM
 $ENDELM
 ";
 
-/// The error of the file with one place changed, which stands at the first `at` after the change.
+/// The error of the file with one place changed, which is at the first `at` after the change.
 #[track_caller]
 fn refused((from, to): (&str, &str), at: &str, expected: &str) {
     let text = with(TWICE_1, from, to);

@@ -23,7 +23,7 @@ fn read_back(mesh: &Mesh, format: (MshVersion, MshEncoding)) -> Mesh {
     read_msh(&written(mesh, format)).unwrap_or_else(|error| panic!("{format:?}: {error}"))
 }
 
-/// Meshes as text, since NaN is not equal to itself.
+/// A mesh as text, since NaN is not equal to itself.
 fn shown(mesh: &Mesh) -> String {
     let mut mesh = mesh.clone();
     mesh.warnings.clear();

@@ -6,7 +6,7 @@ use toml::Value;
 
 use crate::decode::Shape;
 
-/// Values just outside what a key takes, and of other types.
+/// Values just outside the range of a key, and of other types.
 pub(super) fn of(shape: &Shape) -> Vec<Value> {
     match shape {
         Shape::Number(low, high) => {

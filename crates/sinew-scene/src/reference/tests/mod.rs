@@ -21,7 +21,7 @@ use crate::scene::DOCUMENT;
 use crate::{OutputSettings, RunSettings, Scene, SceneSource, Subject};
 use spots::Spot;
 
-/// All that is decoded of a scene, or the reason why it is not.
+/// Everything that is decoded of a scene, or the error.
 fn decoded(scene: &Table) -> Result<(String, Subject, RunSettings, OutputSettings), String> {
     let text = toml::to_string(scene).unwrap();
     let scene = Scene::parse(SceneSource::new("scene.toml", text)).map_err(|e| e.to_string())?;

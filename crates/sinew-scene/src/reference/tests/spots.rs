@@ -1,4 +1,4 @@
-//! Whole scenes round the examples of the reference.
+//! Whole scenes around the examples of the reference.
 
 use toml::{Table, Value};
 

@@ -1,4 +1,4 @@
-//! Scenes on which nothing acts, and loads out of all proportion.
+//! Scenes on which nothing acts, and loads that are far too large.
 
 use sinew_core::Ramp;
 use sinew_core::vectors::norm;
@@ -10,7 +10,7 @@ use crate::scene::{Blade, Body, Subject};
 use crate::simulation::Simulation;
 use crate::simulation::model::BodyModel;
 
-/// Stress of a load over the stiffness of the tissue under it, beyond which no tissue bears it.
+/// Stress of a load over the stiffness of the tissue under it, beyond which no tissue withstands it.
 const BEARS: f64 = 10.0;
 
 pub(super) fn warnings(body: &Body, built: &BodyModel) -> Vec<Warning> {
@@ -42,7 +42,7 @@ fn idle(body: &Body) -> Option<Warning> {
     })
 }
 
-/// A warning if the body may be cut and nothing does.
+/// A warning if the body may be cut but nothing cuts it.
 fn uncut(body: &Body) -> Option<Warning> {
     let cutting = body.cutting.as_ref()?;
     let is_uncut = cutting.blade == Blade::None && cutting.remove.is_none();
@@ -55,7 +55,7 @@ fn uncut(body: &Body) -> Option<Warning> {
     })
 }
 
-/// A warning of the largest load relative to the stiffness of the body, if no tissue bears it.
+/// A warning of the largest load relative to the stiffness of the body, if no tissue withstands it.
 pub(super) fn out_of_proportion(body: &Body, built: &BodyModel) -> Option<Warning> {
     let problem = &body.problem;
     let moduli = problem.regions.iter().map(|region| {
@@ -96,7 +96,7 @@ pub(super) fn out_of_proportion(body: &Body, built: &BodyModel) -> Option<Warnin
     })
 }
 
-/// The largest factor of a ramp, without its sign; that of an input is not known, and taken to be 1.
+/// The largest factor of a ramp, without its sign; that of an input is unknown, and assumed to be 1.
 fn largest(ramp: &Ramp) -> f64 {
     match ramp {
         Ramp::Table { values, .. } | Ramp::Hold { values, .. } => {

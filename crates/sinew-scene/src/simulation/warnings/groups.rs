@@ -63,7 +63,7 @@ fn unused(body: &Body, built: &BodyModel) -> Option<Warning> {
     Some(Warning::new(WarningKind::UnusedGroups, what, "").with(&numbers))
 }
 
-/// The groups that tables of the scene name, each with the dimension that is taken among several.
+/// The groups that tables of the scene name, each with the dimension that is used if several groups have this name.
 fn used(body: &Body) -> Vec<(&str, Option<u8>)> {
     let problem = &body.problem;
     let supports = problem.fixed.iter().map(|fixed| &fixed.on);

@@ -5,7 +5,7 @@ use crate::number::count;
 use crate::scene::{Body, Initial};
 use crate::simulation::model::BodyModel;
 
-/// A warning for each initial displacement that asks fixed or moved components to be elsewhere.
+/// A warning for each initial displacement that differs from the prescribed one at fixed or moved components.
 pub(super) fn held(body: &Body, built: &BodyModel) -> Vec<Warning> {
     let mut warnings = Vec::new();
     for (index, initial) in body.initial.iter().enumerate() {
@@ -43,7 +43,7 @@ pub(super) fn held(body: &Body, built: &BodyModel) -> Vec<Warning> {
     warnings
 }
 
-/// The nodes with a component that is asked to be elsewhere and is fixed or moved.
+/// The nodes with a fixed or moved component whose initial displacement differs from the prescribed one.
 fn held_nodes(
     built: &BodyModel,
     group: Option<&str>,

@@ -1,4 +1,4 @@
-//! Warnings of elements that seem to be joined and are not.
+//! Warnings about elements that seem to be joined but are not.
 
 use sinew_mesh::JointFinding;
 

@@ -1,4 +1,4 @@
-//! Loads that are refused, not followed, or change outside the run only.
+//! Loads that are refused, not resolved, or change outside the run only.
 
 use sinew_core::Ramp;
 
@@ -24,7 +24,7 @@ pub(super) fn warnings(simulation: &Simulation) -> Vec<Warning> {
     warnings
 }
 
-/// Warnings about loads and motions of which nothing changes during the run.
+/// Warnings about loads and motions that do not change during the run.
 fn outside_run(simulation: &Simulation) -> Vec<Warning> {
     let (Subject::Body(body), Some(built)) =
         (simulation.scene().subject(), simulation.model().body())

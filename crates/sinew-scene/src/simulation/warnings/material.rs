@@ -13,8 +13,9 @@ use crate::scene::{Body, MeshSource};
 /// Poisson's ratio beyond which plain tetrahedra are noticeably too stiff.
 const LOCKS: f64 = 0.4;
 
-/// Length of a cell, in multiples of its thickness, beyond which it bends less than the cubes that were measured: at a
-/// Poisson's ratio of 0.45 on a "mirrored" grid, cells of aspect ratio 2 by a fifth, of 3 by almost a half.
+/// Length of a cell, in multiples of its thickness, beyond which it bends less than the measured cubes: at a Poisson's
+/// ratio of 0.45 on a "mirrored" grid, cells of aspect ratio 2 bend less by a fifth, cells of aspect ratio 3 by almost
+/// a half.
 const LONG: f64 = 1.2;
 
 /// The longest edge of a grid's cells, in multiples of the shortest.
@@ -30,7 +31,7 @@ fn longest_cell(mesh: &MeshSource) -> Option<f64> {
     Some(edges().fold(0.0, f64::max) / edges().fold(f64::INFINITY, f64::min))
 }
 
-/// A warning for each region in which they are.
+/// A warning for each region in which they lock.
 pub(super) fn locking(body: &Body) -> Vec<Warning> {
     let regions = body.problem.regions.iter().enumerate();
     let plain = regions.filter(|(_, region)| region.element == Element::P1);
@@ -81,7 +82,7 @@ pub(super) fn locking(body: &Body) -> Vec<Warning> {
         .collect()
 }
 
-/// A warning for each region of a law that warns of itself.
+/// A warning for each region whose law has a warning.
 pub(super) fn weak_laws(body: &Body) -> Vec<Warning> {
     let regions = (1..).zip(&body.problem.regions);
     let weak = regions.filter_map(|(number, region)| {
@@ -102,7 +103,8 @@ struct Bending {
     ratio: f64,
     kuhn: [f64; 2],
     mirrored: [f64; 2],
-    /// Motion across the force on a [`Split::Kuhn`] grid (% of the deflection); on the other it is below 1.
+    /// Motion across the force on a [`Split::Kuhn`] grid (% of the deflection); on the other kind of grid it is below
+    /// 1.
     sideways: [f64; 2],
 }
 

@@ -4,7 +4,7 @@ use super::{Warning, WarningKind};
 use crate::number::{count, short, vector};
 use crate::simulation::model::BodyModel;
 
-/// Parts that a warning lists one by one.
+/// Largest number of parts that a warning lists one by one.
 const LISTED: usize = 5;
 
 /// Tetrahedra that are connected through shared nodes.
@@ -17,7 +17,7 @@ struct Part {
     held: bool,
 }
 
-/// A warning about the parts of which no component is fixed or moved.
+/// A warning about the parts without a fixed or moved component.
 pub(super) fn free(built: &BodyModel) -> Option<Warning> {
     let parts = parts(built);
     let free: Vec<&Part> = parts.iter().filter(|part| !part.held).collect();

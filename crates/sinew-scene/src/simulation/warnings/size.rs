@@ -5,7 +5,7 @@ use crate::number::short;
 use crate::scene::Body;
 use crate::simulation::model::BodyModel;
 
-/// Longest edge of a bounding box (m) beyond which a body is no organ of any animal that is operated on.
+/// Longest edge of a bounding box (m) beyond which a body is not an organ of any animal in surgery.
 const LARGEST: f64 = 5.0;
 
 /// Densities (kg/m^3) between which materials of bodies and tools lie: inflated lungs have some 250, gold 19,300.

@@ -68,7 +68,7 @@ fn clamped(simulation: &Simulation) -> Option<Warning> {
     Some(Warning::new(WarningKind::ClampedNetwork, what, mend))
 }
 
-/// Steps that are longer than the duration or do not end with it.
+/// A warning about steps that are longer than the duration or do not end with it.
 pub(super) fn beside_duration(simulation: &Simulation) -> Option<Warning> {
     let (dt, duration) = (simulation.dt(), simulation.settings().duration);
     let steps = simulation.run().steps.max(1);

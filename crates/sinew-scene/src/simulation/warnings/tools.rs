@@ -59,10 +59,10 @@ pub(super) fn warnings(simulation: &Simulation, built: &BodyModel) -> Vec<Warnin
     warnings
 }
 
-/// Instants at which a tool is looked for in nodes that it does not meet.
+/// Number of instants at which nodes without contact are checked against a tool.
 const LOOKS: u32 = 64;
 
-/// A warning of nodes that are fixed or moved, and that a tool passes through.
+/// A warning about nodes that are fixed or moved, and through which a tool passes.
 fn unmet(simulation: &Simulation, built: &BodyModel, index: usize) -> Option<Warning> {
     let Subject::Body(body) = simulation.scene().subject() else {
         return None;

@@ -6,7 +6,7 @@ use serde::{Serialize, Serializer};
 
 use crate::number::short;
 
-/// A warning about a scene that runs but may not be intended so. It prints as one line.
+/// A warning about a scene that runs but may not be what the user intends. It prints as one line.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Warning {
     /// Its kind.
@@ -15,7 +15,7 @@ pub struct Warning {
     pub what: String,
     /// The remedy; empty if there is none.
     pub mend: String,
-    /// The numbers of the fact by names that end in their units, for programs.
+    /// The numbers of the fact, under names that end in their units, for programs.
     pub numbers: Vec<(&'static str, f64)>,
 }
 
@@ -29,7 +29,7 @@ impl Warning {
         }
     }
 
-    /// A run that is predicted to take long: wall time (s) and number of steps.
+    /// The warning of a run that is predicted to take long: wall time (s) and number of steps.
     #[must_use]
     pub fn long_run(seconds: f64, steps: usize, dt: f64) -> Self {
         let what = format!(
@@ -103,21 +103,21 @@ pub enum WarningKind {
     LoadOnMoved,
     /// A body on which nothing acts.
     NothingActs,
-    /// A body that may be cut and that nothing cuts.
+    /// A body that may be cut although nothing cuts it.
     NothingCuts,
-    /// A load beyond all that tissue of its stiffness bears.
+    /// A load beyond the strength of any tissue of this stiffness.
     LargeLoad,
-    /// A tool in which nodes are at t = 0.
+    /// A tool that contains nodes at t = 0.
     ToolInside,
-    /// A tool that passes through nodes which it does not meet.
+    /// A tool that passes through nodes with which it has no contact.
     UnmetNodes,
-    /// A tool that is thin against the triangles of the surface.
+    /// A tool that is thin compared with the triangles of the surface.
     SmallTool,
     /// A tool that moves by more than the body's size in a step.
     FastTool,
     /// A load or motion that changes before or after the run only.
     OutsideRun,
-    /// A step beyond the stable one, or one about which nothing is known.
+    /// A step beyond the stable one, or one whose stability is unknown.
     UnstableStep,
     /// A network that only its clamp keeps bounded.
     ClampedNetwork,
@@ -133,7 +133,7 @@ pub enum WarningKind {
     LongRun,
     /// A probe farther from the body than an element.
     FarProbe,
-    /// No probe.
+    /// A scene without probes.
     NoProbe,
 }
 

@@ -75,7 +75,7 @@ fn two_strains() {
     );
 }
 
-/// After rounding, the matrices of some of these have an inverse.
+/// Because of rounding, the matrices of some of these bodies have an inverse.
 #[test]
 fn a_static_state_of_a_body_that_nothing_holds() {
     let free = BODY.replace("[[fixed]]\ngroup = \"sides\"\n", "");
@@ -110,7 +110,7 @@ fn a_formula_without_a_finite_value_at_a_node() {
     );
 }
 
-/// Refusal before the first step: memory begins with the displacement that is given.
+/// An error before the first step: the history variables begin with the given displacement.
 #[test]
 fn a_state_in_which_a_law_with_memory_has_no_meaning() {
     let relaxing = BODY

@@ -26,7 +26,7 @@ fn refusal_of(scene: &str, contents: Option<&str>) -> String {
     message(&error).replace(&folder.path().display().to_string(), "<folder>")
 }
 
-/// The message where the mesh file has another name.
+/// The message if the mesh file has another name.
 fn refusal_of_named(name: &str, contents: &str) -> String {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join(name), contents).unwrap();

@@ -19,7 +19,7 @@ mod tool;
 use crate::common::{build, try_build};
 use sinew_scene::{Fault, Scene, SceneError};
 
-/// The message about a scene in which one place was changed.
+/// The message about a scene with one text replaced.
 fn refusal(scene: &str, good: &str, bad: &str) -> String {
     assert_eq!(
         scene.matches(good).count(),
@@ -116,7 +116,7 @@ fn spoilt(scene: &str) -> Vec<String> {
     texts
 }
 
-/// True if a fault is that of the whole document and so has no line: a table that is missing.
+/// True if a fault concerns the whole document and so has no line: a table that is missing.
 fn is_of_the_whole_document(error: &SceneError) -> bool {
     error.table().is_empty()
         && match error.fault() {

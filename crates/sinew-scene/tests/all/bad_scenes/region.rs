@@ -268,7 +268,7 @@ fn of_two_unknown_keys_the_first_in_the_file_is_named() {
     );
 }
 
-/// The refusal of a linear region with these lines.
+/// The error of a linear region with these lines.
 fn refused_element(lines: &str) -> String {
     let springs = "model = \"springs\"\nyoungs_modulus = 3500.0\nsprings = { rule = \"lloyd\" }\n";
     let linear = "model = \"linear\"\nyoungs_modulus = 3500.0\npoissons_ratio = 0.45\n";
@@ -311,7 +311,7 @@ fn constants_of_mooney_and_rivlin_with_another_law() {
     insta::assert_snapshot!(refused_element(lines), @r#"scene.toml:9: [[region]] 1: `c1_over_c2` goes with model = "mooney-rivlin" only"#);
 }
 
-/// The refusal of a region of this law with these lines.
+/// The error of a region of this law with these lines.
 fn refused_law(law: &str, lines: &str) -> String {
     let springs = "model = \"springs\"\nyoungs_modulus = 3500.0\nsprings = { rule = \"lloyd\" }\n";
     refusal(
@@ -326,7 +326,7 @@ fn mooney_and_rivlin_without_their_constants() {
     insta::assert_snapshot!(refused_law("mooney-rivlin", "poissons_ratio = 0.45\n"), @r#"scene.toml:4: [[region]] 1: `c1_over_c2` is missing: expected a finite ratio above 0"#);
 }
 
-/// The refusal of a region of the law of Yeoh with these lines.
+/// The error of a region of the law of Yeoh with these lines.
 fn refused_yeoh(lines: &str) -> String {
     let springs = "model = \"springs\"\nyoungs_modulus = 3500.0\nsprings = { rule = \"lloyd\" }\n";
     refusal(BODY, springs, &format!("model = \"yeoh\"\n{lines}"))
@@ -375,7 +375,7 @@ fn a_law_of_large_deformation_that_widens_when_pulled() {
     insta::assert_snapshot!(refused_law("neo-hookean", "poissons_ratio = -0.1\n"), @r#"scene.toml:8: [[region]] 1: poissons_ratio = -0.1: expected a number above -1 and below 0.5, from 0 on for laws of large deformation"#);
 }
 
-/// A stiffness beyond what numbers hold limits the step, if in no number.
+/// A stiffness that overflows is refused with a message about the step.
 #[test]
 fn a_stiffness_beyond_all_numbers() {
     let scene = "[mesh]\ncube = { cells = 2, edge = 0.1 }\n[[region]]\ndensity = 1000.0\nmodel = \"neo-hookean\"\n\
@@ -390,7 +390,7 @@ fn a_stiffness_beyond_all_numbers() {
     );
 }
 
-/// The refusal of a region of the law of Ogden with these terms.
+/// The error of a region of the law of Ogden with these terms.
 fn refused_ogden(terms: &str) -> String {
     let springs = "model = \"springs\"\nyoungs_modulus = 3500.0\nsprings = { rule = \"lloyd\" }\n";
     let lines = format!("model = \"ogden\"\npoissons_ratio = 0.45\nterms = {terms}\n");

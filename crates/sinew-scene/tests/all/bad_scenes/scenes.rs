@@ -66,7 +66,7 @@ integrator = "newmark"
 dt = 0.02
 "#;
 
-/// A cube without the use of a group.
+/// A cube whose tables use no group.
 pub(crate) const PLACED: &str = r#"[mesh]
 cube = { cells = 2, edge = 0.2 }
 [[region]]
@@ -102,7 +102,7 @@ integrator = "newmark"
 dt = 0.02
 "#;
 
-/// A cube on which a probe comes down, and that a grasper holds from the side.
+/// A cube on which a probe comes down, and which a grasper grasps from the side.
 pub(crate) const TOUCHED: &str = r#"[mesh]
 cube = { cells = 2, edge = 0.2 }
 [[region]]

@@ -3,7 +3,7 @@
 use super::refusal;
 use super::scenes::BODY;
 
-/// The refusal of a region with these lines in the place of its model.
+/// The error of a region with these lines instead of its model.
 fn refused(lines: &str) -> String {
     let springs = "model = \"springs\"\nyoungs_modulus = 3500.0\nsprings = { rule = \"lloyd\" }\n";
     refusal(
@@ -13,7 +13,7 @@ fn refused(lines: &str) -> String {
     )
 }
 
-/// The refusal of these fibres.
+/// The error of these fibres.
 fn refused_fibres(table: &str) -> String {
     refused(&format!("model = \"neo-hookean\"\nfibres = {{ {table} }}"))
 }
@@ -114,7 +114,7 @@ fn axes_that_are_parallel_or_missing_or_mixed() {
     insta::assert_snapshot!(fung("axes = [[1, 0, 0]]"), @r#"scene.toml:10: [[region]] 1: axes = [[1, 0, 0]]: expected two directions that are not parallel, [[x, y, z], [x, y, z]], or [{ data = "name" }, { data = "name" }]"#);
 }
 
-/// The refusal of these lines in a region of this law.
+/// The error of these lines in a region of this law.
 fn refused_memory(law: &str, lines: &str) -> String {
     refused(&format!("model = \"{law}\"\n{lines}"))
 }
@@ -173,7 +173,7 @@ fn unknown_moduli() {
     );
 }
 
-/// Volume relaxes less than shape, so that at once the tissue would grow wider when it is pulled.
+/// Volume relaxes less than shape, so that under an instantaneous pull the tissue would become wider.
 #[test]
 fn longterm_moduli_that_no_law_has_at_once() {
     insta::assert_snapshot!(

@@ -189,7 +189,7 @@ fn sizes_and_rotations_that_cannot_be_meant() {
     insta::assert_snapshot!(refusal(TOUCHED, "friction = 0.2", "friction = 0.2\nrotation = [0.0, 2e6, 0.0]"), @"scene.toml:16: [[tool]] 1: rotation = [0.0, 2e6, 0.0]: expected [rx, ry, rz] in rad, an angle of at most 1e6");
 }
 
-/// Lines of sizes and moments, not of the table that holds them.
+/// Errors have the lines of sizes and moments, not of the table that contains them.
 #[test]
 fn a_mistake_in_a_table_of_several_lines_has_its_own_line() {
     let body = "friction = 0.2\nbody = {\n  mass = 1.0,\n  inertia = [1.0, 1.0, 3.0],\n  coupling = 1.0, rotational_coupling = 1.0 }";
@@ -200,7 +200,7 @@ fn a_mistake_in_a_table_of_several_lines_has_its_own_line() {
     insta::assert_snapshot!(refusal(TOUCHED, "shape = { sphere = { radius = 0.11 } }", dotted), @r#"scene.toml:12: [[tool]] 1 shape sphere: a radius or half a thickness of 1e-12 m, less than 1e-9 of the body, 0.2 m: expected more; are its lengths in m?"#);
 }
 
-/// Squares and products of these would be no numbers.
+/// Squares and products of these numbers would overflow.
 #[test]
 fn numbers_beyond_all_bounds() {
     let body = |from: &str, to: &str| {
@@ -255,7 +255,7 @@ fn methods_that_tools_cannot_push() {
     insta::assert_snapshot!(refusal(TOUCHED, method, "integrator = \"rk4\""), @r#"scene.toml:26: [run]: `rk4`: this method does not support tools: contact needs one mass block for each node and a position update with the new velocity; take `central-difference` without `patches`, `symplectic-euler`, `cnn-symplectic`, `cnn-stabilised` with one block for each cell, or `cnn-energy` with kind = "ie""#);
 }
 
-/// Patches are made as the method is set up, since they depend on the body.
+/// Patches are made during the set-up of the method, since they depend on the body.
 #[test]
 fn patches_that_a_body_needs_and_tools_cannot_push() {
     let path = concat!(

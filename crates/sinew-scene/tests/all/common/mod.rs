@@ -9,12 +9,12 @@ use sinew_core::{State, simulate};
 use sinew_scene::output::{Delivery, Destination};
 use sinew_scene::{ProbeCsv, ProbeRows, Scene, SceneError, SceneSource, Simulation};
 
-/// Reads and builds the scene that stands in a file called `scene.toml`.
+/// Reads and builds the scene of a file called `scene.toml`.
 pub(crate) fn try_build(text: &str) -> Result<Simulation, SceneError> {
     Scene::parse(SceneSource::new("scene.toml", text)).and_then(Scene::build)
 }
 
-/// Builds a scene that is as it should be.
+/// Builds a valid scene.
 pub(crate) fn build(text: &str) -> Simulation {
     try_build(text).unwrap()
 }

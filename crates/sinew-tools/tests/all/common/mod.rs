@@ -1,4 +1,4 @@
-//! Shapes and points at random, and vectors of three coordinates.
+//! Random shapes and points, and vectors of three coordinates.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -8,7 +8,7 @@ use proptest::prelude::*;
 pub(crate) use sinew_tools::vector::{add, dot, length, scaled, sub};
 use sinew_tools::{Convex, Pose};
 
-/// A length to measure errors by: the radius of the ball about the shape, 1 m for a plane.
+/// A reference length for errors: the radius of the ball about the shape, 1 m for a plane.
 pub(crate) fn size(convex: &Convex) -> f64 {
     convex.reach().unwrap_or(1.0)
 }
@@ -39,7 +39,7 @@ pub(crate) fn shapes() -> impl Strategy<Value = Convex> {
     prop_oneof![6 => bounded_shapes(), 1 => Just(Convex::Plane)]
 }
 
-/// True if a point is inside by at least `margin`, by the definition of the shape.
+/// True if a point is inside by at least `margin`, according to the definition of the shape.
 pub(crate) fn is_inside(convex: &Convex, point: [f64; 3], margin: f64) -> bool {
     let [x, y, z] = point;
     match *convex {

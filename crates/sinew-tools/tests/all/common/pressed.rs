@@ -31,9 +31,9 @@ pub(crate) struct Block {
     pub(crate) damping: Rayleigh,
     pub(crate) is_held: bool,
     pub(crate) gravity: Option<[f64; 3]>,
-    /// The velocity (m/s) of what holds it.
+    /// The velocity (m/s) of its support.
     pub(crate) carried_at: [f64; 3],
-    /// A law of large deformation in the place of the linear one.
+    /// A law of large deformation instead of the linear one.
     pub(crate) law: Option<&'static str>,
     pub(crate) element: Element,
 }
@@ -87,12 +87,12 @@ impl Block {
         }
     }
 
-    /// The block with tools that may touch all of its nodes that move.
+    /// The block with tools that may touch all of its moving nodes.
     pub(crate) fn with(&self, tools: Vec<Tool>) -> Pressed {
         self.touched_by(tools, false)
     }
 
-    /// The same with tools that meet the triangles of its surface as well.
+    /// The block with tools that also have contact with the triangles of its surface.
     pub(crate) fn with_triangles(&self, tools: Vec<Tool>) -> Pressed {
         self.touched_by(tools, true)
     }

@@ -1,4 +1,4 @@
-//! Scenes that tests drive.
+//! Scenes for the tests of worlds.
 
 #![allow(clippy::panic, reason = "a test fails by panicking")]
 
@@ -6,7 +6,7 @@ use sinew_core::State;
 use sinew_scene::{Scene, SceneSource, Simulation};
 use sinew_world::{Ended, World};
 
-/// A cube of tissue under its weight and a traction, with a ball above it that comes down and a plate beside it.
+/// A cube of tissue under its weight and a traction, with a ball above it that comes down and a plate next to it.
 pub(crate) const CUBE: &str = r#"
 gravity = [0.0, 0.0, -9.81]
 [mesh]
@@ -46,12 +46,12 @@ integrator = "symplectic-euler"
 dt = 0.002
 "#;
 
-/// A scene by its text.
+/// A scene from its text.
 pub(crate) fn scene(text: &str) -> Scene {
     Scene::parse(SceneSource::new("cube.toml", text)).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// A session of a scene by its text.
+/// A session of a scene from its text.
 pub(crate) fn session(text: &str) -> World {
     World::new(scene(text)).unwrap_or_else(|error| panic!("{error}"))
 }
@@ -71,7 +71,7 @@ pub(crate) fn following(simulation: Simulation) -> World {
     World::following(simulation, integrator).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// Takes so many steps.
+/// Takes this number of steps.
 pub(crate) fn advance(world: &mut World, steps: usize) {
     let ended = world.advance(steps, &mut ());
     assert_eq!(
