@@ -12,7 +12,7 @@ use crate::instruments::Instruments;
 use crate::summary::Summary;
 
 /// Triangles beyond which pictures take longer than a short run.
-const MOST_TRIANGLES: usize = 300_000;
+const MOST_TRIANGLES: usize = 100_000;
 
 /// Share of the body's size below which a displacement cannot be seen.
 const SEEN: f64 = 0.02;
