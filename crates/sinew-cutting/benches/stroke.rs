@@ -1,7 +1,7 @@
 //! Time of a stroke.
 //!
 //! `cargo bench -p sinew-cutting` slits structured cubes to half their depth, in one stroke and in many, along a plane
-//! of nodes and beside one, and prints the least time of a stroke that cuts, its faces, and the time per row of the
+//! of nodes and next to one, and prints the smallest time of a stroke that cuts, its faces, and the time per row of the
 //! matrices that it touches.
 
 #![allow(

@@ -111,7 +111,7 @@ impl Room {
     }
 }
 
-/// Number of copies of nodes for which space is reserved beforehand, in all arrays over the nodes of a body: a tenth of
+/// Number of copies of nodes for which space is reserved in advance, in all arrays over the nodes of a body: a tenth of
 /// the nodes, and a few for small bodies.
 #[must_use]
 pub fn spare_nodes(nodes: usize) -> usize {

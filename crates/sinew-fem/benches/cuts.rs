@@ -1,10 +1,10 @@
 //! Time of a cut, from the stroke to the updated model.
 //!
 //! `cargo bench -p sinew-fem --bench cuts` cuts structured cubes by a blade that comes down, on a plane of nodes and
-//! beside one, in many short strokes and in one. It prints the median time of the strokes that cut, their faces and new
-//! nodes, the rows of the matrix that they touch, the time for each of these, and, for comparison, the time to set up
-//! the model that can be cut, and the times of the parts of a rebuild: the mesh, the problem on it, the model, and one
-//! sum of energy. Times are wall times (us) of one thread.
+//! next to one, in many short strokes and in one. It prints the median time of the strokes that cut, their faces and
+//! new nodes, the rows of the matrix that they touch, the time for each of these, and, for comparison, the time to set
+//! up the model that can be cut, and the times of the parts of a rebuild: the mesh, the problem on it, the model, and
+//! one sum of energy. Times are wall times (us) of one thread.
 
 #![allow(
     clippy::expect_used,

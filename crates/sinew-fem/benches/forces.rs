@@ -1,8 +1,9 @@
 //! Time of the forces of hyperelastic bodies.
 //!
-//! `cargo bench -p sinew-fem --bench forces` evaluates the net force of structured cubes and, beside it, the elastic force with its energy. The
-//! figures are nanoseconds a tetrahedron, the least of many evaluations on one thread, so that other programs on the machine do not count. A
-//! number after `--` is the time for each figure (ms); a word is a part of the names of the laws or elements to evaluate.
+//! `cargo bench -p sinew-fem --bench forces` evaluates the net force of structured cubes and, in addition, the elastic
+//! force with its energy. The figures are nanoseconds a tetrahedron, the least of many evaluations on one thread, so
+//! that other programs on the machine do not count. A number after `--` is the time for each figure (ms); a word is a
+//! part of the names of the laws or elements to evaluate.
 
 #![allow(
     clippy::expect_used,

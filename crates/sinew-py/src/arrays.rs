@@ -17,7 +17,7 @@ pub(crate) fn rows<'py, T: Element, const N: usize>(
     PyArray1::from_vec(py, values.into_flattened()).reshape([count, N])
 }
 
-/// An array that cannot be written into: what is written there would change nothing.
+/// A read-only array: writing into it would change nothing in the session.
 pub(crate) fn read_only<'py, T: Element>(
     array: Bound<'py, PyArray2<T>>,
 ) -> PyResult<Bound<'py, PyArray2<T>>> {
@@ -25,7 +25,7 @@ pub(crate) fn read_only<'py, T: Element>(
     Ok(array)
 }
 
-/// Has rows of N numbers written into an array of the caller.
+/// Writes rows of N numbers into an array of the caller.
 pub(crate) fn fill<const N: usize>(
     out: &Bound<'_, PyAny>,
     count: usize,

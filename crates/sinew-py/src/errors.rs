@@ -55,7 +55,7 @@ pub(crate) fn of_scene(error: &sinew_scene::SceneError) -> PyErr {
     })
 }
 
-/// The exception of a scene at fault in another way than by a line.
+/// The exception of a scene whose error has no line.
 pub(crate) fn scene_error(error: &impl Display) -> PyErr {
     Python::attach(|py| {
         let raised = SceneError::new_err(error.to_string());
@@ -140,7 +140,7 @@ pub(crate) fn of_run(error: RecordRunError) -> PyErr {
     }
 }
 
-/// An exception for a value that is not as it should be.
+/// An exception for an invalid value.
 pub(crate) fn value_error(text: impl Into<String>) -> PyErr {
     PyValueError::new_err(text.into())
 }

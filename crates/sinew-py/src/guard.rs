@@ -12,13 +12,13 @@ use crate::errors::InternalError;
 
 static IS_FORKED: AtomicBool = AtomicBool::new(false);
 
-/// Says that this process is the child of a fork, in which the threads of its parent do not run.
+/// Records that this process is the child of a fork, in which the threads of its parent do not run.
 #[pyfunction(name = "_forked")]
 pub(crate) fn forked() {
     IS_FORKED.store(true, Ordering::Relaxed);
 }
 
-/// Runs something of the library: a panic becomes an exception.
+/// Runs a function of the library: a panic becomes an exception.
 pub(crate) fn guarded<T: Send>(act: impl FnOnce() -> PyResult<T> + Send) -> PyResult<T> {
     let act = || match IS_FORKED.load(Ordering::Relaxed) {
         false => act(),
@@ -30,7 +30,7 @@ pub(crate) fn guarded<T: Send>(act: impl FnOnce() -> PyResult<T> + Send) -> PyRe
     guarded_here(act)
 }
 
-/// Like [`guarded`], for what takes no threads.
+/// Runs a function like [`guarded`], for work that uses no threads.
 pub(crate) fn guarded_here<T>(act: impl FnOnce() -> PyResult<T>) -> PyResult<T> {
     catch_unwind(AssertUnwindSafe(act)).unwrap_or_else(|panic| Err(internal(&*panic)))
 }

@@ -1,8 +1,8 @@
 //! The extension module of the Python package `sinew_sim`: scenes, sessions and results as Python objects and arrays.
 //!
-//! It holds no physics and takes no steps of its own: a session is a [`sinew_world::World`], a run a
-//! [`sinew_record::RunFolder`]. What Python alone can say better (meshes of other packages, results as arrays, sweeps,
-//! Gymnasium) is Python, in `python/sinew_sim`.
+//! It contains no physics and takes no steps of its own: a session is a [`sinew_world::World`], a run a
+//! [`sinew_record::RunFolder`]. Parts that are better written in Python (meshes of other packages, results as arrays,
+//! sweeps, Gymnasium) are in `python/sinew_sim`.
 
 mod arrays;
 mod command;
@@ -23,7 +23,7 @@ mod watch;
 
 use pyo3::prelude::*;
 
-/// The part of sinew_sim that is compiled; import sinew_sim in its place.
+/// The part of sinew_sim that is compiled; import sinew_sim instead.
 #[pymodule]
 fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     let py = module.py();

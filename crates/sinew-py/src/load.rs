@@ -20,7 +20,7 @@ pub(crate) struct Load {
 
 #[pymethods]
 impl Load {
-    /// Factor of the load from the next step on, beside its own course over time; 1 at the beginning.
+    /// Factor of the load from the next step on, in addition to its own course over time; 1 at the beginning.
     #[getter]
     fn factor(&self, py: Python<'_>) -> PyResult<f64> {
         let factor = self

@@ -8,13 +8,13 @@ use sinew_scene::Simulation;
 
 use crate::errors::scene_error;
 
-/// M, D, K and F of small motions about rest, over the free degrees of freedom: a node that is not held in x, y and z has
-/// three, one after the other.
+/// M, D, K and F of small motions about rest, over the free degrees of freedom: a node that is not fixed in x, y and z
+/// has three, one after the other.
 ///
-/// K (N/m), D (N s/m): scipy.sparse.bsr_array with blocks of 3 x 3 where scipy is installed, else tuples (indptr, indices,
-/// blocks). M (kg), F (N, all loads and gravity at their full value, without pressures that follow the surface): (dofs,).
-/// nodes, axes: the node and the axis (0, 1, 2) of each degree of freedom. held: True for components that are held although
-/// their node moves; their rows and columns are 0.
+/// K (N/m), D (N s/m): scipy.sparse.bsr_array with blocks of 3 x 3 if scipy is installed, else tuples (indptr, indices,
+/// blocks). M (kg), F (N, all loads and gravity at their full value, without pressures that follow the surface):
+/// (dofs,). nodes, axes: the node and the axis (0, 1, 2) of each degree of freedom. held: True for components that are
+/// fixed although their node moves; their rows and columns are 0.
 #[pyclass(frozen, get_all, module = "sinew_sim")]
 pub(crate) struct Matrices {
     #[pyo3(name = "K")]

@@ -16,7 +16,7 @@ use crate::arrays::{index_rows, indices, read_only, rows, rows_of};
 use crate::errors::{scene_error, value_error};
 use crate::guard::guarded;
 
-/// A mesh of tetrahedra with named groups. Lengths are in metres where a scene does not scale them.
+/// A mesh of tetrahedra with named groups. Lengths are in metres unless a scene scales them.
 ///
 /// Mesh(points, tets, groups={}, data={}): points (n, 3); tets (m, 4), indices of points, any orientation;
 /// groups by name: an array (k,) of tetrahedra, (k, 3) of the nodes of triangles, or a Group; data by name: (m,) or
@@ -118,8 +118,8 @@ impl Mesh {
         })
     }
 
-    /// Writes the mesh with its groups: .msh (4.1) or .vtu, by the end of the name. Where groups overlap tetrahedra may
-    /// stand in another order in the file.
+    /// Writes the mesh with its groups: .msh (4.1) or .vtu, by the end of the name. If groups overlap, the order of
+    /// tetrahedra in the file may differ.
     fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
         let extension = path.extension().and_then(|extension| extension.to_str());
         let is_msh = match extension {
@@ -236,7 +236,7 @@ impl Mesh {
 }
 
 impl Mesh {
-    /// Bytes by which the mesh is known again.
+    /// Bytes that identify the mesh.
     pub(crate) fn content(&self) -> Vec<u8> {
         let mut sum = Sha256::new();
         for x in self.mesh.points.as_flattened() {

@@ -1,4 +1,4 @@
-//! Plans and advice, found in a thread of their own so that Ctrl-C is heard.
+//! Plans and advice, found in a thread of their own so that Ctrl-C works.
 
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::thread;

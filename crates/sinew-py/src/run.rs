@@ -13,7 +13,7 @@ use tempfile::TempDir;
 use crate::errors::{of_run, of_scene, of_world, scene_error, value_error};
 use crate::watch::Onlooker;
 
-/// Changes to `[output]` for a run of which only tables are wanted.
+/// Changes to `[output]` for a run of which only tables are needed.
 const TABLES_ALONE: [&str; 2] = [
     "output.fields={ frames = 1 }",
     "output.checkpoint={ every = 1e9 }",
@@ -22,8 +22,8 @@ const TABLES_ALONE: [&str; 2] = [
 /// Degrees of freedom from which on rows of energy come with frames, unless a scene says otherwise.
 const LARGE: usize = 30_000;
 
-/// Memory as a file system of Linux: results are safe there without waiting for a disk, which a folder that is thrown away
-/// does not need.
+/// Memory as a file system of Linux: results are safe there without waiting for a disk, which a temporary folder does
+/// not need.
 const MEMORY: &str = "/dev/shm";
 
 /// A folder that is removed after use.
@@ -31,11 +31,11 @@ pub(crate) fn scratch() -> io::Result<TempDir> {
     tempfile::tempdir_in(MEMORY).or_else(|_| tempfile::tempdir())
 }
 
-/// A run that is asked for.
+/// A requested run.
 pub(crate) struct Asked {
     pub(crate) threads: Option<OptionValue>,
     pub(crate) again: bool,
-    /// False if the folder is read and thrown away.
+    /// False if the folder is read and deleted.
     pub(crate) keeps_fields: bool,
 }
 

@@ -32,8 +32,8 @@ pub(crate) struct Scene {
     built: OnceLock<Arc<Simulation>>,
 }
 
-/// Something about a scene that runs, and may not be what its author meant: kind (str), text (str) and numbers (dict of
-/// floats by names that end in their units).
+/// A warning about a scene that runs, but perhaps not as its author intended: kind (str), text (str) and numbers (dict
+/// of floats by names that end in their units).
 #[pyclass(frozen, get_all, module = "sinew_sim")]
 pub(crate) struct Warning {
     kind: String,
@@ -131,7 +131,7 @@ fn repeated(scene: sinew_scene::Scene, log: Log) -> PyResult<World> {
     }
 }
 
-/// Parses a source with values that are set in it.
+/// Parses a source with values to set in it.
 fn parsed(source: &SceneSource, values: &[String]) -> PyResult<Scene> {
     let scene = sinew_scene::Scene::parse_with(source, values);
     Ok(scene.map_err(|error| of_scene(&error))?.into())
@@ -207,7 +207,7 @@ impl Scene {
         parsed(self.scene.source(), &assignments(Some(set))?)
     }
 
-    /// The title; the path of the file where the scene has none.
+    /// The title; the path of the file if the scene has none.
     #[getter]
     fn title(&self) -> String {
         self.scene.title_or_path().into_owned()
@@ -266,8 +266,9 @@ impl Scene {
         })
     }
 
-    /// The scene's plan, with the cheapest method and step whose error is at most tolerance (relative), or the smallest error
-    /// for a budget (CPU seconds a simulated second), found by short runs of seconds (CPU). Without both, the plan alone.
+    /// The scene's plan, with the cheapest method and step whose error is at most tolerance (relative), or the smallest
+    /// error for a budget (CPU seconds per simulated second), found by short runs of seconds (CPU). Without both, the
+    /// plan alone.
     #[pyo3(signature = (tolerance = None, budget = None, *, seconds = sinew_measure::advice::DEFAULT_PILOT_SECONDS))]
     fn plan<'py>(
         &self,
@@ -283,7 +284,7 @@ impl Scene {
             .call_method1("Plan", (object,))
     }
 
-    /// The largest stable step (s) of the scene's integrator; inf where every step is stable or no limit is known.
+    /// The largest stable step (s) of the scene's integrator; inf if every step is stable or no limit is known.
     fn stable_step(&self, py: Python<'_>) -> PyResult<f64> {
         let built = self.built(py)?;
         let step =
@@ -301,10 +302,11 @@ impl Scene {
         numbers.into_python(py)
     }
 
-    /// Runs the scene to its end and returns a Result. out: a folder for fields and tables, as the command writes it; None
-    /// keeps the tables alone, in memory. progress: a function of time and duration (s) that is called several times a second
-    /// and may return False to end the run, or True for a line on standard error. threads: their largest number, or "auto".
-    /// again: discards an unfinished run in the folder. KeyboardInterrupt has the result so far as its attribute result.
+    /// Runs the scene to its end and returns a Result. out: a folder for fields and tables, as the command writes it;
+    /// None keeps only the tables, in memory. progress: a function of time and duration (s) that is called several
+    /// times a second and may return False to end the run, or True for a line on standard error. threads: their largest
+    /// number, or "auto". again: discards an unfinished run in the folder. KeyboardInterrupt has the result so far as
+    /// its attribute result.
     #[pyo3(signature = (out = None, *, progress = None, threads = None, again = false))]
     fn run<'py>(
         &self,

@@ -56,7 +56,7 @@ impl Session {
         Self::begun_at(world, scene, begun)
     }
 
-    /// A field of N numbers a row: in a new array, found while other threads of Python run, or in that of the caller.
+    /// A field of N numbers per row: in a new array, found while other threads of Python run, or in that of the caller.
     fn field<'py, const N: usize>(
         &self,
         py: Python<'py>,
@@ -155,7 +155,7 @@ fn tets_of(world: &World) -> usize {
     body.map_or(0, |body| body.mesh.tets.len())
 }
 
-/// The end of steps, as what Python gets of it.
+/// The end of steps, as the result or exception for Python.
 fn end_of(ended: &Ended, watch: Watch, world: &World) -> PyResult<()> {
     match (ended, watch.raised, world.failure()) {
         (Ended::Stopped, Some(raised), _) => Err(raised),
@@ -183,8 +183,8 @@ impl Session {
         })
     }
 
-    /// Takes the steps of dt that cover a time (s), and ends with it: where they do not fit, as many shorter ones of one length
-    /// are taken, which the Advanced that is returned says. One short step among long ones would bring energy in.
+    /// Takes the steps of dt that cover a time (s), and ends with it: if they do not fit, as many shorter ones of equal
+    /// length are taken, as the returned Advanced shows. One short step among long ones would add energy.
     fn advance(&self, py: Python<'_>, by: f64) -> PyResult<Advanced> {
         if !(by >= 0.0 && by.is_finite()) {
             let text = format!("by: {by}: expected a finite time (s), 0 or above");
@@ -220,7 +220,7 @@ impl Session {
         self.world.with(py, |world| Ok(world.steps()))
     }
 
-    /// The largest stable step (s) of the method on the body at rest; inf where every step is stable or no limit is known.
+    /// The largest stable step (s) of the method on the body at rest; inf if every step is stable or no limit is known.
     #[getter]
     fn stable_step(&self, py: Python<'_>) -> PyResult<f64> {
         self.world
@@ -233,7 +233,7 @@ impl Session {
         self.world.with(py, |world| Ok(world.integrator().id()))
     }
 
-    /// Number of meshes that the body has had: nodes and tetrahedra are others once it has grown.
+    /// Number of meshes that the body has had: nodes and tetrahedra differ once it has grown.
     #[getter]
     fn topology_epoch(&self, py: Python<'_>) -> PyResult<u64> {
         self.world.with(py, |world| Ok(world.topology_epoch()))
@@ -321,7 +321,8 @@ impl Session {
         })
     }
 
-    /// Stress of each tetrahedron (Pa), (tets, 6): xx, yy, zz, xy, yz, zx. Cauchy's where a law is one of large deformation.
+    /// Stress of each tetrahedron (Pa), (tets, 6): xx, yy, zz, xy, yz, zx. Cauchy's if a law is one of large
+    /// deformation.
     #[pyo3(signature = (out = None))]
     fn stress<'py>(
         &self,
@@ -346,8 +347,8 @@ impl Session {
         filled_flat(py, out, values)
     }
 
-    /// Strain of each tetrahedron, (tets, 6): xx, yy, zz, xy, yz, zx, Green's where a law is one of large deformation; shears
-    /// are half of the engineering ones.
+    /// Strain of each tetrahedron, (tets, 6): xx, yy, zz, xy, yz, zx, Green's if a law is one of large deformation;
+    /// shears are half of the engineering ones.
     #[pyo3(signature = (out = None))]
     fn strain<'py>(
         &self,
@@ -367,7 +368,8 @@ impl Session {
         self.field::<3>(py, out, nodes_of, World::contact_forces)
     }
 
-    /// Energies (J): kinetic_J, elastic_J, work_of_tools_J since the motion began, and of_cuts_J where the body may be cut.
+    /// Energies (J): kinetic_J, elastic_J, work_of_tools_J since the motion began, and of_cuts_J if the body may be
+    /// cut.
     fn energy<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let (energy, tools, cuts) = self.world.work(py, |world| {
             let energy = world.energy().map_err(of_report)?;
@@ -424,7 +426,7 @@ impl Session {
             .with(py, |world| Ok(world.scene().body().load_names()))
     }
 
-    /// The tool of a name. KeyError lists those that there are.
+    /// The tool of a name. KeyError lists the existing names.
     fn tool(slf: &Bound<'_, Self>, name: &str) -> PyResult<Tool> {
         let id = slf
             .get()
@@ -437,8 +439,8 @@ impl Session {
         })
     }
 
-    /// The load of a name: that of the scene, "load 2" for the second if it has none, or "gravity". KeyError lists those that
-    /// there are.
+    /// The load of a name: that of the scene, "load 2" for the second if it has none, or "gravity". KeyError lists the
+    /// existing names.
     fn load(slf: &Bound<'_, Self>, name: &str) -> PyResult<Load> {
         let id = slf
             .get()
@@ -451,8 +453,8 @@ impl Session {
         })
     }
 
-    /// Forces (N) on nodes from the next step on, besides all loads, in the place of those of the last call: nodes (k,),
-    /// forces (k, 3), or (3,) for each. force([], []) ends them.
+    /// Forces (N) on nodes from the next step on, in addition to all loads; they replace those of the last call: nodes
+    /// (k,), forces (k, 3), or (3,) for each. force([], []) ends them.
     fn force(
         &self,
         py: Python<'_>,
@@ -538,7 +540,7 @@ impl Session {
         self.world.command(py, Command::Cut { from, to })
     }
 
-    /// All that the motion continues from, as bytes: the same on every machine.
+    /// The full state of the motion, as bytes: the same on every machine.
     fn save<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
         let bytes = self.world.work(py, |world| {
             let bytes = world.save().to_bytes();
@@ -547,8 +549,8 @@ impl Session {
         Ok(PyBytes::new(py, &bytes))
     }
 
-    /// Continues from what save() of a session of the same scene gave, with the same bits. ValueError for other bytes; the
-    /// session stays as it was then.
+    /// Continues from the result of save() of a session of the same scene, with the same bits. ValueError for other
+    /// bytes; the session is then unchanged.
     fn restore(&self, py: Python<'_>, saved: &Bound<'_, PyAny>) -> PyResult<()> {
         let bytes = saved.cast::<PyBytes>().map_err(|_| {
             value_error(format!(

@@ -37,7 +37,7 @@ impl Shared {
         }
     }
 
-    /// Asks the world something that takes no time.
+    /// Runs a short query on the world.
     pub(crate) fn with<T>(
         &self,
         py: Python<'_>,

@@ -38,8 +38,8 @@ impl Tool {
 
 #[pymethods]
 impl Tool {
-    /// Moves the tool to a position (m) at the end of the next step, in a straight line within that step; it stays there
-    /// until it is moved again. rotation_vector (rad): axis times angle; None keeps that of now.
+    /// Moves the tool to a position (m) at the end of the next step, in a straight line within that step; it stays
+    /// there until it is moved again. rotation_vector (rad): axis times angle; None keeps the present one.
     #[pyo3(signature = (position, rotation_vector = None))]
     fn move_to(
         &self,
@@ -57,7 +57,7 @@ impl Tool {
         })
     }
 
-    /// Closes the jaws: what the tool touches in a step goes with it until release().
+    /// Closes the jaws: nodes that the tool touches in a step move with it until release().
     fn grasp(&self, py: Python<'_>) -> PyResult<()> {
         let tool = self.name.as_str().into();
         self.world.command(py, Command::Grasp { tool })

@@ -1,4 +1,4 @@
-//! The one who watches steps for Python: Ctrl-C ends them in order.
+//! Supervision of steps for Python: Ctrl-C ends them in an orderly way.
 
 use std::time::{Duration, Instant};
 
@@ -50,7 +50,7 @@ impl sinew_core::Recorder for Watch {
 
 impl Recorder for Watch {}
 
-/// Watches a run, and tells a function of Python how far it is.
+/// Watches a run and reports its progress to a function of Python.
 pub(crate) struct Onlooker {
     /// Called with the time (s) of the state and the duration (s); `False` ends the run.
     progress: Option<Py<PyAny>>,

@@ -30,18 +30,18 @@ enum Command {
     Resume(command::resume::Arguments),
     /// Compare the results of two runs, or of two scenes: the largest difference of each quantity, with its time.
     Compare(command::compare::Arguments),
-    /// Estimate the error of a scene's mesh: the scene again on a refined one, beside the error of its
-    /// step.
+    /// Estimate the error of a scene's mesh: the scene runs again on a refined one, and the error of its step is given
+    /// too.
     Converge(command::converge::Arguments),
     /// Draw a run: a picture of an instant, or a film of all of it, with its tools, as tissue or coloured by a field.
     Film(command::film::Arguments),
-    /// Show the law of each region: its curves in tension, shear and of sheets, where they are stable, and measured points
-    /// beside them.
+    /// Show the law of each region: its curves in tension, shear and of sheets, where they are stable, together with
+    /// measured points.
     Law(command::law::Arguments),
     /// Find natural frequencies, mode shapes and the modes that the loads of a scene excite.
     #[cfg(feature = "implicit")]
     Modes(command::modes::Arguments),
-    /// Press on a scene and cut it by hand: a page in a browser of this computer, in real time.
+    /// Press on a scene and cut it with the mouse: a page in a browser of this computer, in real time.
     #[cfg(feature = "live")]
     Live(command::live::Arguments),
     /// Write a first scene for a mesh, or one of the ready scenes.

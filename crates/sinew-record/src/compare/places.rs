@@ -6,8 +6,8 @@ use crate::tables::PROBES;
 /// Distance over the size of the coordinates within which two positions are the same.
 const SAME: f64 = 1e-9;
 
-/// Compares the positions of probes of the same name, which are stated above the table in lines such as `# tip: node 9
-/// at 0.1 0.2 0.3 m, ..`.
+/// Compares the positions of probes of the same name, which are stated above the table in lines such as
+/// `# tip: node 9 at 0.1 0.2 0.3 m, ..`.
 pub(super) fn probes(comparison: &mut Comparison, one: &str, other: &str) {
     let others: Vec<(&str, &str)> = other.lines().filter_map(described).collect();
     for (name, place) in one.lines().filter_map(described) {

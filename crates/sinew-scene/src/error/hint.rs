@@ -28,7 +28,9 @@ pub(super) fn following_from(fault: &Fault) -> Option<String> {
         Fault::Value {
             found, expected, ..
         } if found.starts_with('"') => {
-            suggestion(nearest(found.trim_matches('"'), words_in(expected)))
+            let word = found.trim_matches('"');
+            let others = words_in(expected).filter(|other| *other != word);
+            suggestion(nearest(word, others))
         }
         Fault::MeshFile(error) => error.advice(),
         Fault::Tetrahedra(TetMeshError::UnsupportedCells { kind, .. })

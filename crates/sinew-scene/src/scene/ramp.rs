@@ -173,7 +173,13 @@ pub(super) fn read(table: &Table<'_>) -> Result<Factor, SceneError> {
 }
 
 fn of_kind(table: &Table<'_>) -> Result<Ramp, SceneError> {
-    let ramp = match table.read(&KIND)? {
+    let kind = table.read(&KIND).map_err(|error| match error.fault() {
+        Fault::Value { found, .. } if found == "\"sine\"" => {
+            error.with_help("a sine is written as { sine = { frequency = 5.0 } }")
+        }
+        _ => error,
+    });
+    let ramp = match kind? {
         Of::Step => Ramp::Step,
         Of::Sin2 => Ramp::Sin2 {
             rise: table.read(&RISE)?,

@@ -20,7 +20,7 @@ pub(crate) struct Arguments {
     one: PathBuf,
     /// Another folder or scene file
     other: PathBuf,
-    /// The largest relative difference that is no finding; without it none is
+    /// The largest allowed relative difference; without it no difference is a finding
     #[arg(long, value_name = "SHARE", value_parser = share)]
     tolerance: Option<f64>,
     /// Print one JSON object

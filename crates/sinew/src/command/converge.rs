@@ -23,11 +23,11 @@ use words::{subject, unit};
 pub(crate) struct Arguments {
     /// The scene file.
     scene: PathBuf,
-    /// The number of meshes: the scene's, and each of the others with every tetrahedron of the one before cut into eight; from 3
-    /// on the order is observed
+    /// The number of meshes: the scene's, and each further one with every tetrahedron of the previous one cut into
+    /// eight; from 3 on the order is observed
     #[arg(long, value_name = "N", default_value_t = 2, value_parser = levels)]
     levels: usize,
-    /// Begin also where more than 60 s are predicted
+    /// Begin even if more than 60 s are predicted
     #[arg(long)]
     yes: bool,
     /// Print one JSON object

@@ -206,7 +206,7 @@ pub(crate) enum Failure {
     Diverged {
         /// Time (s).
         t: f64,
-        /// The degree of freedom in the system's words.
+        /// The degree of freedom, as the system describes it.
         place: String,
         /// Known reasons and remedies, as the rest of the message.
         remedy: String,
@@ -238,7 +238,7 @@ pub(crate) enum Failure {
     /// Results that cannot be compared.
     #[error(transparent)]
     Compare(#[from] CompareError),
-    /// A run of which no picture can be made, or a wish that none fulfils.
+    /// A run of which no picture can be made, or a request that no picture can fulfil.
     #[error("{}: {source}", run.display())]
     Film {
         /// The folder or the scene.

@@ -10,7 +10,7 @@ use super::Failure;
 /// The integrator to describe.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// The integrator to describe, with its options; all of them in a line each where none is named
+    /// The integrator to describe, with its options; all of them in a line each if none is named
     #[arg(value_parser = PossibleValuesParser::new(sinew_integrators::ids()))]
     name: Option<String>,
 }

@@ -46,7 +46,7 @@ fn hang_up() -> Option<i32> {
     None
 }
 
-/// The signals that this process was started to ignore, a bit each from 1 on, if the system reports them.
+/// The signals that this process was started to ignore, one bit each from 1 on, if the system reports them.
 fn ignored() -> u64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));

@@ -12,7 +12,7 @@ use super::Failure;
 use super::own_file::{Force, holds};
 use super::scene_with::Values;
 
-/// A scene and the curves that are asked for.
+/// A scene and the requested curves.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// The scene file
@@ -21,11 +21,11 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "NUMBER|GROUP")]
     region: Option<String>,
     /// The least and the largest stretch; an amount of shear goes from FROM - 1 to TO - 1 [default: those of the
-    /// measured points with some room, or 0.7 2]
+    /// measured points with a margin, or 0.7 2]
     #[arg(long, num_args = 2, value_names = ["FROM", "TO"], value_parser = stretch, allow_negative_numbers = true)]
     stretch: Option<Vec<f64>>,
     /// The axis of the pull in the axes of the mesh; with fibres and axes the curves depend on it [default: 1,0,0, or
-    /// between the fibres where data of the mesh give their directions]
+    /// between the fibres if data of the mesh give their directions]
     #[arg(
         long,
         value_name = "X,Y,Z",
@@ -34,8 +34,8 @@ pub(crate) struct Arguments {
         allow_hyphen_values = true
     )]
     along: Option<Vec<f64>>,
-    /// The second axis of sheets and shears, as far as it is at right angles to the first [default: the mesh's axis after
-    /// the one that the first is nearest to, or the material's second one where data of the mesh give its axes]
+    /// The second axis of sheets and shears, as far as it is at right angles to the first [default: the mesh's axis
+    /// after the one that the first is nearest to, or the material's second one if data of the mesh give its axes]
     #[arg(
         long,
         value_name = "X,Y,Z",
@@ -44,12 +44,12 @@ pub(crate) struct Arguments {
         allow_hyphen_values = true
     )]
     across: Option<Vec<f64>>,
-    /// Measured points to show beside the curves: a CSV file with the columns load (uniaxial, equibiaxial, planar or
+    /// Measured points to show with the curves: a CSV file with the columns load (uniaxial, equibiaxial, planar or
     /// simple-shear), stretch_or_shear (1 and 0 at rest) and stress_Pa (nominal)
     #[arg(long, value_name = "FILE")]
     measured: Option<PathBuf>,
     /// The folder for the table and the pictures, a new one or that of earlier curves, which is replaced; or a file
-    /// that ends in .csv, with the pictures beside it; or - for the table on standard output
+    /// that ends in .csv, with the pictures next to it; or - for the table on standard output
     #[arg(long, value_name = "DIR|FILE.csv")]
     out: Option<PathBuf>,
     #[command(flatten)]

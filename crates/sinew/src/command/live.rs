@@ -13,13 +13,13 @@ use super::Failure;
 use super::interruption::Interruption;
 use super::scene_with::Values;
 
-/// The scene without a name: the paper's cube, at whose top the user pulls.
+/// The default scene: the paper's cube, whose top the user pulls.
 const CUBE: &str = include_str!("live/cube.toml");
 
-/// The methods that stand side by side without a scene: the paper's, and the one that bears its step.
+/// The methods that run side by side without a scene: the paper's, and one that is stable with its step.
 const SIDE_BY_SIDE: [&str; 2] = ["cnn", "cnn-stabilised"];
 
-/// A scene, and where its page is.
+/// A scene and the port of its page.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// The scene file [default: the paper's cube in steps of 20 ms, by two methods side by side]
@@ -27,7 +27,7 @@ pub(crate) struct Arguments {
     /// The port of this computer, or 0 for a free one
     #[arg(long, value_name = "PORT", default_value_t = 0)]
     port: u16,
-    /// A second pane beside the first, with this integrator, given the same commands
+    /// A second pane next to the first, with this integrator and the same commands
     #[arg(long, value_name = "ID")]
     beside: Option<String>,
     /// At the end write what `sinew run --out` writes: the motion since the last reset, into DIR, and that of a second pane into DIR-second
@@ -91,7 +91,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
 }
 
-/// The loads by which the user pulls in the scene without a name.
+/// The loads with which the user pulls in the default scene.
 fn hand() -> Hand {
     Hand {
         loads: ["hand-x", "hand-y", "hand-z"].map(str::to_owned),

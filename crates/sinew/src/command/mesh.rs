@@ -61,8 +61,8 @@ pub(crate) enum Command {
         #[command(flatten)]
         force: Force,
     },
-    /// Write a mesh with each tetrahedron cut into eight, all groups kept: whether a mesh is fine enough
-    /// shows where its answer is compared with that of the finer one. Formats are those of convert.
+    /// Write a mesh with each tetrahedron cut into eight, all groups kept: compare the answers of both to see whether
+    /// the mesh is fine enough. Formats are those of convert.
     Refine {
         /// The mesh file, of a format that convert reads.
         input: PathBuf,
@@ -101,7 +101,7 @@ pub(crate) enum Fix {
     DropOrphans,
     /// Merge cells with the same nodes.
     MergeDuplicates,
-    /// Merge nodes of different parts where faces of theirs lie on each other; cuts, which lie within a part, stay.
+    /// Merge nodes of different parts if faces of these parts coincide; cuts, which lie within a part, stay.
     MergeNodes,
 }
 
@@ -153,7 +153,7 @@ fn read(file: &Path) -> Result<Mesh, Failure> {
     Ok(read_mesh_file(file)?)
 }
 
-/// Reads a mesh in the order of cells that was asked for.
+/// Reads a mesh in the requested order of cells.
 fn read_in(file: &Path, style: Style) -> Result<Mesh, Failure> {
     let mut mesh = read(file)?;
     if style.order == Some(Order::Linear) {
@@ -475,7 +475,7 @@ impl<'a> MeshOutput<'a> {
         })
     }
 
-    /// Writes a mesh, and says so after `facts` about it.
+    /// Writes a mesh and reports it after `facts` about it.
     fn write(self, mesh: &Mesh, facts: &str) -> Result<(), Failure> {
         let Self {
             path,

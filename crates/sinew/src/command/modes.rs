@@ -14,7 +14,7 @@ use super::scene_with::Values;
 /// A scene and the number of its modes.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// The scene file; its loads say which modes they excite
+    /// The scene file; its loads determine which modes are reported as excited
     scene: PathBuf,
     /// The number of modes, from the lowest frequency on
     #[arg(long, value_name = "N", default_value_t = 10, value_parser = clap::value_parser!(u16).range(1..=200))]

@@ -36,7 +36,7 @@ pub(super) struct Mp4 {
 }
 
 impl Mp4 {
-    /// Starts ffmpeg for pictures of a size, `fps` a second.
+    /// Starts ffmpeg for pictures of a size, `fps` per second.
     pub(super) fn begin(size: Size, fps: f64) -> Result<Self, Mp4Error> {
         let folder = tempfile::Builder::new().prefix("sinew-film-").tempdir();
         let folder = folder.map_err(Mp4Error::Io)?;

@@ -18,13 +18,13 @@ use super::own_file::Force;
 #[derive(clap::Args)]
 #[command(group = clap::ArgGroup::new("what").args(["mesh", "list", "ready"]).required(true))]
 pub(crate) struct Arguments {
-    /// The mesh file to write a first scene for: its groups with their sizes, its data with their ranges, its unit as far as its extent tells, and a
-    /// material, a support and a load as proposals; it runs as it is
+    /// The mesh file to write a first scene for: its groups with their sizes, its data with their ranges, its unit as
+    /// far as its extent shows it, and a material, a support and a load as proposals; it runs as it is
     mesh: Option<PathBuf>,
     /// List the ready scenes
     #[arg(long)]
     list: bool,
-    /// Write a ready scene and, beside it, its mesh
+    /// Write a ready scene and, next to it, its mesh
     #[arg(long, value_name = "NAME")]
     ready: Option<String>,
     /// The scene file to write, or - for standard output [default: the name of the mesh or of the ready scene with
@@ -72,7 +72,7 @@ fn first(mesh: &Path, out: &Path, force: Force) -> Result<(), Failure> {
     written(destination, &text, force)
 }
 
-/// The path of a mesh as seen from the folder of a scene: relative where the folder is known, else absolute.
+/// The path of a mesh as seen from the folder of a scene: relative if the folder is known, else absolute.
 fn seen_from(scene: &Path, mesh: &Path) -> PathBuf {
     let folder = match scene.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,

@@ -75,7 +75,7 @@ impl Companion for Onlooker {
     }
 }
 
-/// Beside a recorder that needs no check of states.
+/// For use together with a recorder that needs no check of states.
 impl sinew_core::Recorder for Onlooker {
     fn next(&mut self, step: usize) -> Option<usize> {
         Some(self.pace.next().max(step))

@@ -1,4 +1,4 @@
-//! Files that commands write: new ones, and over others with `--force`.
+//! Files that commands write: new ones, and with `--force` also existing ones.
 
 use std::fs;
 use std::path::Path;
@@ -10,13 +10,13 @@ use super::Failure;
 /// Permission to overwrite files.
 #[derive(clap::Args, Clone, Copy)]
 pub(crate) struct Force {
-    /// Write over a file that holds something else
+    /// Overwrite a file that holds something else
     #[arg(long)]
     pub(crate) force: bool,
 }
 
 impl Force {
-    /// Refuses a file that is there and is not this command's own, unless it may be written over.
+    /// Refuses an existing file that is not this command's own, unless it may be overwritten.
     pub(crate) fn check(
         self,
         destination: &Destination,
@@ -32,7 +32,7 @@ impl Force {
         }
     }
 
-    /// Writes a file whole, unless it is there with another content and may not be written over.
+    /// Writes a whole file, unless it exists with another content and may not be overwritten.
     pub(crate) fn write(
         self,
         destination: Destination,

@@ -28,9 +28,8 @@ use cost::Cost;
 pub(crate) struct Arguments {
     /// The scene file.
     scene: PathBuf,
-    /// Advise the cheapest integrator and step with at most this relative error, such as 1e-2, found
-    /// by short runs of the scene; where they do not cover the scene, the answer says up to when it
-    /// holds
+    /// Advise the cheapest integrator and step with at most this relative error, such as 1e-2, found by short runs of
+    /// the scene; if they do not cover the scene, the answer gives the time up to which it holds
     #[arg(long, value_name = "ERROR", value_parser = tolerance, allow_hyphen_values = true)]
     tolerance: Option<f64>,
     /// Largest cost in CPU seconds per simulated second, without set-up; 1 is real time. Without

@@ -145,7 +145,7 @@ fn onlooker(simulation: &Simulation, interruption: Interruption) -> Onlooker {
     Onlooker::new(interruption, steps, duration)
 }
 
-/// Runs a scene into an empty folder, which nobody reads but the command that has it run.
+/// Runs a scene into an empty folder, which only the calling command reads.
 pub(crate) fn run_for_reader(
     scene: &Path,
     folder: &Path,
@@ -275,8 +275,8 @@ fn probes_alone(
     }
 }
 
-/// The scene's integrator with as many threads as were asked for, or as the scene asks for, or as help. Methods that no
-/// machine runs have none.
+/// The scene's integrator with the requested number of threads, or that of the scene, or one that helps. Methods that
+/// no machine runs have none.
 pub(crate) fn integrator(
     simulation: &Simulation,
     threads: Option<&OptionValue>,
@@ -286,7 +286,7 @@ pub(crate) fn integrator(
     sinew_integrators::build(id, &options)
 }
 
-/// An option as a command line has it.
+/// An option as written on a command line.
 fn in_words(threads: &OptionValue) -> String {
     match threads {
         OptionValue::Number(count) => count.to_string(),

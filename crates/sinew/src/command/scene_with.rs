@@ -111,7 +111,7 @@ pub fn memory_of(scene: &Scene) -> Memory {
     bytes.map_or(Memory::unlimited(), |bytes| Memory::of(bytes as u64))
 }
 
-/// Lets factors take that much memory from now on.
+/// Limits factors to that much memory from now on.
 #[cfg(feature = "implicit")]
 pub(super) fn limit_memory(scene: &Scene) {
     Memory::set_left(Some(memory_of(scene)));

@@ -1,6 +1,6 @@
 //! Shares on a command line.
 
-/// A number, or one in per cent; `None` for other words.
+/// A number, or one in per cent; `None` for other text.
 pub(crate) fn share_of(text: &str) -> Option<f64> {
     match text.strip_suffix('%') {
         Some(percent) => Some(percent.trim_end().parse::<f64>().ok()? / 100.0),

@@ -16,7 +16,7 @@ fn a_number_with_a_unit() {
     insta::assert_snapshot!(
         refusal(BODY, "density = 1060.0", "density = 1.06 g/cm3"),
         @"
-    scene.toml:5: not TOML: unexpected key or value, expected newline, `#`
+    scene.toml:5: not TOML: string values must be quoted, expected literal string
     help: numbers have no units: they are in m, kg, s, N and Pa, so 6 kPa is 6000.0
     "
     );

@@ -95,7 +95,10 @@ fn the_name_of_gravity() {
 fn unknown_ramp() {
     insta::assert_snapshot!(
         refusal(BODY, "{ kind = \"step\" }", "{ kind = \"sine\" }"),
-        @r#"scene.toml:17: [[load]] 1 ramp: kind = "sine": expected "step", "sin2", "pulse" or "table""#
+        @r#"
+    scene.toml:17: [[load]] 1 ramp: kind = "sine": expected "step", "sin2", "pulse" or "table"
+    help: a sine is written as { sine = { frequency = 5.0 } }
+    "#
     );
 }
 

@@ -63,7 +63,10 @@ fn edge_left_out() {
 fn unknown_split() {
     insta::assert_snapshot!(
         refusal(BODY, "edge = 0.2", "edge = 0.2, split = \"khun\""),
-        @r#"scene.toml:3: [mesh] cube: split = "khun": expected "mirrored" or "kuhn""#
+        @r#"
+    scene.toml:3: [mesh] cube: split = "khun": expected "mirrored" or "kuhn"
+    help: did you mean `kuhn`?
+    "#
     );
 }
 

@@ -152,7 +152,10 @@ fn no_springs() {
 fn unknown_rule() {
     insta::assert_snapshot!(
         refusal(BODY, "\"lloyd\"", "\"loyd\""),
-        @r#"scene.toml:8: [[region]] 1 springs: rule = "loyd": expected "lloyd" or "van-gelder""#
+        @r#"
+    scene.toml:8: [[region]] 1 springs: rule = "loyd": expected "lloyd" or "van-gelder"
+    help: did you mean `lloyd`?
+    "#
     );
 }
 
@@ -282,7 +285,10 @@ fn element_on_springs() {
 
 #[test]
 fn unknown_element() {
-    insta::assert_snapshot!(refused_element("element = \"f-bar\"\n"), @r#"scene.toml:9: [[region]] 1: element = "f-bar": expected "p1", "fbar" or "fbar-edge""#);
+    insta::assert_snapshot!(refused_element("element = \"f-bar\"\n"), @r#"
+    scene.toml:9: [[region]] 1: element = "f-bar": expected "p1", "fbar" or "fbar-edge"
+    help: did you mean `fbar`?
+    "#);
 }
 
 #[test]

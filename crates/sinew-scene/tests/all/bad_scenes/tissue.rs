@@ -169,7 +169,10 @@ fn moduli_without_memory() {
 fn unknown_moduli() {
     insta::assert_snapshot!(
         refused_memory("neo-hookean", "prony = [[0.5, 1.0]]\nmoduli = \"long\""),
-        @r#"scene.toml:10: [[region]] 1: moduli = "long": expected "instantaneous" or "longterm""#
+        @r#"
+    scene.toml:10: [[region]] 1: moduli = "long": expected "instantaneous" or "longterm"
+    help: did you mean `longterm`?
+    "#
     );
 }
 

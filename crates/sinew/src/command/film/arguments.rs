@@ -32,7 +32,7 @@ pub(crate) struct Arguments {
     /// Width and height in pixels [default: 720x405 for a film as .png, else 1280x720]
     #[arg(long, value_name = "WxH")]
     pub(super) size: Option<String>,
-    /// Pictures a second
+    /// Pictures per second
     #[arg(
         long,
         value_name = "RATE",
@@ -48,9 +48,9 @@ pub(crate) struct Arguments {
         conflicts_with = "at"
     )]
     pub(super) seconds: Option<f64>,
-    /// A file that ends in .png: a picture, or a film that browsers play wherever they show pictures; one that ends in .mp4: a
-    /// film, if ffmpeg is found; or a folder for all pictures, a new one or that of earlier pictures, which is replaced
-    /// [default: the name of the run with .png, in the current folder]
+    /// A file that ends in .png: a picture, or a film that browsers play as they show pictures; one that ends in .mp4:
+    /// a film, if ffmpeg is found; or a folder for all pictures, a new one or that of earlier pictures, which is
+    /// replaced [default: the name of the run with .png, in the current folder]
     #[arg(long, value_name = "FILE.png|FILE.mp4|DIR")]
     pub(super) out: Option<PathBuf>,
     #[command(flatten)]

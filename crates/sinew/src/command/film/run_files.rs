@@ -3,8 +3,8 @@
 use std::io::{self, ErrorKind};
 use std::path::{Component, Path};
 
-/// The content of a file in a folder. A name that leads out of it, as by a link, is refused: lists of frames come from
-/// others.
+/// The content of a file in a folder. A name that leads out of it, such as a link, is refused: lists of frames may come
+/// from other programs.
 pub(super) fn read_within(folder: &Path, name: &str) -> io::Result<Vec<u8>> {
     let mut path = folder.to_owned();
     for part in Path::new(name).components() {

@@ -58,7 +58,7 @@ impl Recording {
             .for_each(|folder| remove(&log_beside(folder)));
     }
 
-    /// Says where the commands of a session are that ended without them.
+    /// Prints the place of the commands of a session that ended without its folders.
     pub(super) fn name_journals(&self) {
         for beside in self.folders.iter().map(|folder| log_beside(folder)) {
             if std::fs::metadata(&beside).is_ok_and(|found| found.len() > 0) {
@@ -159,7 +159,7 @@ fn log_beside(folder: &Path) -> PathBuf {
     PathBuf::from(path)
 }
 
-/// Removes a file of this program's.
+/// Removes a file of this program.
 fn remove(path: &Path) {
     // One that stays costs disk space, and nothing else.
     let _ = std::fs::remove_file(path);

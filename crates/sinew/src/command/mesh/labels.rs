@@ -6,7 +6,7 @@ use sinew_mesh::Mesh;
 
 use super::Failure;
 
-/// Makes groups of these data, and says of which.
+/// Makes groups of these data, and prints their names.
 pub(super) fn into_groups(
     mesh: &mut Mesh,
     path: &Path,

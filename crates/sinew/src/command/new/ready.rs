@@ -29,7 +29,7 @@ macro_rules! file {
     };
 }
 
-/// All of them, the one to begin with first.
+/// All ready scenes; the recommended first one comes first.
 const READY: &[Ready] = &[
     Ready {
         name: "held-cube",

@@ -5,7 +5,7 @@ use sinew_scene::output::{Destination, Voice, say};
 use crate::command::Failure;
 use crate::command::own_file::Force;
 
-/// Writes a scene and says what can be done with it.
+/// Writes a scene and prints the commands that can use it.
 pub(super) fn written(destination: Destination, scene: &str, force: Force) -> Result<(), Failure> {
     let path = destination.path().display().to_string();
     let voice = Voice::apart_from(&destination);

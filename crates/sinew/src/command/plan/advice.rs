@@ -6,7 +6,7 @@ use sinew_measure::number::{milliseconds, percent, short, three};
 use sinew_measure::search::Pilot;
 use sinew_measure::{Advice, Answer, LeftOut, MethodChoice, Row, RowOutcome};
 
-/// Heading of the column that is shown only where pilots covered a part of the scene.
+/// Heading of the column that is shown only if pilots covered a part of the scene.
 const EXPECTED: &str = "expected\n[%]";
 
 const HEAD: [&str; 10] = [
@@ -288,7 +288,7 @@ fn provenance(advice: &Advice) -> String {
     lines.join("\n")
 }
 
-/// A line for each reason for which methods were left out, with all of them.
+/// A line for each reason why methods were left out, with all these methods.
 fn left_out(refused: &[(MethodChoice, LeftOut)]) -> Vec<String> {
     let mut reasons: Vec<(String, Vec<String>)> = Vec::new();
     for (method, reason) in refused {

@@ -81,10 +81,10 @@ impl Missing {
     }
 }
 
-/// Turns advice into JSON. `met` is true only where the measured error of the advised run keeps to the
-/// tolerance over the whole scene; `met_until_s` is the time up to which it does,
-/// `unseen_load_changes_s` lists the later changes of loads, and a row's `error_is_below` is a bound where
-/// its error is too small for the reference, of which `reference_error` is the own error.
+/// Turns advice into JSON. `met` is true only if the measured error of the advised run is within the tolerance over the
+/// whole scene; `met_until_s` is the time up to which it is, `unseen_load_changes_s` lists the later changes of loads,
+/// and a row's `error_is_below` is a bound if its error is too small for the reference; `reference_error` is the
+/// reference's own error.
 pub(super) fn as_json(advice: &Advice) -> AdviceJson {
     let mut missing = Missing::default();
     let refused = advice.refused.iter();

@@ -18,7 +18,7 @@ pub(super) struct Cost {
     pub(super) footprint: Option<Footprint>,
     /// Memory (bytes) of the factor of an implicit method, if there is one.
     pub(super) factor: Option<u64>,
-    /// Work and time, or the reason for which they are not known.
+    /// Work and time, or the reason why they are not known.
     pub(super) forecast: Result<Forecast, String>,
     /// Files of a run with `--out`.
     pub(super) folder: FolderSize,

@@ -7,7 +7,7 @@ use sinew_scene::{Plan, Simulation, Warning};
 use super::cost::Cost;
 use super::cost_json;
 
-/// A plan as one JSON object: its printed sections, its numbers, and its warnings with theirs. Absent numbers
+/// A plan as one JSON object: its printed sections, its numbers, and its warnings with their numbers. Absent numbers
 /// are left out.
 pub(super) fn as_json(simulation: &Simulation, plan: &Plan, cost: &Cost) -> Value {
     let sections = plan.sections.iter().map(|section| {

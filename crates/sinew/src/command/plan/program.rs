@@ -8,7 +8,7 @@ use sinew_scene::output::say;
 use super::program_json;
 use crate::command::Failure;
 
-/// Prints it, as text or as JSON.
+/// Prints the program, as text or as JSON.
 pub(super) fn print(simulation: &Simulation, as_json: bool) -> Result<(), Failure> {
     let mut integrator = simulation.integrator()?;
     simulation.set_up(&mut *integrator)?;

@@ -7,16 +7,16 @@ use sinew_core::OptionValue;
 use crate::command::own_file::Force;
 use crate::command::scene_with::Values;
 
-/// A scene and the destination of what the run gives.
+/// A scene and the destination of the results.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// The scene file.
     pub(super) scene: PathBuf,
-    /// The folder for fields, tables, summary and report: a new one, or that of an earlier run, whose
-    /// results are kept beside it as DIR.old until the new ones are complete
+    /// The folder for fields, tables, summary and report: a new one, or that of an earlier run, whose results are kept
+    /// next to it as DIR.old until the new ones are complete
     #[arg(long, value_name = "DIR", conflicts_with = "probes")]
     pub(super) out: Option<PathBuf>,
-    /// Throw away a run in DIR that was not completed and that `sinew resume` could go on with
+    /// Discard a run in DIR that was not completed and that `sinew resume` could continue
     #[arg(long, requires = "out")]
     pub(super) again: bool,
     /// The CSV file for the motion of the probes: a new file or an earlier table of probes, a device or a
@@ -25,8 +25,8 @@ pub(crate) struct Arguments {
     pub(super) probes: PathBuf,
     #[command(flatten)]
     pub(super) force: Force,
-    /// The largest number of threads for methods that machines run, or auto for one a processor: fewer
-    /// where they do not pay, and the same bits for every number [default: that of the scene, or auto]
+    /// The largest number of threads for methods that machines run, or auto for one per processor: fewer if more do not
+    /// help, and the same bits for every number [default: that of the scene, or auto]
     #[arg(long, value_name = "N|auto", value_parser = threads)]
     pub(super) threads: Option<OptionValue>,
     /// Repeat a session by its log, bit for bit: with --out the motion since its last reset as a folder, else as the motion of the
@@ -40,7 +40,7 @@ pub(crate) struct Arguments {
     pub(super) values: Values,
 }
 
-/// A number of threads as a command line has it.
+/// A number of threads as written on a command line.
 pub(crate) fn threads(text: &str) -> Result<OptionValue, &'static str> {
     const EXPECTED: &str = "expected a whole number from 1 on, or auto";
     if text == "auto" {

@@ -7,7 +7,7 @@ use sinew_record::{MOST_NUMBERS, RecordRunError, RunEnd, words_of_cuts};
 use sinew_scene::output::{Replaced, complain};
 use sinew_scene::{ProbeRows, SceneBody, Schedule, Simulation};
 
-/// Most rows of a table of probes, where the scene does not ask for more.
+/// Largest number of rows of a table of probes, unless the scene requests more.
 const MOST_ROWS: usize = 100_000;
 
 /// The steps after which probes are recorded; prints a message if these are not all steps. A table that is kept has no
@@ -112,7 +112,7 @@ pub(super) fn summary_of(simulation: &Simulation, end: &RunEnd, path: &Path) -> 
     lines
 }
 
-/// Some lines about a run of which nothing is kept but the motion of probes.
+/// Some lines about a run of which only the motion of probes is kept.
 pub(super) fn summary(
     simulation: &Simulation,
     body: &SceneBody,

@@ -157,8 +157,8 @@ fn run_writes_the_probes_and_calls_a_guarded_run_guarded() {
     assert!(csv.starts_with("t_s,top-centre_u_x_m"));
 }
 
-/// The top of a cube is pressed down: what holds it below and above are opposite forces once it rests, but for the
-/// rest of the motion.
+/// The top of a cube is pressed down: the supports below and above it have opposite forces once it rests, except for
+/// the remaining motion.
 #[test]
 fn run_ends_with_the_force_of_each_support_and_motion() {
     let directory = tempfile::tempdir().unwrap();

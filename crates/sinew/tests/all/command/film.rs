@@ -192,7 +192,7 @@ fn what_is_not_understood_is_said_with_what_is() {
     assert!(!folder.path().join("slab.png").exists());
 }
 
-/// A program called ffmpeg that keeps what it is given, in a folder.
+/// A program called ffmpeg that stores its input in a folder.
 #[cfg(unix)]
 fn with_ffmpeg(folder: &Path, script: &str) -> std::process::Output {
     use std::os::unix::fs::PermissionsExt;

@@ -13,7 +13,7 @@ fn scene(law: &str, pull: &str, method: &str) -> String {
     )
 }
 
-/// Every method names the element and the reason of the law, whichever way it came there.
+/// Every method names the element and the reason of the law, for every way to this state.
 #[test]
 fn a_run_that_ends_at_a_limit_names_the_element_and_the_reason() {
     let gent = "model = \"gent\"\nshear_modulus = 1200.0\nlimit = 0.5\npoissons_ratio = 0.45";

@@ -109,7 +109,7 @@ struct Served {
 }
 
 impl Served {
-    /// Says something as its page does, and waits for a picture that contains it; the events until then.
+    /// Sends a message as its page does, and waits for a picture that contains it; the events until then.
     fn say(&self, number: u32, order: &str) -> Vec<Value> {
         let host = self.url.split('/').nth(2).unwrap();
         let url = format!("{}socket", self.url.replacen("http", "ws", 1));
@@ -138,7 +138,7 @@ impl Served {
         }
     }
 
-    /// Asks it to end, by the signal that is followed as Ctrl-C is and that no background job ignores.
+    /// Asks it to end, with the signal that is treated as Ctrl-C and that no background job ignores.
     fn interrupt(mut self) -> (Option<i32>, String) {
         let id = self.child.id().to_string();
         Command::new("kill").args(["-TERM", &id]).status().unwrap();
@@ -157,7 +157,7 @@ impl Drop for Served {
     }
 }
 
-/// All files below a folder, without what a summary says of the computer.
+/// All files below a folder, without the summary's lines about the computer.
 fn contents(path: &Path) -> BTreeMap<String, Vec<u8>> {
     let mut found = BTreeMap::new();
     for entry in fs::read_dir(path).unwrap() {

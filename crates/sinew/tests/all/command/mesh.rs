@@ -128,8 +128,8 @@ fn inverted_tetrahedra_are_named_and_turned_on_request_into_another_file() {
     );
 }
 
-/// Kind, nodes and group of each cell, once for each of its groups: version 2 knows one group a cell,
-/// so that a cell of several stands there several times.
+/// Kind, nodes and group of each cell, once for each of its groups: version 2 has one group per cell, so that a cell of
+/// several groups occurs several times.
 fn cells(mesh: &Mesh) -> Vec<(&'static str, Vec<u32>, i32)> {
     let mut cells = Vec::new();
     for block in &mesh.cells {
@@ -351,7 +351,7 @@ fn a_mesh_is_not_refined_over_itself_or_into_an_unknown_format() {
     assert_eq!(std::fs::read(&cube).unwrap(), before);
 }
 
-/// Two bodies in millimetres, a flat tetrahedron, an orphan, a group without cells: all that a check can say, twice.
+/// Two bodies in millimetres, a flat tetrahedron, an orphan, a group without cells: all findings of a check, twice.
 #[test]
 fn the_check_as_text_says_what_the_check_as_json_says() {
     let directory = tempfile::tempdir().unwrap();

@@ -57,7 +57,7 @@ impl Folder {
     }
 }
 
-/// Contents by names, without what is said of the computer and of the name of the folder.
+/// Contents by names, without the lines about the computer and the name of the folder.
 fn contents(path: &Path) -> BTreeMap<String, Vec<u8>> {
     let mut found = BTreeMap::new();
     for folder in [path.to_owned(), path.join("fields")] {
@@ -133,7 +133,7 @@ fn fifty_kills_cost_no_byte() {
     assert!(said.contains("has ended"), "{said}");
 }
 
-/// Signals that this process ignores, a bit each from 1 on.
+/// Signals that this process ignores, one bit each from 1 on.
 fn ignored() -> u64 {
     let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
     let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
@@ -477,7 +477,7 @@ fn a_run_that_was_killed_when_all_was_written_is_complete() {
     }
 }
 
-/// A run into `out`, which holds results, that is killed in its course.
+/// A run into `out`, which holds results, that is killed while it runs.
 fn killed_over(folder: &Folder) {
     killed(folder);
     assert!(folder.path("out.old/summary.json").exists());

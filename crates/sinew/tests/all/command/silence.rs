@@ -1,4 +1,4 @@
-//! Messages about input that has no effect, or that asks for more than tissue can bear.
+//! Messages about input that has no effect, or that loads tissue beyond its limits.
 
 use std::fs;
 
@@ -23,7 +23,7 @@ fn says(scene: &str, files: &[(&str, &str)], arguments: &[&str]) -> (Option<i32>
     (said.code, said.err + &said.out)
 }
 
-/// A run and what it says without its table.
+/// A run and its messages without its table.
 fn run(scene: &str, files: &[(&str, &str)]) -> String {
     let (code, said) = says(scene, files, &["run", "--probes", "probes.csv"]);
     assert_eq!(code, Some(0), "{said}");

@@ -212,7 +212,7 @@ fn a_run_of_more_than_a_minute_is_warned_of_before_it_begins() {
     assert!(warning["numbers"]["run_s"].as_f64().unwrap() > 60.0);
 }
 
-/// Fibres that catch a thrown cube: its stable step falls far below that at rest, which this one is half of.
+/// Fibres that catch a thrown cube: its stable step falls far below that at rest, of which this step is half.
 const CAUGHT: &str = r#"
 [mesh]
 cube = { cells = 4, edge = 0.1, split = "kuhn" }
@@ -258,7 +258,7 @@ fn a_motion_with_energy_from_nothing_is_told_with_and_without_a_folder() {
     assert!(!said.err.contains("the motion has"), "{}", said.err);
 }
 
-/// Saint Venant's tissue, stretched and let go in steps of its rest, swings until it tears.
+/// Saint Venant's tissue, stretched and released, with a step that is stable at rest, swings until it tears.
 #[test]
 fn a_step_that_the_body_outran_is_told() {
     let folder = tempfile::tempdir().unwrap();
