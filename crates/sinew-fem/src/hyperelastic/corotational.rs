@@ -50,9 +50,9 @@ impl Corotational {
         rotation * Tensor::cross_product_with(inverse.on(skew))
     }
 
-    /// Contribution of the change of R to the tangent against turning, by the stress of the dilation: `mu I + c (tr S I
-    /// - S)^-1` with `c = bulk - 2 mu`, which matters in extension. For c < 0 it is replaced by a multiple of I that is
-    /// not smaller, and never below 0.
+    /// Contribution of the change of R to the tangent against turning, by the stress of the dilation:
+    /// `mu I + c (tr S I - S)^-1` with `c = bulk - 2 mu`, which matters in extension. For c < 0 it is replaced by a
+    /// multiple of I that is not smaller, and never below 0.
     #[inline(always)]
     fn against_turning<N: Number>(&self, at: &Point<N, Rotated<N>>, bulk: N) -> Tensor<N> {
         let (mu, zero) = (N::of(self.mu), N::of(0.0));

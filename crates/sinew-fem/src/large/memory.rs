@@ -2,9 +2,9 @@
 //!
 //! With S0 the instantaneous value of the stress that relaxes, and h_i the history variables of its terms, the stress
 //! at the end of a step is `S = f S0 + R`: f is a factor and R, which is symmetric, follows from the history variables
-//! before the step. So during a step a tissue with memory is elastic: its stress is the derivative of `f psi + R : (F'F
-//! - I)/2`, which allows tangents and line searches. Only the update of the history variables needs an inverse of F,
-//! once per step.
+//! before the step. So during a step a tissue with memory is elastic: its stress is the derivative of
+//! `f psi + R : (F'F - I)/2`, which allows tangents and line searches. Only the update of the history variables needs an
+//! inverse of F, once per step.
 
 use std::ops::Range;
 
