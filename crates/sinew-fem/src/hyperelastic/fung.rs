@@ -10,8 +10,9 @@ use super::powers::{exp_m1, largest_lawful_exponent};
 use super::tensor::Tensor;
 use super::volume;
 
-/// `psi = c/2 (exp Q - 1) + kappa/2 (J - 1)^2`, with `Q = b11 E11^2 + b22 E22^2 + b33 E33^2 + 2 (b12 E11 E22 + b23 E22 E33
-/// + b31 E33 E11) + 2 (g12 E12^2 + g23 E23^2 + g31 E31^2)` of `E = (J^-2/3 C - I)/2` in the material's axes.
+/// `psi = c/2 (exp Q - 1) + kappa/2 (J - 1)^2`, with
+/// `Q = b11 E11^2 + b22 E22^2 + b33 E33^2 + 2 (b12 E11 E22 + b23 E22 E33 + b31 E33 E11) + 2 (g12 E12^2 + g23 E23^2 +
+/// g31 E31^2)` of `E = (J^-2/3 C - I)/2` in the material's axes.
 ///
 /// Fung, Fronek and Patitucci (American Journal of Physiology 237, 1979) and Chuong and Fung (Journal of Biomechanical
 /// Engineering 105, 1983), with all shears; the strain without change of volume after Flory (Transactions of the Faraday
