@@ -204,6 +204,6 @@ pub enum StepError {
 }
 
 /// A time without the rounding of the sum of steps.
-fn to_nine_digits(t: f64) -> f64 {
+pub(crate) fn to_nine_digits(t: f64) -> f64 {
     format!("{t:.8e}").parse().unwrap_or(t)
 }

@@ -4,6 +4,7 @@
 mod compressed;
 mod following_pressure;
 mod large_motion;
+#[cfg(feature = "implicit")]
 mod moved_to_a_limit;
 #[cfg(feature = "implicit")]
 mod relaxing_tissue;

@@ -9,7 +9,6 @@ use sinew_scene::{Scene, SceneSource};
 use super::run_files::read_within;
 
 /// The title of a run and its instruments, as far as they are known.
-#[derive(Default)]
 pub(super) struct Known {
     pub(super) title: Option<String>,
     pub(super) instruments: Instruments,
