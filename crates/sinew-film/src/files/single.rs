@@ -22,7 +22,7 @@ impl Picture {
         let mut encoder = Encoder::new(&mut file, width, height);
         encoder.set_color(ColorType::Rgb);
         encoder.set_depth(BitDepth::Eight);
-        encoder.set_compression(Compression::High);
+        encoder.set_compression(Compression::Balanced);
         let [keyword, program] = SOFTWARE.map(str::to_owned);
         encoder.add_text_chunk(keyword, program)?;
         let mut writer = encoder.write_header()?;

@@ -39,7 +39,7 @@ pub(super) const STYLE: &str = ".views > .beside { display: none; margin-top: .5
      .views > input:nth-of-type(4):checked ~ .beside:nth-of-type(4) { display: flex; }\n\
      @media print { .views > .beside { display: flex; } }\n";
 
-/// The body at rest and at its largest motion, coloured by displacement and by stress, from four sides.
+/// The body at rest, and at its largest motion from four sides, coloured by displacement and by stress.
 pub(super) fn section(
     page: &mut Page,
     summary: &Summary<'_>,
@@ -58,23 +58,16 @@ pub(super) fn section(
         ));
         return;
     }
-    match Pictures::of(summary, folder).and_then(|pictures| pictures.markup()) {
-        Ok(markup) => page.markup(&markup),
+    match Pictures::of(summary, folder) {
+        Ok(pictures) => page.markup(&pictures.markup()),
         Err(error) => page.paragraph(&format!("There are no pictures: {error}.")),
     }
 }
 
-/// Films of the body, each of two frames.
+/// Pictures of the body as markup, in a list for each view.
 #[derive(Default)]
 struct Pictures {
-    looks: Vec<Shown>,
-}
-
-/// A row of pictures, one for each view.
-struct Shown {
-    title: String,
-    t: f64,
-    films: Vec<Film>,
+    of_views: [Vec<String>; VIEWS.len()],
 }
 
 impl Pictures {
@@ -126,45 +119,46 @@ impl Pictures {
             };
             let clip = run.clip_of(&colouring, |other| other == t)?;
             let clip = clip.magnified(magnified);
-            if pictures.looks.is_empty() {
+            if pictures.of_views[0].is_empty() {
                 let tissue = run.colouring("tissue")?;
                 let first = run.times().next().unwrap_or(0.0);
-                pictures.add(("At the start".to_owned(), first), tissue, &clip, &tools)?;
+                pictures.add(0, ("At the start", first), &tissue, &clip, &tools)?;
             }
-            pictures.add((then.clone(), t), colouring, &clip, &tools)?;
+            for view in 0..VIEWS.len() {
+                pictures.add(view, (&then, t), &colouring, &clip, &tools)?;
+            }
         }
         Ok(pictures)
     }
 
-    /// Adds a row of pictures at a time (s).
+    /// Adds a picture at a time (s) to those of a view.
     fn add(
         &mut self,
-        (title, t): (String, f64),
-        colouring: Colouring,
+        view: usize,
+        (title, t): (&str, f64),
+        colouring: &Colouring,
         clip: &Clip,
         tools: &[Tool],
     ) -> Result<(), FilmError> {
-        let films = VIEWS.map(|view| {
-            let look = Look {
-                size: SIZE.parse()?,
-                view: view.parse::<View>()?,
-                colouring: colouring.clone(),
-                range: None,
-                title: title.clone(),
-            };
-            Film::new(clip.clone(), tools.to_vec(), &look)
-        });
-        let films: Result<Vec<Film>, FilmError> = films.into_iter().collect();
-        self.looks.push(Shown {
-            title,
-            t,
-            films: films?,
-        });
+        let side = VIEWS[view];
+        let look = Look {
+            size: SIZE.parse()?,
+            view: side.parse::<View>()?,
+            colouring: colouring.clone(),
+            range: None,
+            title: title.to_owned(),
+        };
+        let picture = Film::new(clip.clone(), tools.to_vec(), &look)?.picture(t);
+        let data = data_encoding::BASE64.encode(&picture.to_png()?);
+        let alt = escape(&format!("The body from {side}: {title}"));
+        self.of_views[view].push(format!(
+            "<figure><img alt=\"{alt}\" src=\"data:image/png;base64,{data}\"></figure>\n"
+        ));
         Ok(())
     }
 
     /// Buttons for the views, and the pictures of each.
-    fn markup(&self) -> Result<String, FilmError> {
+    fn markup(&self) -> String {
         let mut html = "<div class=\"views\">\n".to_owned();
         for (place, view) in VIEWS.iter().enumerate() {
             let checked = if place == 0 { " checked" } else { "" };
@@ -172,20 +166,13 @@ impl Pictures {
                 "<input type=\"radio\" name=\"view\" id=\"view-{view}\"{checked}><label for=\"view-{view}\">{view}</label>\n"
             ));
         }
-        for (place, view) in VIEWS.iter().enumerate() {
+        for pictures in &self.of_views {
             html.push_str("<div class=\"beside\">\n");
-            for shown in &self.looks {
-                let picture = shown.films[place].picture(shown.t);
-                let data = data_encoding::BASE64.encode(&picture.to_png()?);
-                let alt = escape(&format!("The body from {view}: {}", shown.title));
-                html.push_str(&format!(
-                    "<figure><img alt=\"{alt}\" src=\"data:image/png;base64,{data}\"></figure>\n"
-                ));
-            }
+            html.extend(pictures.iter().map(String::as_str));
             html.push_str("</div>\n");
         }
         html.push_str("</div>\n");
-        Ok(html)
+        html
     }
 }
 
