@@ -286,6 +286,12 @@ impl CuttableBody {
         self.properties.density(tet as usize) * crate::tet::volume(&self.vertices(tet))
     }
 
+    /// The shortest edge (m) of the mesh.
+    #[must_use]
+    pub fn shortest_edge(&self) -> f64 {
+        self.edge_at.iter().copied().fold(f64::INFINITY, f64::min)
+    }
+
     /// True if the last sheet touched any tetrahedron.
     #[must_use]
     pub fn is_touched(&self) -> bool {

@@ -233,9 +233,11 @@ impl Owners {
         corners
             .filter(|node| **node != NONE)
             .for_each(|node| is_corner[*node as usize] = true);
+        let has_lines = owners.parts.iter().any(|part| part[2] == NONE);
+        let fewest = if has_lines { 2 } else { 3 };
         for (tet, corners) in (0..).zip(&mesh.tets) {
             let are_corners = corners.map(|node| is_corner[node as usize]);
-            if are_corners.iter().filter(|is_corner| **is_corner).count() < 2 {
+            if are_corners.iter().filter(|is_corner| **is_corner).count() < fewest {
                 continue;
             }
             let mut own = |part: &[u32]| {
@@ -249,8 +251,10 @@ impl Owners {
             for face in OUTWARD_FACES {
                 own(&face.map(|corner| corners[corner]));
             }
-            for (i, j) in super::EDGES {
-                own(&[corners[i], corners[j]]);
+            if has_lines {
+                for (i, j) in super::EDGES {
+                    own(&[corners[i], corners[j]]);
+                }
             }
         }
         owners

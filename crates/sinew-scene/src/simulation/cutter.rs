@@ -4,7 +4,7 @@ use std::collections::{HashMap, HashSet};
 use std::sync::{Arc, OnceLock};
 
 use serde::{Deserialize, Serialize};
-use sinew_core::{Energy, Inputs, State};
+use sinew_core::{Clock, Energy, Inputs, State};
 use sinew_cutting::{BladeAct, SavedBodyError};
 use sinew_fem::{CutModel, CutModelError, CutReport, Problem, SavedCut};
 use sinew_mesh::TetMesh;
@@ -55,8 +55,8 @@ pub enum CuttingError {
 
 /// Cuts the body of a scene while it moves: by the blade and the tool that the scene names, and by sheets from outside.
 ///
-/// A blade is followed over each step in the configuration at the step's beginning. If it cuts,
-/// [`Cutter::follow`] returns the body to continue with, and transfers the state to it.
+/// A blade is followed over a step, or over a few in which it moves little, in the configuration at the beginning of
+/// the last one. If it cuts, [`Cutter::follow`] returns the body to continue with, and transfers the state to it.
 ///
 /// ```
 /// use sinew_core::{Inputs, System};
@@ -97,6 +97,10 @@ pub struct Cutter {
     probes: Arc<[Probe]>,
     /// Time (s) up to which the blade was followed; `None` before the first step.
     pub(super) followed: Option<f64>,
+    /// The largest speed (m/s) of a node along an axis at that time.
+    speed: f64,
+    /// Length (m) of a way that is followed together with those after it.
+    short_way: f64,
     /// Time (s) of the last sheet that touched the body.
     swept: f64,
     /// True if the tool that is the blade was in the tissue at the end of the last call of [`Cutter::follow`].
@@ -114,10 +118,18 @@ const MOST_CHANGES: u64 = 1 << 53;
 pub struct SavedCuts {
     cut: SavedCut,
     followed: Option<f64>,
+    speed: f64,
     swept: f64,
     is_in: bool,
     totals: CutTotals,
 }
+
+/// Share of the mesh's shortest edge up to which ways of a blade, or of the tissue under it, are followed together:
+/// far below what a mesh can show of a cut.
+const SHORT_WAY: f64 = 0.05;
+
+/// Largest number of steps over which a blade is followed at once.
+const MOST_STEPS_AT_ONCE: usize = 8;
 
 impl Simulation {
     /// The cutter of its body, which is uncut; `None` if the scene has no `[cutting]`. Assembles the body once more.
@@ -129,8 +141,11 @@ impl Simulation {
             return Ok(None);
         };
         let (uncut, problem) = (Arc::clone(&body.mesh), body.problem.clone());
+        let cut = CutModel::new(Arc::clone(&uncut), problem.clone(), plan.cutting.snap)?;
         Ok(Some(Cutter {
-            cut: CutModel::new(Arc::clone(&uncut), problem.clone(), plan.cutting.snap)?,
+            short_way: SHORT_WAY * cut.body().shortest_edge(),
+            speed: 0.0,
+            cut,
             plan: Arc::clone(plan),
             uncut,
             problem,
@@ -169,17 +184,72 @@ impl Cutter {
         self.cut.body().pieces().count
     }
 
-    /// The time (s) until which nothing cuts, from `t` (s) on.
+    /// Number of steps of `dt` (s), from a time on, before which [`Cutter::follow`] has nothing to do: a blade that
+    /// moves little in a step is followed every few steps. 0 if it must be called before the next step.
     #[must_use]
-    pub fn idle_until(&self, t: f64) -> f64 {
+    pub fn idle_steps(
+        &self,
+        mut clock: Clock,
+        dt: f64,
+        body: &SceneBody,
+        inputs: &Inputs,
+    ) -> usize {
         let Cutting { blade, remove, .. } = &self.plan.cutting;
-        if remove.is_some() || matches!(blade, Blade::Tool(_)) {
-            return t;
+        let is_tool = matches!(blade, Blade::Tool(_));
+        if remove.is_none() && !is_tool {
+            // A stroke that is met late is followed from its beginning all the same.
+            let from = self.followed.unwrap_or(f64::NEG_INFINITY);
+            let strokes = self.plan.strokes.as_ref();
+            let next = strokes.and_then(|strokes| strokes.next_from(from));
+            let idle = next.map_or(f64::INFINITY, |next| (next - clock.time()) / dt);
+            if idle >= MOST_STEPS_AT_ONCE as f64 {
+                return idle as usize;
+            }
+        }
+        let is_idle = |_: &usize| {
+            clock.advance(dt);
+            !self.is_due(clock.time(), dt, body, inputs)
+        };
+        (0..MOST_STEPS_AT_ONCE).take_while(is_idle).count()
+    }
+
+    /// True if [`Cutter::follow`] must be called before a step of `dt` (s) that ends at `end` (s).
+    fn is_due(&self, end: f64, dt: f64, body: &SceneBody, inputs: &Inputs) -> bool {
+        let Cutting { blade, remove, .. } = &self.plan.cutting;
+        if remove.is_some() {
+            return true;
         }
         let strokes = self.plan.strokes.as_ref();
-        let from = self.followed.unwrap_or(f64::NEG_INFINITY);
-        let next = strokes.and_then(|strokes| strokes.next_from(from));
-        next.map_or(f64::INFINITY, |next| next.max(t))
+        let mut acts = strokes.map(|strokes| {
+            let from = self.followed.unwrap_or(f64::NEG_INFINITY);
+            strokes.between(from, end).peekable()
+        });
+        let is_stroke = acts.as_mut().is_some_and(|acts| acts.peek().is_some());
+        let tool = match (blade, body.model().tools()) {
+            (Blade::Tool(blade), Some(tools)) => Some((tools, *blade)),
+            _ => None,
+        };
+        if tool.is_none() && !is_stroke {
+            return false;
+        }
+        let Some(followed) = self.followed else {
+            return true;
+        };
+        let mut way = self.speed * (end - followed);
+        for act in acts.into_iter().flatten() {
+            match act {
+                BladeAct::Lift => return true,
+                BladeAct::Sweep(poses) => way += longest_way(poses),
+            }
+        }
+        if let Some((tools, blade)) = tool
+            && let [Some(from), Some(to)] = [followed, end].map(|t| edge(tools, blade, t, inputs))
+        {
+            way += longest_way([from, to]);
+        }
+        // The step itself is one of those that are followed at once.
+        let steps = (end - followed) / dt + 0.5;
+        way > self.short_way || steps >= MOST_STEPS_AT_ONCE as f64
     }
 
     /// Cuts along the path of the scene's blade up to `end` (s), and removes the tetrahedra that are inside the
@@ -242,7 +312,9 @@ impl Cutter {
             let report = self.cut.remove(is_inside, state, inputs)?;
             self.totals.report.add(&report);
         }
-        self.changed_since(epoch, body, state, inputs)
+        let changed = self.changed_since(epoch, body, state, inputs);
+        self.speed = state.v.iter().fold(0.0, |most, v| v.abs().max(most));
+        changed
     }
 
     /// Cuts along the path of a blade from one position to another (its two ends, m), in the configuration of the
@@ -305,6 +377,7 @@ impl Cutter {
         SavedCuts {
             cut: self.cut.save(),
             followed: self.followed,
+            speed: self.speed,
             swept: self.swept,
             is_in: self.is_in,
             totals: self.totals,
@@ -326,6 +399,7 @@ impl Cutter {
         }
         self.cut.restore(&saved.cut)?;
         self.followed = saved.followed;
+        self.speed = saved.speed;
         self.swept = saved.swept;
         self.is_in = saved.is_in;
         self.totals = saved.totals;
@@ -473,6 +547,15 @@ impl Cutter {
 
 /// The largest rotation (rad) of a blade in one sheet, in which its ends move along straight lines.
 const LARGEST_TURN: f64 = 0.25;
+
+/// The longer way (m) of the two ends of a blade.
+fn longest_way([before, after]: [[[f64; 3]; 2]; 2]) -> f64 {
+    let way = |end: usize| {
+        let [from, to] = [before, after].map(|pose| pose[end]);
+        length([0, 1, 2].map(|axis| to[axis] - from[axis]))
+    };
+    way(0).max(way(1))
+}
 
 /// The equal parts of a time interval (s) in each of which a blade turns by no more than [`LARGEST_TURN`].
 fn parts_of_turn(tools: &Tools, blade: usize, times: [f64; 2], inputs: &Inputs) -> u32 {

@@ -2,9 +2,10 @@
 
 use std::fs;
 
-use crate::common::{advance, build, following};
+use crate::common::{advance, build, following, session};
 use sinew_core::Inputs;
 use sinew_scene::Scene;
+use sinew_world::{Command, World};
 
 const STROKES: &str = "stroke,t_s,ax_m,ay_m,az_m,bx_m,by_m,bz_m\n";
 
@@ -66,6 +67,65 @@ fn a_full_stroke_through_a_stretched_strip_leaves_no_bridge() {
         );
         assert_eq!(cut(&strip(strain), &strokes), (2, Vec::new()), "{strain}");
     }
+}
+
+/// A slow blade is followed every few steps. The reference is a blade that commands move in each step.
+#[test]
+fn a_slow_blade_cuts_what_one_cuts_that_is_followed_in_each_step() {
+    let scene = |cutting: &str| {
+        cube(
+            &format!(
+                "[damping]\nmass = 20.0\n[[fixed]]\ngroup = \"bottom\"\n[[load]]\ngroup = \"top\"\ntraction = [0.0, 0.0, 150.0]\n[cutting]\n{cutting}"
+            ),
+            "duration = 0.45\nintegrator = \"central-difference\"\ndt = 5e-4\n",
+        )
+    };
+    let (first, last, steps) = (0.13, 0.03, 800);
+    let blade = |step: usize| {
+        let z = first + (last - first) * step as f64 / steps as f64;
+        [[0.052, -0.02, z], [0.052, 0.12, z]]
+    };
+    let mut driven = session(&scene(""));
+    let mut changes = 0;
+    for step in 0..900 {
+        if step < steps {
+            let (from, to) = (blade(step), blade(step + 1));
+            driven.command(Command::Cut { from, to }).unwrap();
+        }
+        driven.step().unwrap();
+        changes += usize::from(driven.change().is_some());
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("scene.toml");
+    let strokes = format!(
+        "{STROKES}1,0.0,0.052,-0.02,{first},0.052,0.12,{first}\n1,0.4,0.052,-0.02,{last},0.052,0.12,{last}\n"
+    );
+    fs::write(folder.path().join("strokes.csv"), strokes).unwrap();
+    fs::write(&path, scene("table = \"strokes.csv\"\n")).unwrap();
+    let mut followed = following(Scene::load(path).and_then(Scene::build).unwrap());
+    let mut calls = 0;
+    let mut own_changes = 0;
+    for _ in 0..900 {
+        let (clock, dt) = (followed.state().clock, followed.dt());
+        let cutter = followed.cutter().unwrap();
+        calls += usize::from(cutter.idle_steps(clock, dt, followed.body(), Inputs::none()) == 0);
+        followed.step().unwrap();
+        own_changes += usize::from(followed.change().is_some());
+    }
+    assert!((100..200).contains(&calls), "followed {calls} times");
+    let area = |world: &World| world.cuts().unwrap().report.area;
+    assert!(area(&driven) > 0.005 && changes > 2, "{changes}");
+    assert_eq!((area(&followed), own_changes), (area(&driven), changes));
+    // A delay by some steps of 900 of a motion whose size is 1.
+    let largest = driven
+        .state()
+        .u
+        .iter()
+        .fold(0.0_f64, |most, u| most.max(u.abs()));
+    let pairs = driven.state().u.iter().zip(&followed.state().u);
+    let away = pairs.fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()));
+    assert!(away < 0.01 * largest, "{away} of {largest} m");
+    assert!(away > 0.0);
 }
 
 #[test]
