@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
+use sinew_core::ForceInputError;
 use sinew_core::{OptionError, Options, StepError};
 use sinew_fem::ForceError;
 use sinew_scene::{CuttingError, DrivenLoadError};
@@ -137,6 +138,9 @@ pub enum CommandError {
     /// A force on a node that the body does not have, or one that is not finite.
     #[error(transparent)]
     Force(#[from] ForceError),
+    /// Forces on nodes that a step cannot begin with.
+    #[error(transparent)]
+    ForceInput(#[from] ForceInputError),
     /// Forces on nodes in a scene without a mesh.
     #[error("an oscillator has no nodes: scale its load instead")]
     NoNodes,

@@ -143,6 +143,11 @@ pub enum RestoreError {
         "this motion was kept by the world of another scene: its text, or a file that it reads, is not that of this one"
     )]
     OtherScene,
+    /// A moment that is not in the past of this world.
+    #[error(
+        "this moment is not in the past of this world: another one had it, or went back beyond it"
+    )]
+    OtherPast,
     /// A part that is not possible in any motion: the value was altered.
     #[error("the saved motion was altered: its {part} cannot be")]
     Impossible {

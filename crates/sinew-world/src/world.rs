@@ -3,6 +3,7 @@
 mod advance;
 mod commands;
 mod forces;
+mod moment;
 mod report;
 mod saved;
 
@@ -25,6 +26,7 @@ use crate::log::{Header, Log};
 use crate::recorder::BodyCut;
 use crate::scene_identity::SceneIdentity;
 
+pub use moment::Moment;
 pub use saved::Saved;
 
 /// A scene in motion; only a world takes the steps of a scene.

@@ -79,6 +79,17 @@ pub struct Log {
     /// Revision that stays the same as long as commands are only appended, so that a file needs only the new ones.
     #[serde(skip)]
     beginning: Revision,
+    /// Earlier revisions since the commands were last replaced, each with the number of commands that were kept of it.
+    #[serde(skip)]
+    shortened: Vec<(Revision, usize)>,
+}
+
+/// The beginning of a log.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Mark {
+    beginning: Revision,
+    entries: usize,
+    steps: usize,
 }
 
 impl PartialEq for Log {
@@ -89,6 +100,7 @@ impl PartialEq for Log {
             steps,
             is_cut_off,
             beginning: _,
+            shortened: _,
         } = self;
         (header, entries) == (&other.header, &other.entries)
             && (steps, is_cut_off) == (&other.steps, &other.is_cut_off)
@@ -103,6 +115,7 @@ impl Log {
             steps: 0,
             is_cut_off: false,
             beginning: Revision::new(),
+            shortened: Vec::new(),
         }
     }
 
@@ -154,6 +167,36 @@ impl Log {
     pub(crate) fn restore(&mut self, entries: &[Entry], steps: usize) {
         self.entries = entries.to_vec();
         self.steps = steps;
+        self.beginning = Revision::new();
+        self.shortened.clear();
+    }
+
+    /// Marks its present end.
+    pub(crate) fn mark(&self) -> Mark {
+        Mark {
+            beginning: self.beginning,
+            entries: self.entries.len(),
+            steps: self.steps,
+        }
+    }
+
+    /// True if it still begins with the commands before a mark.
+    pub(crate) fn has(&self, mark: &Mark) -> bool {
+        let since = match self.beginning == mark.beginning {
+            true => Some(self.shortened.len()),
+            false => {
+                (self.shortened.iter()).position(|(beginning, _)| *beginning == mark.beginning)
+            }
+        };
+        let kept = since.map(|since| &self.shortened[since..]);
+        kept.is_some_and(|kept| kept.iter().all(|(_, kept)| mark.entries <= *kept))
+    }
+
+    /// Discards the commands after a mark, which it must have.
+    pub(crate) fn shorten(&mut self, mark: &Mark) {
+        self.entries.truncate(mark.entries);
+        self.steps = mark.steps;
+        self.shortened.push((self.beginning, mark.entries));
         self.beginning = Revision::new();
     }
 

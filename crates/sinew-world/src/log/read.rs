@@ -197,6 +197,7 @@ impl Reading {
             steps: self.end.unwrap_or(least),
             is_cut_off: self.end.is_none(),
             beginning: Revision::new(),
+            shortened: Vec::new(),
             entries: self.entries,
         })
     }

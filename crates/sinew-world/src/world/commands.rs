@@ -96,8 +96,8 @@ impl World {
     }
 
     /// Checks a command as far as possible before it is given: its names, its numbers and, for the first factor of a
-    /// load, support of the method for loads that are not known in advance. A failure of another method to take a
-    /// step is found only when the command is given.
+    /// load and the first forces on nodes, support of the method for loads that are not known in advance. A failure of
+    /// another method to take a step is found only when the command is given.
     ///
     /// # Errors
     /// [`CommandError`] for a command that [`World::command`] refuses as well.
@@ -106,6 +106,30 @@ impl World {
         if matches!(command, Command::LoadFactor { .. }) && !self.drives_loads() {
             self.driven_method()?;
         }
+        match command {
+            Command::Forces(forces) if self.inputs.forces().next().is_none() => {
+                self.try_forces(forces)
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Tries a step with forces (N) on nodes.
+    fn try_forces(&self, forces: &[(u32, [f64; 3])]) -> Result<(), CommandError> {
+        let body = self.body.model().body().ok_or(CommandError::NoNodes)?;
+        let forces = body.model.forces(forces)?;
+        let mut inputs = self.inputs.clone();
+        inputs.set_forces(self.state.t(), &forces.entries)?;
+        let (id, options) = &self.method.asked;
+        let mut method = Method::new(&self.scene, id, options, self.method.dt)?;
+        let mut trial = self.state.clone();
+        try_step(
+            self.body.system(),
+            &inputs,
+            &self.state,
+            &mut trial,
+            &mut method,
+        )?;
         Ok(())
     }
 

@@ -13,7 +13,7 @@ use crate::error::{RestoreError, WorldStepError};
 use crate::log::Entry;
 
 const KIND: Kind = Kind {
-    name: b"sinew world v3\r\n",
+    name: b"sinew world v4\r\n",
     words: "saved world",
 };
 
@@ -141,6 +141,11 @@ impl World {
     /// Saves all data that the motion needs to continue.
     #[must_use]
     pub fn save(&self) -> Saved {
+        self.saved_with(self.log.entries().to_vec())
+    }
+
+    /// Its motion, with these commands of its log.
+    pub(super) fn saved_with(&self, log: Vec<Entry>) -> Saved {
         let commanded = (!self.follows).then(|| Commanded {
             inputs: SavedInputs::of(&self.inputs),
             tools: (self.tools.iter())
@@ -154,7 +159,7 @@ impl World {
             sheets: self.sheets.clone(),
             blade: self.blade,
             steps: self.steps,
-            log: self.log.entries().to_vec(),
+            log,
         });
         Saved {
             scene: self.identity.sha256.clone(),
@@ -173,6 +178,15 @@ impl World {
     /// # Errors
     /// [`RestoreError`] for data of another scene, and for values that are not possible; the world is then unchanged.
     pub fn restore(&mut self, saved: &Saved) -> Result<(), RestoreError> {
+        self.restore_without_log(saved)?;
+        if let Some(commanded) = &saved.commanded {
+            self.log.restore(&commanded.log, commanded.steps);
+        }
+        Ok(())
+    }
+
+    /// Same as [`World::restore`], but the log stays as it is.
+    pub(super) fn restore_without_log(&mut self, saved: &Saved) -> Result<(), RestoreError> {
         if saved.scene != self.identity.sha256 {
             return Err(RestoreError::OtherScene);
         }
@@ -262,7 +276,6 @@ impl World {
         self.sheets.clone_from(&commanded.sheets);
         self.blade = commanded.blade;
         self.steps = commanded.steps;
-        self.log.restore(&commanded.log, commanded.steps);
         Ok(())
     }
 }

@@ -279,3 +279,56 @@ fn reports_are_values_that_are_written_and_read() {
     assert_eq!(log["entries"][0]["step"], 5);
     assert_eq!(log["steps"], world.log().steps());
 }
+
+#[test]
+fn a_world_goes_back_to_its_moments_and_a_replay_gives_what_it_kept() {
+    let mut world = session(&cube());
+    let mut moments = vec![world.moment()];
+    let mut states = vec![world.state().clone()];
+    for end in [15, 40, 64, 90] {
+        let begun = world.steps();
+        drive(&mut world, begun..end);
+        moments.push(world.moment());
+        states.push(world.state().clone());
+    }
+    let end = world.save();
+    let mut other = session(&cube());
+    assert!(matches!(
+        other.go_back(&moments[1]),
+        Err(RestoreError::OtherPast)
+    ));
+    for back in [3, 1] {
+        world.go_back(&moments[back]).unwrap();
+        assert_eq!(world.state(), &states[back]);
+        // What comes later was left.
+        let left = world.go_back(&moments[back + 1]);
+        assert!(matches!(left, Err(RestoreError::OtherPast)), "{back}");
+        assert_eq!(world.state(), &states[back]);
+    }
+    drive(&mut world, 15..90);
+    assert!(world.save() == end);
+    // It has other commands now, though as many.
+    let left = world.go_back(&moments[2]);
+    assert!(matches!(left, Err(RestoreError::OtherPast)));
+    let mut replay = Replay::new(scene(&cube()), world.log().clone()).unwrap();
+    while replay.step().unwrap().is_some() {}
+    assert_eq!(replay.world().state(), world.state());
+}
+
+#[test]
+fn a_motion_that_failed_goes_on_from_a_moment_before() {
+    let mut world = session(CUBE);
+    world.advance(10, &mut ()).unwrap();
+    let moment = world.moment();
+    let state = world.state().clone();
+    world.command(Command::Dt(1.0)).unwrap();
+    assert!((0..200).any(|_| world.step().is_err()), "it diverges");
+    assert!(matches!(
+        world.command(Command::Dt(0.001)),
+        Err(CommandError::Failed)
+    ));
+    world.go_back(&moment).unwrap();
+    assert_eq!(world.state(), &state);
+    world.advance(50, &mut ()).unwrap();
+    assert!(world.log().entries().is_empty());
+}
