@@ -59,7 +59,7 @@ impl Waiting {
         self.entered.retain(|client| !is_gone(*client));
     }
 
-    /// The index of an order of the same client for the same step or option, after which only steps and options wait.
+    /// The index of an order of the same client that sets the same value, after which only settings wait.
     fn idle_beside(&self, request: &Request<Order>) -> Option<usize> {
         let wanted = setting(&request.what)?;
         let last = self.orders.iter().enumerate().rev();
@@ -71,11 +71,20 @@ impl Waiting {
     }
 }
 
-/// The pane and the key of an order that sets a step or an option; a step has no key.
-fn setting(order: &Order) -> Option<(usize, Option<&str>)> {
+/// A value that an order sets.
+#[derive(PartialEq)]
+enum Setting<'a> {
+    Step { pane: usize },
+    Option { pane: usize, key: &'a str },
+    Pull,
+}
+
+/// The value that an order sets, if it does.
+fn setting(order: &Order) -> Option<Setting<'_>> {
     match order {
-        Order::Dt { pane, .. } => Some((*pane, None)),
-        Order::Option { pane, key, .. } => Some((*pane, Some(key))),
+        Order::Dt { pane, .. } => Some(Setting::Step { pane: *pane }),
+        Order::Option { pane, key, .. } => Some(Setting::Option { pane: *pane, key }),
+        Order::Pull { .. } => Some(Setting::Pull),
         _ => None,
     }
 }

@@ -8,6 +8,7 @@ mod clients;
 mod ended;
 mod engine;
 mod error;
+mod hand_speed;
 mod inbox;
 mod live;
 mod next_draw;
@@ -20,5 +21,5 @@ mod tool_facts;
 
 pub use ended::Ended;
 pub use error::LiveError;
-pub use live::{Hand, Live, Settings};
+pub use live::{Live, Settings};
 pub use pane_choice::PaneChoice;

@@ -20,7 +20,7 @@ use crate::engine::{Beginning, Engine, Survey};
 use crate::error::LiveError;
 use crate::pane_choice::PaneChoice;
 use crate::picture::{Colours, Surface};
-use crate::protocol::{HandFacts, Hertz, LoadFacts, Scenery};
+use crate::protocol::{Hertz, LoadFacts, Scenery};
 use crate::scene_values::SceneValues;
 use crate::server::{Guests, Shared, Standing, Token, router};
 use crate::tool_facts::tools_of;
@@ -30,19 +30,6 @@ const LOOK: Duration = Duration::from_millis(50);
 
 /// Time limit for the simulation to end. It ends between steps and orders, and setting up a method may take minutes.
 const PATIENCE: Duration = Duration::from_secs(3);
-
-/// Three loads of a scene, along x, y and z, with which the user pulls at a point.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Hand {
-    /// Names of the loads.
-    pub loads: [String; 3],
-    /// Force (N) of each.
-    pub unit: f64,
-    /// The position (m) of the point at rest.
-    pub at: [f64; 3],
-    /// A sentence for the page.
-    pub note: String,
-}
 
 /// Settings of a live session.
 #[derive(Debug)]
@@ -55,8 +42,8 @@ pub struct Settings {
     pub panes: Vec<PaneChoice>,
     /// The second pane, if it is opened later.
     pub second: PaneChoice,
-    /// Loads with which the user pulls; they are 0 at the beginning.
-    pub hand: Option<Hand>,
+    /// The largest speed (m/s) of tools that the user steers; `None` for a tenth of that of waves in the body.
+    pub hand_speed: Option<f64>,
     /// The port of this computer; 0 for a free one.
     pub port: u16,
 }
@@ -83,7 +70,7 @@ impl Live {
             values,
             panes,
             second,
-            hand,
+            hand_speed,
             port,
         } = settings;
         let token = Token::random().map_err(LiveError::Random)?;
@@ -110,25 +97,19 @@ impl Live {
             .iter()
             .map(|region| &region.law)
             .collect();
+        let hand_speed = hand_speed.unwrap_or_else(|| crate::hand_speed::hand_speed(&body.model));
         let fields = Colours::fields_of(&body.model, &laws, body.tools.is_some());
-        let pulls = |load: &LoadFacts| {
-            hand.as_ref()
-                .is_some_and(|hand| hand.loads.contains(&load.name))
-        };
         let title = scene.title().to_owned();
-        let pulled = loads.iter().filter(|load| pulls(load));
         let beginning = Beginning {
             scene: SceneValues {
                 scene,
                 values,
                 files: session.log().header().inputs.clone(),
-                first_factors: pulled
-                    .map(|load| (load.name.as_str().into(), 0.0))
-                    .collect(),
             },
             panes,
             second,
             fields: fields.clone(),
+            hand_speed,
             loads: loads.iter().map(|load| load.name.clone()).collect(),
         };
         let scenery = Scenery {
@@ -143,7 +124,7 @@ impl Live {
                 .map(|law| law.youngs_modulus())
                 .fold(0.0, f64::max),
             tools: tools_of(body, &simulation),
-            hand: hand.and_then(|hand| hand_facts(&hand, &loads, &surface)),
+            hand_speed,
             loads,
             hertz: hertz_of(&laws),
         };
@@ -164,6 +145,12 @@ impl Live {
     #[must_use]
     pub fn url(&self) -> String {
         format!("http://{}/{}/", self.address, self.token)
+    }
+
+    /// The simulation without its page.
+    #[cfg(test)]
+    pub(crate) fn into_engine(self) -> (Engine, Arc<Shared>) {
+        (self.engine, self.shared)
     }
 
     /// Writes the commands of each pane to a file during the session, so that a killed session can be repeated.
@@ -254,26 +241,6 @@ fn kind_of(kind: &LoadKind) -> String {
         }
         LoadKind::Force(force) => format!("{} N", length(force)),
     }
-}
-
-fn hand_facts(hand: &Hand, loads: &[LoadFacts], surface: &Surface) -> Option<HandFacts> {
-    let place = |name: &String| loads.iter().position(|load| load.name == *name);
-    let [x, y, z] = hand.loads.each_ref().map(place);
-    let away = |point: &[f64; 3]| -> f64 {
-        point
-            .iter()
-            .zip(hand.at)
-            .map(|(a, b)| (a - b).powi(2))
-            .sum()
-    };
-    let points = surface.points.iter().enumerate();
-    let nearest = points.min_by(|a, b| away(a.1).total_cmp(&away(b.1)))?;
-    Some(HandFacts {
-        loads: [x?, y?, z?],
-        unit: hand.unit,
-        point: nearest.0,
-        note: hand.note.clone(),
-    })
 }
 
 /// The constants of a body of one isotropic material.

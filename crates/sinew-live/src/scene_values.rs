@@ -1,20 +1,17 @@
-//! A scene with the values that a command line and a page set in it, and the initial data of its sessions.
+//! A scene with the values that a command line and a page set in it.
 
 use sinew_scene::{Scene, SceneError};
 use sinew_world::{InputFile, Log};
 
 use crate::error::LiveError;
 
-/// A scene with the values that a command line and a page set in its file, as `KEY=VALUE`, and the initial data of
-/// its sessions.
+/// A scene with the values that a command line and a page set in its file, as `KEY=VALUE`.
 #[derive(Clone, Debug)]
 pub(crate) struct SceneValues {
     pub(crate) scene: Scene,
     pub(crate) values: Vec<String>,
     /// The files of the scene at the time when the page was opened.
     pub(crate) files: Vec<InputFile>,
-    /// Loads whose factors are other than 1 at the beginning.
-    pub(crate) first_factors: Vec<(std::sync::Arc<str>, f64)>,
 }
 
 impl SceneValues {

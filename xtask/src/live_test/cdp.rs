@@ -114,15 +114,35 @@ impl Tab {
         Ok(())
     }
 
-    /// Sends a mouse event at a position (CSS pixels).
-    pub(super) fn mouse(&mut self, what: Mouse, [x, y]: [f64; 2]) -> Result<(), Failure> {
-        let (kind, button, buttons) = match what {
-            Mouse::Press => ("mousePressed", "left", 1),
-            Mouse::Move => ("mouseMoved", "left", 1),
-            Mouse::Release => ("mouseReleased", "left", 0),
+    /// Sends a mouse event at a position (CSS pixels), with the left button.
+    pub(super) fn mouse(&mut self, what: Mouse, at: [f64; 2]) -> Result<(), Failure> {
+        self.mouse_with(what, at, "left")
+    }
+
+    /// Sends a mouse event at a position (CSS pixels), with a button: "left" or "middle".
+    pub(super) fn mouse_with(
+        &mut self,
+        what: Mouse,
+        [x, y]: [f64; 2],
+        button: &str,
+    ) -> Result<(), Failure> {
+        let held = if button == "left" { 1 } else { 4 };
+        let (kind, buttons) = match what {
+            Mouse::Press => ("mousePressed", held),
+            Mouse::Move => ("mouseMoved", held),
+            Mouse::Release => ("mouseReleased", 0),
         };
         let event = json!({ "type": kind, "x": x, "y": y, "button": button, "buttons": buttons, "clickCount": 1 });
         self.call("Input.dispatchMouseEvent", event)?;
+        Ok(())
+    }
+
+    /// Turns the wheel at a position (CSS pixels), by pixels downwards.
+    pub(super) fn wheel(&mut self, [x, y]: [f64; 2], by: f64) -> Result<(), Failure> {
+        self.call(
+            "Input.dispatchMouseEvent",
+            json!({ "type": "mouseWheel", "x": x, "y": y, "deltaX": 0, "deltaY": by }),
+        )?;
         Ok(())
     }
 

@@ -12,8 +12,7 @@ use super::served::Served;
 use crate::failure::Failure;
 
 /// Size of the hand's loads (N).
-const PULLS: &str =
-    "window.sinew.scenery.hand.loads.map((load) => window.sinew.settings.factors[load])";
+const PULLS: &str = "window.sinew.picture.panes.map((pane) => Math.hypot(...pane.pull))";
 
 /// Moves the first one of some fingers by a vector (CSS pixels) in equal parts; all remain on the screen.
 fn slide(tab: &mut Tab, from: [f64; 2], by: [f64; 2]) -> Result<[f64; 2], Failure> {
@@ -27,7 +26,7 @@ fn slide(tab: &mut Tab, from: [f64; 2], by: [f64; 2]) -> Result<[f64; 2], Failur
     Ok(at)
 }
 
-/// A finger presses, pulls and cuts; a second finger turns the view, and ends a pull.
+/// A finger presses, pulls and cuts, and moves the handle for depth; a second finger turns the view, and ends a pull.
 pub(super) fn press_pull_and_cut(bench: &Bench) -> Result<(), Failure> {
     let scene = bench.scene(6, "symplectic-euler", 0.001)?;
     let served = Served::start(&bench.sinew, &[scene])?;
@@ -35,9 +34,25 @@ pub(super) fn press_pull_and_cut(bench: &Bench) -> Result<(), Failure> {
     tab.has_fingers()?;
     let from = grip(&mut tab)?;
     tab.touch("touchStart", &[from])?;
-    slide(&mut tab, from, [0.0, 62.0])?;
+    slide(&mut tab, from, [0.0, 54.0])?;
     tab.wait_for("window.sinew.picture.panes[0].contacts > 0", PATIENCE)?;
     tab.touch("touchEnd", &[])?;
+    // The handle for depth, from its middle upwards.
+    let slider = "document.getElementById('reach').getBoundingClientRect()";
+    let middle = [
+        tab.number(&format!("{slider}.x + {slider}.width / 2"))?,
+        tab.number(&format!("{slider}.y + {slider}.height / 2"))?,
+    ];
+    let depth = "(() => { const { place, target } = window.sinew.camera; const away = [0, 1].map((k) => target[k] - place[k]); \
+                 return [0, 1].reduce((sum, k) => sum + window.sinew.led[0][k] * away[k], 0) / Math.hypot(...away); })()";
+    let before = tab.number(depth)?;
+    tab.touch("touchStart", &[middle])?;
+    slide(&mut tab, middle, [0.0, -40.0])?;
+    tab.touch("touchEnd", &[])?;
+    let after = tab.number(depth)?;
+    require(after > before + 0.01, || {
+        format!("the handle for depth takes the tool from {before} m to {after} m")
+    })?;
     complaints(&tab)?;
 
     let served = Served::start(&bench.sinew, &[])?;

@@ -68,7 +68,7 @@ pub(super) fn press_hold_and_switch(bench: &Bench) -> Result<(), Failure> {
     require(colours > 20.0, || {
         format!("the picture has {colours} colours")
     })?;
-    let at = drag(&mut tab, [0.0, 62.0], 40, Duration::from_millis(650))?;
+    let at = drag(&mut tab, [0.0, 54.0], 40, Duration::from_millis(650))?;
     std::thread::sleep(Duration::from_secs(2));
     let pressed = force(&mut tab)?;
     require(pressed > 0.05, || {
@@ -114,7 +114,7 @@ pub(super) fn press_hold_and_switch(bench: &Bench) -> Result<(), Failure> {
 
     tab.value("window.sinew.command('trusted', { on: true })")?;
     tab.wait_for("window.sinew.settings.trusted", PATIENCE)?;
-    let at = drag(&mut tab, [0.0, 62.0], 20, Duration::from_millis(400))?;
+    let at = drag(&mut tab, [0.0, 54.0], 20, Duration::from_millis(400))?;
     tab.wait_for("window.sinew.lights()[2][0] === 1", PATIENCE)?;
     tab.mouse(Mouse::Release, at)?;
     let error = tab.value("window.sinew.lights()[2][1]")?;
@@ -143,7 +143,7 @@ pub(super) fn press_hold_and_switch(bench: &Bench) -> Result<(), Failure> {
         "window.sinew.scenery.tools[0].parts[0].kind === 'box'",
         PATIENCE,
     )?;
-    drag(&mut tab, [0.0, 62.0], 20, Duration::from_millis(400))?;
+    drag(&mut tab, [0.0, 54.0], 20, Duration::from_millis(400))?;
     tab.wait_for("window.sinew.picture.panes[0].contacts > 0", PATIENCE)?;
     say("another radius and another shape of the tool, from the panel")?;
     complaints(&tab)
@@ -156,7 +156,7 @@ pub(super) fn side_by_side(bench: &Bench) -> Result<(), Failure> {
     tab.wait_for("window.sinew.picture.panes.length === 2", PATIENCE)?;
     let at = drag(&mut tab, [60.0, -50.0], 20, Duration::from_millis(400))?;
     tab.wait_for(
-        "window.sinew.settings.factors.some((factor) => factor !== 0 && factor !== 1)",
+        "window.sinew.picture.panes.every((pane) => Math.hypot(...pane.pull) > 0)",
         PATIENCE,
     )?;
     tab.mouse(Mouse::Release, at)?;

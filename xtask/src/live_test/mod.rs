@@ -9,6 +9,7 @@ mod hand;
 mod picture;
 mod served;
 mod speed;
+mod stage;
 mod strangers;
 
 use std::path::PathBuf;
@@ -67,6 +68,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     hand::press_hold_and_switch(&bench)?;
     hand::side_by_side(&bench)?;
+    stage::is_set_up(&bench)?;
     fingers::press_pull_and_cut(&bench)?;
     blade::cuts(&bench)?;
     strangers::are_refused(&bench)?;

@@ -30,12 +30,12 @@ export class Blade {
   /// It goes on to another place.
   to(x, y) {
     if (!this.isDown || Math.hypot(x - this.at[0], y - this.at[1]) < LEAST) return;
-    const ray = this.view.rayAt(x, y, this.pane);
+    const ray = this.view.camera.rayAt(x, y, this.pane);
     // A stroke begins on any part of the tissue, and goes on over its outside: a slit that opens under the blade lets lines of sight through.
     const away = this.view.surfaceAt(ray, this.pane, Boolean(this.from));
-    if (away !== null) this.plane = away * ray.direction.dot(this.view.forward());
+    if (away !== null) this.plane = away * ray.direction.dot(this.view.camera.forward());
     // It comes from beside the tissue, or was put on it.
-    if (away !== null) this.from ??= this.poseAt(this.view.rayAt(...this.at, this.pane));
+    if (away !== null) this.from ??= this.poseAt(this.view.camera.rayAt(...this.at, this.pane));
     if (this.from) this.onto = this.poseAt(ray);
     this.at = [x, y];
     this.path.push(this.at);
@@ -44,7 +44,7 @@ export class Blade {
 
   /// Both ends on a ray: at the outside of the body or, where it does not meet that, as far away as where the blade was last.
   poseAt(ray) {
-    const away = this.view.surfaceAt(ray, this.pane, true) ?? this.plane / ray.direction.dot(this.view.forward());
+    const away = this.view.surfaceAt(ray, this.pane, true) ?? this.plane / ray.direction.dot(this.view.camera.forward());
     return [away - this.out, away + this.depth].map((at) => ray.origin.clone().addScaledVector(ray.direction, at).toArray());
   }
 
@@ -72,7 +72,7 @@ export class Blade {
     this.isDown = false;
     this.from = null;
     this.onto = null;
-    this.plane = this.view.distance;
+    this.plane = this.view.camera.distance;
     this.path = [];
   }
 }

@@ -51,7 +51,7 @@ export class CutPanel {
     blade.end();
     blade.isOn = on;
     get("cut").setAttribute("aria-pressed", String(on));
-    get("depth-box").hidden = !on;
+    get("depth").disabled = !on;
     get("views").classList.toggle("cutting", on);
     this.cursor = null;
     this.showPath([]);
@@ -73,7 +73,7 @@ export class CutPanel {
     const { blade } = this;
     const step = (shiftKey ? FINE : STEP) * box.height;
     const way = { ArrowLeft: [-step, 0], ArrowRight: [step, 0], ArrowUp: [0, -step], ArrowDown: [0, step] }[key];
-    this.cursor ??= this.view.project(this.view.centre);
+    this.cursor ??= this.view.camera.project(this.view.centre);
     if (way) {
       this.cursor = [
         Math.min(box.right - 1, Math.max(box.left, this.cursor[0] + way[0])),

@@ -1,7 +1,7 @@
 // Binary messages, little-endian, as crates/sinew-live/src/protocol/frame.rs writes them.
 
 const HEAD = 32;
-const PANE = 176;
+const PANE = 224;
 const TOOL = 136;
 
 /// Fields in the order of their numbers.
@@ -48,6 +48,9 @@ export function readPicture(buffer) {
     counts.forEach((name, index) => { numbers[name] = u32(at + 96 + 4 * index); });
     ["balance", "cutArea", "cutEnergy", "bladeWork"].forEach((name, index) => { numbers[name] = f64(at + 120 + 8 * index); });
     ["nodes", "tets", "newNodes", "pieces", "removed", "changes"].forEach((name, index) => { numbers[name] = u32(at + 152 + 4 * index); });
+    // Force of the pull and place of the tissue that is pulled, which is NaN without a grip.
+    numbers.pull = new Float64Array(buffer, at + 176, 3);
+    numbers.grip = new Float64Array(buffer, at + 200, 3);
     const points = numbers.points;
     const count = numbers.tools;
     at += PANE;

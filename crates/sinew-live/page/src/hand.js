@@ -1,6 +1,7 @@
-// Pointer and keys: a tool is led, or loads pull at a point; the view is turned.
+// Pointer and keys: a tool is led, or tissue is pulled; the view is turned, moved and zoomed.
 
 import { Vector3 } from "three";
+import { Pull } from "./pull.js";
 
 const CLOSE = 60;
 
@@ -13,7 +14,7 @@ export class Hand {
     this.actions = actions;
     this.tools = [];
     this.selected = 0;
-    this.pull = null;
+    this.pull = new Pull(view, actions);
     this.pointers = new Map();
     this.lifted = false;
     this.movedAt = -Infinity;
@@ -33,10 +34,10 @@ export class Hand {
     window.addEventListener("blur", () => this.lift(false));
   }
 
-  /// Tools as the scenery has them, or a pull by loads.
-  begin(tools, pull) {
+  /// Tools as the scenery has them; without one the hand pulls tissue.
+  begin(tools) {
     this.tools = tools.map(({ start }) => ({ position: new Vector3(...start.slice(0, 3)), rotation: start.slice(3), led: false }));
-    this.pull = pull ? { ...pull, force: new Vector3() } : null;
+    this.pull.letGo();
     this.selected = 0;
   }
 
@@ -59,7 +60,7 @@ export class Hand {
 
   release() {
     for (const tool of this.tools) tool.led = false;
-    this.pull?.force.set(0, 0, 0);
+    this.pull.forget();
   }
 
   get drags() {
@@ -67,30 +68,45 @@ export class Hand {
   }
 
   get canMove() {
-    return this.tools.length > 0 || this.pull !== null;
+    return this.tools.length > 0 || this.pull.isOn;
   }
 
   down(event) {
     event.target.focus({ preventScroll: true });
     event.target.setPointerCapture(event.pointerId);
     this.pointers.set(event.pointerId, [event.clientX, event.clientY]);
-    const grabs = event.pointerType === "touch" ? this.pointers.size === 1 : event.button === 0;
     const { blade } = this.actions;
-    this.mode = "view";
-    if (grabs && blade.isOn) this.mode = "blade";
-    else if (grabs && this.canMove) this.mode = "tool";
+    this.mode = this.modeOf(event);
     // A second finger turns the view, and pulls no more.
-    if (this.mode !== "tool") this.letGo();
+    if (this.mode !== "tool") this.pull.letGo();
     if (this.mode === "blade") blade.begin(event.clientX, event.clientY);
     else blade.end();
     if (this.mode === "tool" && this.tools.length > 1) this.pick(event);
+    if (this.mode === "tool" && this.tools.length === 0 && !this.grip(event.clientX, event.clientY)) this.mode = "view";
+  }
+
+  /// Grips tissue at a place of the page; false where there is none.
+  grip(x, y) {
+    this.movedAt = performance.now();
+    return this.pull.grip(x, y, this.actions.paneAt(x));
+  }
+
+  /// What a press does: the first finger or the left button acts, where there is something to act with; others turn and move the view.
+  modeOf({ pointerType, button, shiftKey }) {
+    const { blade } = this.actions;
+    const acts = blade.isOn || this.tools.length > 0;
+    const isFirst = pointerType === "touch" ? this.pointers.size === 1 : button === 0;
+    // Without a tool the tissue under the pointer is pulled.
+    if (isFirst && !shiftKey) return blade.isOn ? "blade" : "tool";
+    if (pointerType === "touch") return isFirst || (acts && this.pointers.size === 2) ? "view" : "pan";
+    return shiftKey || button === 1 || (button === 2 && !acts) ? "pan" : "view";
   }
 
   /// Selects the tool that is nearest to the pointer.
   pick(event) {
     const pane = this.actions.paneAt(event.clientX);
     const distance = ({ position }) => {
-      const [x, y] = this.view.project(position, pane);
+      const [x, y] = this.view.camera.project(position, pane);
       return Math.hypot(x - event.clientX, y - event.clientY);
     };
     const nearest = this.tools.map(distance).reduce((best, away, index) => (away < best[0] ? [away, index] : best), [Infinity, 0]);
@@ -101,21 +117,25 @@ export class Hand {
     const before = this.pointers.get(event.pointerId);
     if (!before) return;
     const [dx, dy] = [event.clientX - before[0], event.clientY - before[1]];
-    if (this.pointers.size === 2) {
-      const [a, b] = [...this.pointers.keys()];
-      const other = this.pointers.get(event.pointerId === a ? b : a);
+    const { camera } = this.view;
+    const fingers = this.pointers.size;
+    if (fingers >= 2) {
+      const other = [...this.pointers].find(([id]) => id !== event.pointerId)[1];
       const was = Math.hypot(before[0] - other[0], before[1] - other[1]);
       const is = Math.hypot(event.clientX - other[0], event.clientY - other[1]);
-      this.view.zoom(was / Math.max(1, is));
-      this.view.orbit(dx / 2, dy / 2);
+      if (fingers === 2) camera.zoom(was / Math.max(1, is));
+      if (this.mode === "pan") camera.pan(dx / fingers, dy / fingers);
+      else camera.orbit(dx / fingers, dy / fingers);
     } else if (this.mode === "blade") {
       this.actions.blade.to(event.clientX, event.clientY);
     } else if (this.mode === "tool") {
-      const { right, up } = this.view.directions();
-      const scale = this.view.metresPerPixel(this.place());
+      const { right, up } = camera.directions();
+      const scale = camera.metresPerPixel(this.place());
       this.shift(right.multiplyScalar(dx * scale).addScaledVector(up, -dy * scale));
+    } else if (this.mode === "pan") {
+      camera.pan(dx, dy);
     } else {
-      this.view.orbit(dx, dy);
+      camera.orbit(dx, dy);
     }
     this.pointers.set(event.pointerId, [event.clientX, event.clientY]);
   }
@@ -125,32 +145,14 @@ export class Hand {
     if (this.mode === "blade") this.actions.blade.end();
     if (this.pointers.size === 0) {
       this.lift(false);
-      this.letGo();
+      this.pull.letGo();
     }
-  }
-
-  /// Pulls no more.
-  letGo() {
-    if (!this.pull || this.pull.force.lengthSq() === 0) return;
-    this.pull.force.set(0, 0, 0);
-    this.sendPull();
-  }
-
-  sendPull() {
-    this.movedAt = performance.now();
-    this.actions.pull(this.pull.force);
-  }
-
-  /// The factors of loads as they are, where no pointer changes them: another page may pull, or have pulled.
-  follow(factors) {
-    if (this.pull && this.isAway) this.pull.force.set(...this.pull.loads.map((load) => this.pull.unit * factors[load]));
   }
 
   wheel(event) {
     event.preventDefault();
     const amount = event.deltaY * (event.deltaMode === 1 ? 30 : 1);
-    if (event.ctrlKey || this.actions.blade.isOn || this.tools.length === 0) this.view.zoom(Math.exp(0.0012 * amount));
-    else this.shift(this.view.directions().away.multiplyScalar(-0.0002 * amount * this.view.extent));
+    this.view.camera.zoom(Math.exp(0.0012 * amount));
   }
 
   key(event) {
@@ -158,28 +160,38 @@ export class Hand {
       event.preventDefault();
       return;
     }
-    const step = (event.shiftKey ? 0.002 : 0.01) * this.view.extent;
-    const { right, up, away } = this.view.directions();
+    const { camera } = this.view;
+    const fine = event.shiftKey ? 0.2 : 1;
+    const arrow = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] }[event.key];
+    const { right, up, away } = camera.directions();
     const moves = {
       ArrowLeft: right.clone().negate(), ArrowRight: right, ArrowUp: away, ArrowDown: away.clone().negate(),
-      PageUp: up, PageDown: up.clone().negate(),
+      PageUp: up, PageDown: up.clone().negate(), e: away, q: away.clone().negate(),
     };
-    const move = moves[event.key];
-    if (move && this.canMove) {
+    // Shift makes letters large, and steps fine.
+    const move = moves[event.key.length === 1 ? event.key.toLowerCase() : event.key];
+    if (arrow && (event.ctrlKey || !this.canMove)) {
       event.preventDefault();
-      this.shift(move.multiplyScalar(step));
+      if (event.ctrlKey) camera.pan(-30 * fine * arrow[0], -30 * fine * arrow[1]);
+      else camera.orbit(-12 * fine * arrow[0], -12 * fine * arrow[1]);
+    } else if (move && this.canMove && !event.ctrlKey && !event.metaKey && !event.altKey) {
+      event.preventDefault();
+      this.shift(move.multiplyScalar(0.01 * fine * this.view.extent));
     } else if (event.key === "+" || event.key === "-") {
-      this.view.zoom(event.key === "+" ? 0.9 : 1.1);
+      camera.zoom(event.key === "+" ? 0.9 : 1.1);
     } else if (event.key === "[" || event.key === "]") {
-      this.view.orbit(event.key === "[" ? 12 : -12, 0);
-    } else if (event.key === "Escape") {
-      this.letGo();
+      camera.orbit(event.key === "[" ? 12 : -12, 0);
+    } else if (event.key === "Escape" && this.pull.isOn) {
+      this.pull.letGo();
+    } else if (event.key === "g" && this.tools.length === 0) {
+      if (this.pull.isOn) this.pull.letGo();
+      else this.grip(...this.actions.middle());
     }
   }
 
   /// Where the hand is.
   place() {
-    return this.tools[this.selected]?.position ?? this.actions.gripAt();
+    return this.tools[this.selected]?.position ?? this.pull.target ?? this.view.centre;
   }
 
   shift(by) {
@@ -189,10 +201,9 @@ export class Hand {
       tool.position.add(by);
       tool.led = true;
       this.actions.lead(this.selected, this.target(tool), tool.rotation);
-    } else if (this.pull) {
-      // A hand on a spring: so many newtons for a pull of the body's size.
-      this.pull.force.addScaledVector(by, this.pull.stiffness);
-      this.sendPull();
+    } else if (this.pull.isOn) {
+      this.movedAt = performance.now();
+      this.pull.shift(by);
     }
   }
 

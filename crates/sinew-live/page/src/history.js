@@ -1,7 +1,7 @@
 // The last seconds of a pane, as plots show them.
 
 export const SPAN = 5;
-const NAMES = ["t", "force", "depth", "kinetic", "elastic", "balance", "moved"];
+const NAMES = ["t", "force", "depth", "kinetic", "elastic", "balance"];
 
 // Most samples: steps that are short and shown one by one bring more than a plot can show.
 const MOST = 2000;
@@ -15,14 +15,14 @@ export class History {
     for (const name of NAMES) this[name] = [];
   }
 
-  /// Takes a pane of a picture, with the force (N) on it and the way (m) of the point that a hand holds.
-  take(pane, force, depth, moved) {
+  /// Takes a pane of a picture, with the force (N) of the tool or the pull, and its depth or way (m).
+  take(pane, force, depth) {
     if (this.t.length > 0 && pane.t <= this.t.at(-1)) {
       if (pane.t < this.t.at(-1)) this.clear();
       else return;
     }
     const { t, kinetic, elastic, balance } = pane;
-    const values = { t, force, depth, kinetic, elastic, balance, moved };
+    const values = { t, force, depth, kinetic, elastic, balance };
     for (const name of NAMES) this[name].push(values[name]);
     let old = 0;
     while (this.t[old] < pane.t - SPAN) old += 1;

@@ -2,24 +2,35 @@
 
 import { Vector3 } from "three";
 import { Blade } from "./blade.js";
-import { FIELDS, NOT_KNOWN, paintBar, roundUp } from "./colours.js";
+import { FIELDS, NOT_KNOWN, roundUp } from "./colours.js";
+import { SIDES } from "./camera.js";
 import { Connection } from "./connection.js";
 import { CutPanel } from "./cuts.js";
+import { DepthHandle } from "./depth.js";
 import { NO_TWIN } from "./frames.js";
 import { Hand } from "./hand.js";
+import { showHint } from "./hints.js";
 import { History, SPAN } from "./history.js";
+import { showLegend } from "./legend.js";
 import { colourOfLight, numberOfReason, reasonOf } from "./lights.js";
-import { plain, short, withUnit } from "./numbers.js";
+import { startMenus } from "./menus.js";
+import { plain, withUnit } from "./numbers.js";
 import { PaneCard, stepInWords } from "./panes.js";
 import { Plot, around } from "./plots.js";
+import { Range } from "./range.js";
 import { Screen } from "./screen.js";
+import { SectionPanel } from "./section-panel.js";
 import { ShapeRow } from "./shape.js";
+import { Stage } from "./stage.js";
 import { View } from "./view.js";
 
 const get = (id) => document.getElementById(id);
 const test = new URLSearchParams(window.location.search).has("test");
 const LINES = ["--first", "--second"];
 const PLOT_EVERY = 70;
+
+/// Buttons of the sides by their keys.
+const SIDE_KEYS = Object.fromEntries(Object.keys(SIDES).map((side, index) => [String(index + 1), `side-${side}`]));
 
 let notice = 0;
 
@@ -43,6 +54,9 @@ function viewOn(canvas) {
 
 const canvas = get("canvas");
 const view = viewOn(canvas);
+const stage = new Stage(view.camera);
+const section = new SectionPanel(view);
+const range = new Range({ changed: recolour, extremes });
 const histories = [new History(), new History()];
 const cards = [];
 const plots = Object.fromEntries(["force-time", "force-depth", "energy"].map((id) => [id, new Plot(get(id))]));
@@ -56,7 +70,7 @@ let largestRate = 1;
 let plotted = 0;
 let since = { at: performance.now(), pictures: 0 };
 let connected = true;
-const last = { saved: null, refused: [], stopped: [], rate: 0 };
+const last = { saved: null, refused: [], stopped: [], wentBack: [], rate: 0 };
 
 /// Adds to a list of the latest.
 function keep(list, item) {
@@ -76,6 +90,12 @@ const connection = new Connection({
     say(reason);
   },
   stopped: (event) => keep(last.stopped, event),
+  went_back: (event) => {
+    keep(last.wentBack, event);
+    hand.release();
+    blade.drop();
+    say(`Back by ${plain(event.by, 2)} s, to where all was well: ${event.reason}`);
+  },
   reset: () => {
     histories.forEach((history) => history.clear());
     hand.release();
@@ -83,7 +103,7 @@ const connection = new Connection({
   },
   tools: ({ tools }) => {
     scenery.tools = tools;
-    hand.begin(tools, scenery.hand);
+    hand.begin(tools);
     view.setTools(tools);
     showShape();
   },
@@ -112,21 +132,23 @@ const blade = new Blade(view, {
   cut: (from, to) => connection.command("cut", { from, to }),
   path: (path) => cutPanel.showPath(path),
 });
-cutPanel.begin(blade, hint);
+cutPanel.begin(blade, () => scenery && showHint(scenery, blade.isOn));
 
 const hand = new Hand(canvas, view, {
   blade,
   bladeKey: (event) => cutPanel.key(event),
   paneAt,
   lead: (tool, position, rotation) => connection.command("pose", { tool, position: position.toArray(), rotation }),
-  gripAt: () => pointOf(picture?.panes[0], scenery?.hand?.point ?? 0) ?? view.centre,
-  pull: (force) => {
-    scenery.hand.loads.forEach((load, axis) => {
-      connection.command("load", { load: scenery.loads[load].name, factor: force.getComponent(axis) / scenery.hand.unit });
-    });
+  middle: () => {
+    const { left, top, width, height } = canvas.getBoundingClientRect();
+    return [left + width / (2 * view.count), top + height / 2];
   },
+  grip: (pane, point) => connection.command("grip", { pane, point, epoch: view.topology.epoch }),
+  pull: (to) => connection.command("pull", { to: to.toArray() }),
+  letGo: () => connection.command("let_go"),
 });
 
+const depthHandle = new DepthHandle(view, hand);
 const shapeRow = new ShapeRow(get("shape"), (tool, shape) => connection.command("shape", { tool, shape }));
 const showShape = () => shapeRow.show(hand.selected, scenery.tools[hand.selected], view.extent);
 
@@ -134,34 +156,15 @@ function begin(event) {
   scenery = event;
   document.title = `${event.title} · sinew live`;
   get("title").textContent = event.title;
-  get("field").replaceChildren(...event.fields.map((name) => new Option(FIELDS[name].title, name)));
-  hand.begin(event.tools, event.hand);
-  get("force-title").textContent = event.hand ? "Displacement at the hand" : "Force of the tool";
-  get("force-card").hidden = event.tools.length === 0 && !event.hand;
+  const fields = [...event.fields.map((name) => [FIELDS[name].title, name]), [FIELDS.difference.title, "difference"]];
+  get("field").replaceChildren(...[["Tissue", "tissue"], ...fields].map(([title, name]) => new Option(title, name)));
+  hand.begin(event.tools);
+  get("force-title").textContent = event.tools.length > 0 ? "Force of the tool" : "Force of your pull";
   get("footer").textContent = `sinew ${event.version} · ${event.nodes} nodes · ${event.tets} tetrahedra · this computer only`;
   cutPanel.offer(event.cuts);
-  hint();
-  const sliders = event.loads.filter((_, index) => !event.hand?.loads.includes(index));
-  get("loads-card").hidden = sliders.length === 0;
-  get("loads").replaceChildren(...sliders.map(sliderOf));
-}
-
-function hint() {
-  let words = "Drag to turn the view, wheel to zoom.";
-  if (blade.isOn) words = "Drag: cut along your line of sight · right button or two fingers: turn the view · wheel: zoom · arrows move the blade, Enter lowers and lifts it · C: done";
-  else if (scenery.tools.length > 0) words = "Drag: move the tool · wheel: near and far · Shift: lift it off · right button: turn the view · Ctrl + wheel: zoom · arrows and Page keys move it, too";
-  else if (scenery.hand) words = `Drag: pull at the red point · right button: turn the view · wheel: zoom · arrows pull, Escape lets go. ${scenery.hand.note}`;
-  if (scenery.cuts && !blade.isOn) words += " · C: a blade";
-  get("hint").textContent = words;
-  get("canvas").setAttribute("aria-label", `Tissue. ${keysInWords()} the right mouse button turns the view, and so do the keys [ and ].`);
-}
-
-/// What keys do on the canvas, for those who do not see it.
-function keysInWords() {
-  if (blade.isOn) return "Arrow keys move the blade, Enter lowers and lifts it, Escape puts it away;";
-  if (scenery.tools.length > 0) return "Arrow keys move the tool, Page Up and Page Down lift and press it;";
-  if (scenery.hand) return "Arrow keys, Page Up and Page Down pull at the red point, Escape lets go;";
-  return "Plus and minus zoom;";
+  showHint(event, blade.isOn);
+  get("loads-card").hidden = event.loads.length === 0;
+  get("loads").replaceChildren(...event.loads.map(sliderOf));
 }
 
 function sliderOf({ name, what }) {
@@ -209,30 +212,31 @@ function configure(event) {
   }));
   get("pause").setAttribute("aria-pressed", String(event.paused));
   get("pause").textContent = event.paused ? "Go on" : "Pause";
-  get("panes").textContent = panes.length === 1 ? "Compare with a second method" : "One method alone";
-  get("difference-box").hidden = panes.length === 1;
-  if (panes.length === 1) get("difference").checked = false;
-  if (get("field").value !== event.field) {
-    get("field").value = event.field;
-    legend();
-  }
+  get("panes").textContent = panes.length === 1 ? "Compare" : "One alone";
+  const choice = get("field");
+  choice.querySelector("option[value=difference]").disabled = panes.length === 1;
+  // A field that another page chose; tissue and differences are this page's own.
+  if (choice.value === "difference" ? panes.length === 1 : choice.value !== "tissue") choice.value = event.field;
   scenery.loads.forEach(({ name }, index) => {
     const slider = get("loads").querySelector(`input[data-load="${CSS.escape(name)}"]`);
     if (!slider) return;
     if (document.activeElement !== slider) slider.value = event.factors[index];
     slider.parentElement.querySelector("output").textContent = `× ${plain(event.factors[index], 3)}`;
   });
-  hand.follow(event.factors);
   // Also where another shape was refused.
   showShape();
   view.setCount(panes.length);
   legend();
 }
 
-/// What colours show: the field of the server, or the difference of two panes.
-const shown = () => (get("difference").checked && settings?.panes.length === 2 ? "difference" : settings?.field);
+/// What colours show: the field of the server, the difference of two panes, or nothing, for tissue.
+function shown() {
+  const choice = get("field").value;
+  if (choice === "tissue" || (choice === "difference" && settings?.panes.length === 2)) return choice === "tissue" ? null : choice;
+  return settings?.field ?? null;
+}
 
-/// The fixed scale of a field.
+/// The round largest value of a field, from the scene alone: its automatic scale is fixed.
 function largestOf(field) {
   const modulus = scenery.youngs_modulus;
   const extent = view.extent ?? 0.1;
@@ -242,29 +246,35 @@ function largestOf(field) {
   }[field];
 }
 
+/// The scale of what is shown; none for tissue.
+const scaleNow = () => (shown() ? range.scaleOf(shown(), largestOf(shown())) : null);
+
 function legend() {
-  const field = shown();
-  if (!field || !scenery) return;
-  const { title, unit, factor } = FIELDS[field];
-  get("legend-title").textContent = title;
-  const largest = largestOf(field) * factor;
-  const wordsAt = (share) => {
-    if (field === "step_limit") return share > 0 ? `${short(1000 / (share * largest))} ${unit}` : "longer";
-    return `${short(share * largest)} ${unit}`;
-  };
-  const ticks = field === "saturated" ? [[1, "at limit"], [0, "free"]] : [0, 0.25, 0.5, 0.75, 1].map((share) => [share, wordsAt(share)]);
-  get("legend-ticks").replaceChildren(...ticks.map(([share, words]) => {
-    const tick = document.createElement("span");
-    tick.textContent = words;
-    tick.style.top = `${100 * (1 - share)}%`;
-    return tick;
-  }));
-  const mark = document.createElement("i");
-  mark.classList.toggle("unknown", field === "difference");
-  get("legend-note").replaceChildren(mark, field === "difference" ? "cut in one alone" : "inside out");
+  if (!scenery) return;
+  const [field, scale] = [shown(), scaleNow()];
+  showLegend(field, scale, field && largestOf(field));
+  range.show(field, scale, field && largestOf(field));
 }
 
-const pointOf = (pane, point) => pane && new Vector3(pane.positions[3 * point], pane.positions[3 * point + 1], pane.positions[3 * point + 2]);
+/// Shows the picture in other colours: while time stops no other one comes.
+function recolour() {
+  legend();
+  if (picture) show();
+}
+
+/// The least and the largest value that is shown.
+function extremes() {
+  let [low, high] = [Infinity, -Infinity];
+  for (let number = 0; picture && number < picture.panes.length; number += 1) {
+    for (const value of colourValues(number)) {
+      if (!Number.isFinite(value)) continue;
+      low = Math.min(low, value);
+      high = Math.max(high, value);
+    }
+  }
+  return { low, high };
+}
+
 
 function colourValues(number) {
   const { panes } = picture;
@@ -277,7 +287,7 @@ function colourValues(number) {
 function show() {
   if (view.topology !== picture.topology) {
     view.setTopology(picture.topology, scenery.tools);
-    if (hand.pull) hand.pull.stiffness = scenery.youngs_modulus * view.extent * 0.1;
+    get("fine").checked = view.isFine;
     cutPanel.resize();
     showShape();
     legend();
@@ -289,39 +299,30 @@ function show() {
       legend();
     }
   }
-  const largest = largestOf(shown());
+  const scale = scaleNow();
   picture.panes.forEach((pane, number) => {
-    view.update(number, pane, colourValues(number), largest);
+    view.update(number, pane, colourValues(number), scale);
     const tool = pane.tools[hand.selected];
-    let force = tool ? Math.hypot(...tool.force) : 0;
-    let moved = 0;
-    if (scenery.hand) {
-      const { point } = scenery.hand;
-      const at = pointOf(pane, point);
-      moved = at.distanceTo(new Vector3().fromArray(view.topology.surfaces[number].points, 3 * point));
-      force = hand.pull.force.length();
-      const pulls = force > 0 && number < 2;
-      view.showPull(number, point, pulls ? at.clone().addScaledVector(hand.pull.force, 1 / hand.pull.stiffness) : null);
-    }
-    histories[number].take(pane, force, tool ? tool.depth : moved, moved);
+    const [pull, moved] = hand.pull.show(number, pane);
+    histories[number].take(pane, tool ? Math.hypot(...tool.force) : pull, tool ? tool.depth : moved);
   });
   hand.see(picture.panes[0].tools);
+  depthHandle.show(blade.isOn);
 }
 
 function panels() {
   const first = picture.panes[0];
+  stage.showTime(first.t, settings.paused);
   picture.panes.forEach((pane, number) => cards[number]?.show(pane));
   cutPanel.show(picture.panes);
   const live = histories.slice(0, picture.panes.length);
   const end = Math.max(SPAN, first.t);
   const x = [end - SPAN, end];
   const named = (number, name) => (live.length > 1 ? settings.panes[number]?.integrator : name);
-  const way = scenery.hand ? "moved" : "force";
-  const factor = scenery.hand ? 1000 : 1;
-  const lines = live.map((history, number) => ({ name: named(number, ""), colour: LINES[number], xs: history.t, ys: history[way].map((value) => factor * value) }));
+  const lines = live.map((history, number) => ({ name: named(number, ""), colour: LINES[number], xs: history.t, ys: history.force }));
   const calmest = Math.min(...lines.map(({ ys }) => Math.max(0, ...ys.filter(Number.isFinite))));
   const cut = (ends) => (live.length > 1 && calmest > 0 ? [Math.max(ends[0], -4 * calmest), Math.min(ends[1], 4 * calmest)] : ends);
-  plots["force-time"].draw({ x, y: cut(around(lines.flatMap(({ ys }) => ys))), lines, xUnit: "s", yUnit: scenery.hand ? "mm" : "N" });
+  plots["force-time"].draw({ x, y: cut(around(lines.flatMap(({ ys }) => ys))), lines, xUnit: "s", yUnit: "N" });
   drawDepth(live, named);
   const energies = live.flatMap((history, number) => {
     const own = [{ name: live.length > 1 ? named(number) : "E − W", colour: LINES[number], xs: history.t, ys: history.balance }];
@@ -347,7 +348,7 @@ function panels() {
   if (shapeRow.number !== hand.selected) showShape();
   const tool = first.tools[hand.selected];
   if (tool) get("force-now").textContent = `${withUnit(Math.hypot(...tool.force), "N")} · ${plain(1000 * Math.max(0, tool.depth), 3)} mm deep`;
-  else if (scenery.hand) get("force-now").textContent = `${withUnit(hand.pull.force.length(), "N")} · ${plain(1000 * (histories[0].moved.at(-1) ?? 0), 3)} mm`;
+  else get("force-now").textContent = `${withUnit(histories[0].force.at(-1) ?? 0, "N")} · ${plain(1000 * (histories[0].depth.at(-1) ?? 0), 3)} mm moved`;
   get("pace").textContent = settings.paused ? "paused" : `${plain(picture.pace, 2)} ×`;
   get("pace").title = `${picture.panes.map((pane) => plain(pane.msPerStep, 3)).join(" and ")} ms a step`;
   const latency = connection.latency(0.5);
@@ -382,7 +383,7 @@ function frame(now) {
     show();
     blade.flush(picture.applied);
   }
-  view.draw();
+  if (view.draw()) stage.follow();
   screen.drew(now);
   if (next) connection.drawn(next, screen.next);
   else if (connection.owed > 0 && !connection.picture) connection.grant(screen.next);
@@ -403,23 +404,26 @@ get("step").addEventListener("click", () => connection.command("step"));
 get("reset").addEventListener("click", () => connection.command("reset"));
 get("save").addEventListener("click", () => connection.command("save"));
 get("panes").addEventListener("click", () => settings && connection.command("panes", { count: settings.panes.length === 1 ? 2 : 1 }));
-get("view").addEventListener("click", () => view.topology && view.resetCamera());
-get("field").addEventListener("change", () => connection.command("field", { name: get("field").value }));
-get("edges").addEventListener("change", () => view.setEdges(get("edges").checked));
-get("difference").addEventListener("change", () => {
-  legend();
-  // While time stops no other picture comes.
-  if (picture) show();
+get("view").addEventListener("click", () => view.topology && view.camera.reset());
+for (const side of document.querySelectorAll("[data-side]")) side.addEventListener("click", () => view.topology && view.camera.showSide(side.dataset.side));
+get("field").addEventListener("change", () => {
+  const name = get("field").value;
+  if (scenery.fields.includes(name)) connection.command("field", { name });
+  recolour();
 });
+// A scheme that changes brings another ground.
+window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { view.dirty = true; });
+get("fine").addEventListener("change", () => view.setFine(get("fine").checked));
+get("edges").addEventListener("change", () => view.setEdges(get("edges").checked));
 window.addEventListener("keydown", (event) => {
   if (event.ctrlKey || event.metaKey || event.altKey || ["INPUT", "SELECT"].includes(event.target.tagName)) return;
-  const press = { " ": "pause", ".": "step", r: "reset", v: "view", c: "cut" }[event.key];
+  const press = { " ": "pause", ".": "step", r: "reset", v: "view", c: "cut", ...SIDE_KEYS }[event.key];
   if (!press || get(press).hidden || get(press).closest("[hidden]") || (event.key === " " && event.target.closest("button, summary"))) return;
   event.preventDefault();
   // A key that is held down presses once, but goes on step by step.
   if (!event.repeat || press === "step") get(press).click();
 });
-paintBar(get("legend-bar"));
+startMenus();
 window.requestAnimationFrame(frame);
 
 // What the end-to-end test asks.
@@ -437,24 +441,27 @@ window.sinew = {
   /// In the last pane: the first may show a method that throws its body off the page.
   gripOnPage() {
     const number = picture.panes.length - 1;
-    const pane = picture.panes[number];
-    const tool = pane.tools[hand.selected];
-    return view.project(tool ? new Vector3(...tool.position) : pointOf(pane, scenery.hand?.point ?? 0), number);
+    const tool = picture.panes[number].tools[hand.selected];
+    return view.camera.project(tool ? new Vector3(...tool.position) : view.centre, number);
   },
   get led() { return hand.tools.map((tool) => hand.target(tool).toArray()); },
   lights(pane = 0) { return [0, 1, 2].map((light) => [colourOfLight(picture.panes[pane], light), reasonOf(light, numberOfReason(picture.panes[pane], light), picture.panes[pane])]); },
   /// Where a place (m) is on the page.
-  onPage: (place, pane = 0) => view.project(new Vector3(...place), pane),
+  onPage: (place, pane = 0) => view.camera.project(new Vector3(...place), pane),
   /// Points of the surface that a pane draws.
-  pointsDrawn: (pane = 0) => view.panes[pane].positions.count,
+  pointsDrawn: (pane = 0) => view.panes[pane].body.shown.count,
   /// Edges of its cuts.
-  rim: (pane = 0) => view.panes[pane].rim.geometry.index.count / 2,
+  rim: (pane = 0) => view.panes[pane].body.rim.geometry.index.count / 2,
+  /// Where the camera is, and whereto it looks (m).
+  get camera() { return { place: view.camera.lens.position.toArray(), target: view.camera.target.toArray() }; },
   balance: (pane = 0) => histories[pane].balance.at(-1),
   command: (what, order) => connection.command(what, order),
-  colourCount() {
-    const gl = view.renderer.getContext();
-    const pixels = new Uint8Array(4 * gl.drawingBufferWidth * gl.drawingBufferHeight);
-    gl.readPixels(0, 0, gl.drawingBufferWidth, gl.drawingBufferHeight, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
-    return new Set(new Uint32Array(pixels.buffer)).size;
+  colourCount: () => new Set(new Uint32Array(view.pixels().buffer)).size,
+  /// Pixels of tissue, which is redder than all else.
+  drawnPixels() {
+    const pixels = view.pixels();
+    let count = 0;
+    for (let at = 0; at < pixels.length; at += 4) if (pixels[at + 3] === 255 && pixels[at] > pixels[at + 2] + 40) count += 1;
+    return count;
   },
 };

@@ -48,7 +48,7 @@ export class ShapeRow {
     this.select.value = this.part.kind;
     const share = Math.log(this.radius / (LEAST * extent)) / Math.log(MOST / LEAST);
     this.slider.value = Math.round(STEPS * Math.min(1, Math.max(0, share)));
-    this.slider.hidden = this.part.kind === "plane";
+    this.slider.disabled = this.part.kind === "plane";
     this.words(this.radius);
   }
 

@@ -7,13 +7,33 @@ use std::collections::VecDeque;
 #[derive(Clone, Debug)]
 pub(crate) struct Course {
     corners: VecDeque<(f64, [f64; 6])>,
+    /// Time (s) of the last target; `None` before the first.
+    led: Option<f64>,
 }
+
+/// Limits of the motion of a steered tool.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Limits {
+    /// Shortest time (s) in which it reaches a pose.
+    pub(crate) shortest: f64,
+    /// Largest speed (m/s) of its points.
+    pub(crate) speed: f64,
+    /// Distance (m) of its farthest point from its place.
+    pub(crate) reach: f64,
+}
+
+/// Longest time (s) between two targets of one drag.
+const DRAG: f64 = 0.05;
+
+/// Time until the next target of a drag is expected, over that since the last one: mice are not quite regular.
+const EXPECTED: f64 = 1.25;
 
 impl Course {
     /// A pose that rests from a time (s) on.
     pub(crate) fn at_rest(t: f64, pose: [f64; 6]) -> Self {
         Self {
             corners: VecDeque::from([(t, pose)]),
+            led: None,
         }
     }
 
@@ -36,14 +56,31 @@ impl Course {
         self.corners.back().map_or([0.0; 6], |(_, pose)| *pose)
     }
 
-    /// Moves straight to a pose from `t` (s) on, reaching it at `arrival`; this replaces the previous target.
-    pub(crate) fn go(&mut self, t: f64, pose: [f64; 6], arrival: f64) {
+    /// Moves straight to a pose from `t` (s) on; this replaces the previous target. It arrives when the next target of
+    /// a drag is expected, so that it does not rest between them, or later if it would be too fast.
+    pub(crate) fn go(&mut self, t: f64, pose: [f64; 6], limits: Limits) {
         let here = self.at(t);
         while self.corners.back().is_some_and(|(time, _)| *time >= t) {
             self.corners.pop_back();
         }
+        let expected = self
+            .led
+            .map(|led| t - led)
+            .filter(|time| *time <= DRAG)
+            .map(|time| EXPECTED * time);
+        let size = |from: usize| {
+            (from..from + 3)
+                .map(|n| (pose[n] - here[n]).powi(2))
+                .sum::<f64>()
+                .sqrt()
+        };
+        let way = size(0) + limits.reach * size(3);
+        let time = (way / limits.speed)
+            .max(limits.shortest)
+            .max(expected.unwrap_or(0.0));
+        self.led = Some(t);
         self.corners.push_back((t, here));
-        self.corners.push_back((arrival, pose));
+        self.corners.push_back((t + time, pose));
     }
 
     /// Discards the path before `t` (s).
@@ -66,26 +103,63 @@ mod tests {
         [x, 0.0, 0.0, 0.0, 0.0, 0.0]
     }
 
+    const LIMITS: Limits = Limits {
+        shortest: 0.004,
+        speed: 1.0,
+        reach: 0.1,
+    };
+
     #[test]
     fn it_goes_straight_and_turns_where_it_is() {
         let mut course = Course::at_rest(0.0, pose(1.0));
-        course.go(1.0, pose(3.0), 2.0);
+        course.go(1.0, pose(3.0), LIMITS);
         assert_eq!(
-            [0.0, 1.0, 1.5, 2.0, 9.0].map(|t| x(&course, t)),
-            [1.0, 1.0, 2.0, 3.0, 3.0]
+            [0.0, 1.0, 1.5, 2.0, 3.0, 9.0].map(|t| x(&course, t)),
+            [1.0, 1.0, 1.5, 2.0, 3.0, 3.0]
         );
-        course.go(1.5, pose(0.0), 2.5);
+        course.go(1.5, pose(0.0), LIMITS);
         assert_eq!(
-            [1.25, 1.5, 2.0, 2.5].map(|t| x(&course, t)),
-            [1.5, 2.0, 1.0, 0.0]
+            [1.25, 1.5, 2.0, 3.0, 4.0].map(|t| x(&course, t)),
+            [1.25, 1.5, 1.0, 0.0, 0.0]
         );
+    }
+
+    #[test]
+    fn a_drag_is_followed_without_rests_and_its_speed_is_that_of_the_mouse() {
+        for rate in [30.0, 60.0, 144.0] {
+            let mut course = Course::at_rest(0.0, pose(0.0));
+            let (mut before, mut fastest) = (0.0_f64, 0.0_f64);
+            for tick in 0..1000 {
+                let t = 0.001 * f64::from(tick);
+                if (t * rate).floor() > ((t - 0.001) * rate).floor() {
+                    course.go(t, pose(0.2 * t), LIMITS);
+                }
+                let now = x(&course, t);
+                if t > 0.1 {
+                    let speed = (now - before) / 0.001;
+                    assert!(speed > 0.05, "{rate} Hz: it rests at {t} s");
+                    fastest = fastest.max(speed);
+                }
+                before = now;
+            }
+            assert!(fastest < 0.35, "{rate} Hz: {fastest} m/s");
+        }
+    }
+
+    #[test]
+    fn turns_are_as_slow_as_the_farthest_point() {
+        let mut course = Course::at_rest(0.0, pose(0.0));
+        let turned = [0.0, 0.0, 0.0, 0.0, 3.0, 0.0];
+        course.go(0.0, turned, LIMITS);
+        assert!((course.at(0.15)[4] - 1.5).abs() < 1e-12);
+        assert_eq!(course.at(0.31), turned);
     }
 
     #[test]
     fn what_is_forgotten_changes_nothing_later() {
         let mut course = Course::at_rest(0.0, pose(0.0));
         for n in 0..100 {
-            course.go(f64::from(n), pose(f64::from(n * n)), f64::from(n) + 0.5);
+            course.go(f64::from(n), pose(f64::from(n * n)), LIMITS);
         }
         let whole = course.clone();
         course.forget_before(98.25);

@@ -2,14 +2,19 @@
 
 mod common;
 mod course;
+#[cfg(test)]
+mod drags;
 mod due;
+mod grip;
 mod lights;
+mod moments;
 mod options;
 mod pace;
 mod pane;
 mod saved;
 mod shown;
 mod stability;
+mod sums;
 mod survey;
 mod topology;
 mod trusted;
@@ -20,9 +25,10 @@ use std::time::{Duration, Instant};
 use sinew_core::Clock;
 use sinew_world::{Command, CommandError, Journal, JournalError, Log, World};
 
-use self::course::Course;
+use self::course::{Course, Limits};
+use self::moments::{Moment, Moments};
 use self::pace::Pace;
-use self::pane::Pane;
+use self::pane::{Hands, Pane};
 pub(crate) use self::survey::Survey;
 use self::topology::Topology;
 use self::trusted::Trusted;
@@ -36,8 +42,12 @@ use crate::protocol::{Event, Field, FrameHead, FrameWriter, Order, Shape};
 use crate::scene_values::SceneValues;
 use crate::server::Shared;
 
-/// Simulated time (s) in which a tool moves to the user's tool pose: a jump within one step would be an impact.
+/// Shortest simulated time (s) in which a tool moves to the user's tool pose: a jump within one step would be an impact.
 const GLIDE: f64 = 0.004;
+
+/// Simulated time (s) after a return to an earlier moment in which poses are ignored: they were meant for tools at
+/// other places.
+const DEAF: f64 = 0.15;
 
 /// Time of stepping before commands and pictures are checked again.
 const LOOK: Duration = Duration::from_millis(10);
@@ -64,6 +74,9 @@ const BETWEEN_ENTRIES: Duration = Duration::from_secs(1);
 /// paused would add cuts without limit.
 const MOST_CUTS: usize = 256;
 
+/// Farthest place (m) of a pull along an axis.
+const FARTHEST: f64 = 1e6;
+
 /// Largest number of panes.
 const MOST_PANES: usize = 2;
 
@@ -73,8 +86,15 @@ pub(crate) struct Engine {
     panes: Vec<Pane>,
     /// Choice of the second pane, if it is opened.
     second: PaneChoice,
-    /// Steered path of each tool; `None` as long as it follows its own motion.
-    hands: Vec<Option<Course>>,
+    hands: Hands,
+    /// Number of grips so far, and the client of the present one.
+    grips: u64,
+    gripped_by: Option<u32>,
+    /// Largest speed (m/s) of steered tools.
+    hand_speed: f64,
+    /// Simulated time (s) until which poses are ignored.
+    deaf_until: f64,
+    moments: Moments,
     /// Names and factors of the loads.
     loads: Vec<String>,
     factors: Vec<f64>,
@@ -139,6 +159,8 @@ pub(crate) struct Beginning {
     pub(crate) second: PaneChoice,
     pub(crate) fields: Vec<Field>,
     pub(crate) loads: Vec<String>,
+    /// Largest speed (m/s) of steered tools.
+    pub(crate) hand_speed: f64,
 }
 
 impl Engine {
@@ -154,8 +176,9 @@ impl Engine {
             second,
             fields,
             loads,
+            hand_speed,
         } = beginning;
-        let mut panes = vec![Pane::new(session, &scene)?];
+        let mut panes = vec![Pane::new(session)?];
         while panes.len() < choices.len() {
             panes.push(Pane::of(&scene)?);
         }
@@ -171,8 +194,16 @@ impl Engine {
             scene,
             panes,
             second,
-            hands: vec![None; tools],
-            factors: Vec::new(),
+            hands: Hands {
+                tools: vec![None; tools],
+                grip: None,
+            },
+            grips: 0,
+            gripped_by: None,
+            hand_speed,
+            deaf_until: f64::NEG_INFINITY,
+            moments: Moments::default(),
+            factors: vec![1.0; loads.len()],
             loads,
             uncut,
             topology: Topology::default(),
@@ -194,7 +225,7 @@ impl Engine {
             journals: Vec::new(),
             last_entries: Instant::now(),
         };
-        engine.take_first_factors();
+        engine.keep_moment();
         Ok(engine)
     }
 
@@ -319,22 +350,27 @@ impl Engine {
     fn take_tick(&mut self, shared: &Shared, may: impl Fn() -> bool) {
         let next = self.next_span();
         let Span { until, length } = *self.ahead.get_or_insert(next);
-        let mut oldest = until;
+        let (mut oldest, mut failed) = (until, None);
         for (number, pane) in self.panes.iter_mut().enumerate() {
             let was_stopped = pane.stopped.is_some();
             if let Some(reason) = pane.follow(until, &self.hands, &may) {
                 shared.clients.tell_all(&Event::Refused { reason });
             }
             if let Some(reason) = pane.stopped.clone().filter(|_| !was_stopped) {
-                let pane = number;
-                shared.clients.tell_all(&Event::Stopped { pane, reason });
-                self.news.settings = true;
+                failed.get_or_insert((number, reason));
             }
             if pane.stopped.is_none() {
                 oldest = oldest.min(pane.t());
             }
         }
         self.changes += 1;
+        if let Some((pane, reason)) = failed {
+            if self.go_back_before_failure(pane, &reason, shared) {
+                return;
+            }
+            shared.clients.tell_all(&Event::Stopped { pane, reason });
+            self.news.settings = true;
+        }
         if !self.panes.iter().all(|pane| pane.is_at(until)) {
             return;
         }
@@ -348,10 +384,75 @@ impl Engine {
             }
         }
         self.clock.advance(length);
-        for hand in self.hands.iter_mut().flatten() {
+        for hand in self.hands.tools.iter_mut().flatten() {
             hand.forget_before(oldest);
         }
+        if let Some(grip) = &mut self.hands.grip {
+            grip.forget_before(oldest);
+        }
+        if self.moments.is_due(self.t()) {
+            self.keep_moment();
+        }
         self.tell_applied(shared);
+    }
+
+    /// Keeps the present moment, unless a pane has stopped.
+    fn keep_moment(&mut self) {
+        if self.panes.iter().any(|pane| pane.stopped.is_some()) {
+            return;
+        }
+        let t = self.t();
+        self.moments.keep(Moment {
+            clock: self.clock,
+            panes: self.panes.iter().map(Pane::moment).collect(),
+            hands: (self.hands.tools.iter())
+                .map(|hand| hand.as_ref().map(|hand| hand.at(t)))
+                .collect(),
+            factors: self.factors.clone(),
+        });
+    }
+
+    /// Takes all panes back to a moment before one of them failed, with resting tools. False if the motion fails
+    /// without a command, or cannot go back.
+    fn go_back_before_failure(&mut self, pane: usize, reason: &str, shared: &Shared) -> bool {
+        let failed_at = self.panes.get(pane).map_or(self.t(), Pane::t);
+        let Some(moment) = self.moments.before_failure(failed_at) else {
+            return false;
+        };
+        let mut both = self.panes.iter_mut().zip(&moment.panes);
+        if both.any(|(pane, to)| pane.go_back(to).is_err()) {
+            return false;
+        }
+        let t = moment.clock.time();
+        self.clock = moment.clock;
+        self.factors.clone_from(&moment.factors);
+        let poses = moment.hands.iter();
+        self.hands = Hands {
+            tools: poses
+                .map(|pose| pose.map(|pose| Course::at_rest(t, pose)))
+                .collect(),
+            grip: None,
+        };
+        self.deaf_until = t + DEAF;
+        self.ahead = None;
+        self.pace = Pace::new(t);
+        for command in &mut self.under_way {
+            command.arrival = t;
+        }
+        self.tell_applied(shared);
+        if self.trusted.is_some() {
+            self.distrust(
+                "the panes went back to an earlier moment, which it cannot".to_owned(),
+                shared,
+            );
+        }
+        shared.clients.tell_all(&Event::WentBack {
+            pane,
+            by: failed_at - t,
+            reason: reason.to_owned(),
+        });
+        self.news.settings = true;
+        true
     }
 
     /// Notifies clients of commands that steps have taken.
@@ -424,7 +525,7 @@ impl Engine {
         };
         let seen = self.panes.iter().filter_map(Pane::seen_body);
         let points: Vec<usize> = seen.map(|(_, surface)| surface.points.len()).collect();
-        let mut frame = FrameWriter::new(&head, &points, self.hands.len());
+        let mut frame = FrameWriter::new(&head, &points, self.hands.tools.len());
         for pane in &mut self.panes {
             pane.write(
                 &mut frame,
@@ -469,18 +570,24 @@ impl Engine {
     fn obey(&mut self, waiting: &mut Waiting, shared: &Shared) -> bool {
         let begun = Instant::now();
         waiting.forget(|client| !shared.clients.is_here(client));
+        if self
+            .gripped_by
+            .is_some_and(|client| !shared.clients.is_here(client))
+        {
+            self.let_go();
+        }
         for client in waiting.entered.drain(..) {
             shared.clients.tell(client, &self.settings());
         }
         while begun.elapsed() < LOOK
             && let Some(Request { client, id, what }) = waiting.orders.pop_front()
         {
-            let is_pose = matches!(what, Order::Pose { .. });
+            let is_pose = matches!(what, Order::Pose { .. } | Order::Pull { .. });
             let waits = is_pose || matches!(what, Order::Load { .. } | Order::Cut { .. });
             // What colours show stays as it is under the others, and to paint may take longer than a step.
             let repaints = match &what {
                 Order::Field { name } => *name != self.field,
-                Order::Save => false,
+                Order::Save | Order::Grip { .. } | Order::LetGo => false,
                 _ => !waits,
             };
             let outcome = self.carry_out(client, id, what, shared);
@@ -532,22 +639,72 @@ impl Engine {
         let [x, y, z, a, b, c] = pose;
         let first = self.panes.first();
         let name = first.and_then(|pane| Some(pane.tools()?.tools().get(tool)?.name.clone()));
-        let (Some(name), Some(hand)) = (name, self.hands.get(tool)) else {
+        let (Some(name), Some(first), Some(hand)) = (name, first, self.hands.tools.get(tool))
+        else {
             return Err(format!("there is no tool {tool}"));
         };
-        let is_new = hand.is_none();
+        let here = hand.is_none().then(|| first.tool_pose(tool));
+        let limits = Limits {
+            shortest: GLIDE.max(self.tick()),
+            speed: self.hand_speed,
+            reach: first.reach_of(tool),
+        };
         self.check(&Command::Pose {
             tool: name.into(),
             position: [x, y, z],
             rotation_vector: [a, b, c],
         })?;
         let t = self.now();
-        let arrival = t + GLIDE.max(self.tick());
-        let here = first.filter(|_| is_new).map(|pane| pane.tool_pose(tool));
-        let course =
-            self.hands[tool].get_or_insert_with(|| Course::at_rest(t, here.unwrap_or_default()));
-        course.go(t, pose, arrival);
-        self.is_under_way(client, id, arrival);
+        self.is_under_way(client, id, t + self.tick());
+        if t < self.deaf_until {
+            return Ok(());
+        }
+        self.moments.note_command(t);
+        let course = self.hands.tools[tool]
+            .get_or_insert_with(|| Course::at_rest(t, here.unwrap_or_default()));
+        course.go(t, pose, limits);
+        Ok(())
+    }
+
+    /// Grips the tissue around a point of the surface of a pane.
+    fn grip(&mut self, client: u32, pane: usize, point: usize, epoch: u32) -> Result<(), String> {
+        if epoch != self.topology.epoch {
+            return Err("the body was cut in this moment: grip it once more".to_owned());
+        }
+        self.grips += 1;
+        let number = self.grips;
+        let mut grip = self.pane(pane)?.grip(number, point)?;
+        for pane in &self.panes {
+            grip.soften(pane.stiffness_of(&grip)?);
+        }
+        (self.hands.grip, self.gripped_by) = (Some(grip), Some(client));
+        Ok(())
+    }
+
+    /// Lets the tissue go that is gripped.
+    fn let_go(&mut self) {
+        (self.hands.grip, self.gripped_by) = (None, None);
+    }
+
+    /// Pulls the tissue that is gripped to a place (m).
+    fn pull(&mut self, client: u32, id: u32, to: [f64; 3]) -> Result<(), String> {
+        if to.iter().any(|place| !(place.abs() <= FARTHEST)) {
+            return Err(format!(
+                "a pull to {to:?}: expected finite numbers, at most {FARTHEST:e} m in size"
+            ));
+        }
+        let limits = Limits {
+            shortest: GLIDE.max(self.tick()),
+            speed: self.hand_speed,
+            reach: 0.0,
+        };
+        let t = self.now();
+        self.is_under_way(client, id, t + self.tick());
+        // One that is gone: the motion went back.
+        if let Some(grip) = &mut self.hands.grip {
+            grip.pull(t, to, limits);
+            self.moments.note_command(t);
+        }
         Ok(())
     }
 
@@ -566,6 +723,7 @@ impl Engine {
         if let Some(trusted) = &mut self.trusted {
             trusted.command_at(t, command);
         }
+        self.moments.note_command(t);
         self.is_under_way(client, id, t + self.tick());
         Ok(())
     }
@@ -588,6 +746,9 @@ impl Engine {
         let changed = change(pane);
         if was_stopped && pane.stopped.is_none() {
             self.restart()?;
+        } else {
+            // Those with another method are gone.
+            self.begin_moments();
         }
         changed
     }
@@ -609,6 +770,9 @@ impl Engine {
                 let pose = [x, y, z, a, b, c];
                 return self.lead(client, id, Place { tool, pose });
             }
+            Order::Grip { pane, point, epoch } => self.grip(client, pane, point, epoch)?,
+            Order::Pull { to } => self.pull(client, id, to)?,
+            Order::LetGo => self.let_go(),
             Order::Load { load, factor } => {
                 let place = self.loads.iter().position(|name| *name == load);
                 let command = Command::LoadFactor {
@@ -754,7 +918,8 @@ impl Engine {
 
     /// Releases all tools, with panes at the beginning.
     fn begin_anew(&mut self) {
-        self.hands.fill(None);
+        self.hands.tools.fill(None);
+        self.let_go();
         self.clock = Clock::at(self.panes.first().map_or(0.0, Pane::t));
         // What was under way comes to nothing, and nobody has to wait for it.
         for command in &mut self.under_way {
@@ -762,17 +927,16 @@ impl Engine {
         }
         self.ahead = None;
         self.pace = Pace::new(self.t());
-        self.take_first_factors();
+        self.factors.fill(1.0);
+        self.begin_moments();
         (self.news.settings, self.news.went_back) = (true, true);
     }
 
-    /// Sets the factors of loads to those of all panes at the beginning.
-    fn take_first_factors(&mut self) {
-        let first = &self.scene.first_factors;
-        let factor_of = |load: &String| first.iter().find(|(name, _)| **name == **load);
-        let factors = self.loads.iter();
-        let factors = factors.map(|load| factor_of(load).map_or(1.0, |(_, factor)| *factor));
-        self.factors = factors.collect();
+    /// Forgets all moments but the present one.
+    fn begin_moments(&mut self) {
+        self.moments = Moments::default();
+        self.deaf_until = f64::NEG_INFINITY;
+        self.keep_moment();
     }
 
     fn settings(&self) -> Event {

@@ -7,12 +7,14 @@ use sinew_core::vectors::weighted_dot;
 use sinew_core::{BytesError, Energy, LoadTime, Options, StableStep, System};
 use sinew_scene::{BodyModel, CutTotals, SceneBody, Simulation};
 use sinew_tools::{Pose, Tools};
-use sinew_world::{Command, CommandError, Log, World};
+use sinew_world::{Command, CommandError, Log, Moment, RestoreError, World};
 
 use super::course::Course;
 use super::due::Due;
-use super::lights::{Bounds, Light, Settling, error_light, packed};
+use super::grip::{Grip, HELD, Patch};
+use super::lights::{Bounds, Light, error_light, packed};
 use super::shown::{Budget, Shown};
+use super::sums::Sums;
 use super::{options, stability};
 use crate::error::LiveError;
 use crate::picture::Surface;
@@ -32,8 +34,6 @@ const GUARD: &str = "saturation";
 pub(crate) struct Pane {
     session: World,
     due: Due,
-    /// Loads whose factors are other than 1 at the beginning.
-    first_factors: Vec<(Arc<str>, f64)>,
     /// The requested integrator and step, which a reset keeps.
     method: (String, Options, f64),
     /// Reason for which it cannot continue.
@@ -51,48 +51,35 @@ pub(crate) struct Pane {
     looked: Budget,
     /// True if parts or surfaces of the body overlapped at the last check.
     overlaps: bool,
-    /// Displacement (m) before the last step, after a cut at its beginning, and halfway through the step.
-    before: Vec<f64>,
-    middle: Vec<f64>,
-    force: Vec<f64>,
-    /// The last commanded pose of each tool.
-    led: Vec<Option<[f64; 6]>>,
-    /// The impulse (N s) that each tool had received before the last step.
-    received: Vec<[f64; 3]>,
-    /// Impulse on each tool (N s) and time (s) since the last picture.
-    impulses: Vec<[f64; 3]>,
-    span: f64,
-    saturated: u64,
-    steps: u64,
-    has_stepped: bool,
+    sums: Sums,
     ms_per_step: f64,
-    /// Current kinetic energy, and the work of loads since the beginning (J).
-    kinetic: f64,
-    load_work: f64,
-    energies: Energies,
-    settling: Settling,
+    /// The tissue that the user pulls.
+    held: Option<Held>,
+    /// True if forces of the user act.
+    is_pulled: bool,
 }
 
-/// Energies (J), all of the same instant, and the work since the beginning.
-#[derive(Clone, Copy, Debug, Default)]
-struct Energies {
-    kinetic: f64,
-    elastic: f64,
-    loads: f64,
-    tools: f64,
-    /// Energy added by cuts.
-    cuts: f64,
-    /// Energy at the beginning.
-    first: f64,
-    /// The largest energy or work so far.
-    scale: f64,
+/// What the user steers.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Hands {
+    /// Steered path of each tool; `None` as long as it follows its own motion.
+    pub(crate) tools: Vec<Option<Course>>,
+    /// Tissue that is pulled without a tool.
+    pub(crate) grip: Option<Grip>,
 }
 
-impl Energies {
-    /// Energy minus that at the beginning, the work since then, and the energy added by cuts.
-    fn balance(&self) -> f64 {
-        self.kinetic + self.elastic - self.first - self.loads - self.tools - self.cuts
-    }
+/// Tissue that the user pulls.
+struct Held {
+    patch: Patch,
+    /// The force (N), and the time (s) at which it changes.
+    force: [f64; 3],
+    until: f64,
+}
+
+/// A moment of the motion of a pane.
+pub(crate) struct PaneMoment {
+    session: Moment,
+    sums: Sums,
 }
 
 impl Pane {
@@ -100,11 +87,11 @@ impl Pane {
     pub(crate) fn of(scene: &SceneValues) -> Result<Self, LiveError> {
         let session = World::new(scene.scene.clone())?.with_values(&scene.values);
         scene.check_files(session.log())?;
-        Self::new(session, scene)
+        Self::new(session)
     }
 
     /// A pane with a session of this scene that has not taken a command yet.
-    pub(crate) fn new(session: World, scene: &SceneValues) -> Result<Self, LiveError> {
+    pub(crate) fn new(session: World) -> Result<Self, LiveError> {
         let body = body(&session).ok_or(LiveError::NoBody)?;
         let tools = body.tools.as_ref().map_or(0, |tools| tools.tools().len());
         let dofs = body.model.dofs();
@@ -112,7 +99,6 @@ impl Pane {
             shown: None,
             session,
             due: Due::default(),
-            first_factors: scene.first_factors.clone(),
             method: (String::new(), Options::new(), 0.0),
             stopped: None,
             error: f64::NAN,
@@ -123,23 +109,11 @@ impl Pane {
             measured: Budget::default(),
             looked: Budget::of_overlap(),
             overlaps: false,
-            before: vec![0.0; dofs],
-            middle: vec![0.0; dofs],
-            force: vec![0.0; dofs],
-            led: vec![None; tools],
-            impulses: vec![[0.0; 3]; tools],
-            received: vec![[0.0; 3]; tools],
-            span: 0.0,
-            saturated: 0,
-            steps: 0,
-            has_stepped: false,
+            sums: Sums::new(dofs, tools),
             ms_per_step: f64::NAN,
-            kinetic: 0.0,
-            load_work: 0.0,
-            energies: Energies::default(),
-            settling: Settling::default(),
+            held: None,
+            is_pulled: false,
         };
-        pane.give_first_factors()?;
         pane.given = pane.of_scene();
         let (id, options) = pane.given.clone();
         pane.method = (id, options, pane.session.dt());
@@ -290,19 +264,15 @@ impl Pane {
     pub(crate) fn reset(&mut self) -> Result<(), CommandError> {
         self.due.clear();
         self.session.command(Command::Reset)?;
-        self.give_first_factors()?;
         self.given = self.of_scene();
         self.stopped = None;
         (self.error, self.lag) = (f64::NAN, 0.0);
         self.measured = Budget::default();
         (self.looked, self.overlaps) = (Budget::of_overlap(), false);
-        self.impulses.fill([0.0; 3]);
-        self.led.fill(None);
-        (self.span, self.saturated, self.steps) = (0.0, 0, 0);
-        (self.energies, self.settling) = (Energies::default(), Settling::default());
-        self.settling.disturbed(self.session.t());
-        self.has_stepped = false;
-        self.fit();
+        let (dofs, tools) = (self.session.state().u.len(), self.sums.led.len());
+        self.sums = Sums::new(dofs, tools);
+        self.sums.settling.disturbed(self.session.t());
+        (self.held, self.is_pulled) = (None, false);
         self.take_first_energy();
         let applied = self.apply(&self.method.clone());
         if applied.is_err() {
@@ -313,30 +283,33 @@ impl Pane {
         applied
     }
 
-    /// Sets the initial factors of loads. This is done before a method is chosen, which must support them.
-    fn give_first_factors(&mut self) -> Result<(), CommandError> {
-        let mut factors = self.first_factors.iter().cloned();
-        factors.try_for_each(|(load, factor)| {
-            self.session.command(Command::LoadFactor { load, factor })
-        })
-    }
-
     fn take_first_energy(&mut self) {
         let state = self.session.state();
         let energy = self.session.body().system().energy(&state.u, &state.v);
-        self.kinetic = energy.as_ref().map_or(0.0, |energy| energy.kinetic);
-        self.load_work = 0.0;
-        self.energies.first = energy.map_or(0.0, Energy::total);
+        self.sums.kinetic = energy.as_ref().map_or(0.0, |energy| energy.kinetic);
+        self.sums.load_work = 0.0;
+        self.sums.energies.first = energy.map_or(0.0, Energy::total);
     }
 
-    /// Resizes stored vectors to the length of the state, which a cut or a reset changes.
-    fn fit(&mut self) {
-        let u = &self.session.state().u;
-        if self.before.len() != u.len() {
-            self.before.clone_from(u);
-            self.middle.clone_from(u);
-            self.force.resize(u.len(), 0.0);
+    /// The present moment of its motion.
+    pub(crate) fn moment(&self) -> PaneMoment {
+        PaneMoment {
+            session: self.session.moment(),
+            sums: self.sums.clone(),
         }
+    }
+
+    /// Goes back to a moment since its last reset and its last change of method; commands that wait are dropped.
+    pub(crate) fn go_back(&mut self, to: &PaneMoment) -> Result<(), RestoreError> {
+        self.session.go_back(&to.session)?;
+        self.sums.clone_from(&to.sums);
+        self.due.clear();
+        self.stopped = None;
+        (self.error, self.lag) = (f64::NAN, 0.0);
+        self.held = None;
+        self.is_pulled = self.session.inputs().forces().next().is_some();
+        self.sums.settling.disturbed(self.session.t());
+        Ok(())
     }
 
     /// Adds a command that takes effect with the first step from a simulated time (s) on. A stopped pane takes no more
@@ -358,7 +331,7 @@ impl Pane {
         let Some(command) = self.due.next_until(t + SLACK * self.session.dt()) else {
             return Ok(false);
         };
-        self.settling.disturbed(t);
+        self.sums.settling.disturbed(t);
         self.session.command(command).map(|()| true)
     }
 
@@ -373,7 +346,7 @@ impl Pane {
     pub(crate) fn follow(
         &mut self,
         until: f64,
-        hands: &[Option<Course>],
+        hands: &Hands,
         may: impl Fn() -> bool,
     ) -> Option<String> {
         let mut refused = None;
@@ -392,48 +365,125 @@ impl Pane {
         refused
     }
 
-    fn step(&mut self, hands: &[Option<Course>]) -> Result<(), String> {
+    fn step(&mut self, hands: &Hands) -> Result<(), String> {
         let (t, dt) = (self.session.t(), self.session.dt());
-        for (tool, hand) in self.session.tools().zip(hands) {
+        self.pull(hands.grip.as_ref(), t, dt)
+            .map_err(|error| error.to_string())?;
+        for (tool, hand) in self.session.tools().zip(&hands.tools) {
             let Some(hand) = hand else {
                 continue;
             };
             let pose = hand.at(t + dt);
-            if self.led[tool.index()] == Some(pose) {
+            if self.sums.led[tool.index()] == Some(pose) {
                 continue;
             }
             let [x, y, z, a, b, c] = pose;
-            self.led[tool.index()] = Some(pose);
-            self.settling.disturbed(t);
+            self.sums.led[tool.index()] = Some(pose);
+            self.sums.settling.disturbed(t);
             let steered = self.session.steer(tool, [x, y, z], [a, b, c]);
             steered.map_err(|error| error.to_string())?;
         }
-        self.before.copy_from_slice(&self.session.state().u);
+        self.sums.before.copy_from_slice(&self.session.state().u);
         self.receive();
         let begun = Instant::now();
         let stepped = self.session.step();
-        self.fit();
+        self.sums.fit(&self.session.state().u);
         let report = stepped.map_err(|error| error.to_string())?;
         if let Some(change) = self.session.change() {
-            self.before.copy_from_slice(&change.after.u);
-            self.settling.disturbed(t);
+            self.sums.before.copy_from_slice(&change.after.u);
+            self.sums.settling.disturbed(t);
         }
         let ms = 1e3 * begun.elapsed().as_secs_f64();
         self.ms_per_step = match self.ms_per_step.is_nan() {
             true => ms,
             false => 0.95 * self.ms_per_step + 0.05 * ms,
         };
-        self.saturated += report.saturated;
-        self.steps += 1;
-        self.has_stepped = true;
-        self.span += dt;
+        self.sums.saturated += report.saturated;
+        self.sums.steps += 1;
+        self.sums.has_stepped = true;
+        self.sums.span += dt;
         self.look(dt);
         Ok(())
     }
 
+    /// Pulls the tissue before a step of `dt` from `t` (s) on.
+    fn pull(&mut self, grip: Option<&Grip>, t: f64, dt: f64) -> Result<(), CommandError> {
+        let Some(grip) = grip else {
+            self.held = None;
+            if std::mem::take(&mut self.is_pulled) {
+                self.session.command(Command::Forces(Vec::new()))?;
+            }
+            return Ok(());
+        };
+        self.sums.settling.disturbed(t);
+        let Some(body) = body(&self.session) else {
+            return Ok(());
+        };
+        if self
+            .held
+            .as_ref()
+            .is_none_or(|held| !held.patch.is_of(grip, body))
+        {
+            self.held = Patch::of(grip, body).map(|patch| Held {
+                patch,
+                force: [0.0; 3],
+                until: t,
+            });
+        }
+        let Some(held) = &mut self.held else {
+            return Ok(());
+        };
+        if t >= held.until - SLACK * dt {
+            held.until = t + HELD;
+            held.force = grip.force(t + dt, held.patch.place(&self.session, body));
+            let shares = held.patch.shares.iter();
+            let forces = shares.map(|(node, share)| (*node, held.force.map(|force| share * force)));
+            let forces = Command::Forces(forces.collect());
+            self.is_pulled = true;
+            self.session.command(forces)?;
+        }
+        for (pulled, force) in self.sums.pulled.iter_mut().zip(held.force) {
+            *pulled += dt * force;
+        }
+        Ok(())
+    }
+
+    /// A grip at a point of its surface.
+    ///
+    /// # Errors
+    /// A sentence for a point that it does not have, and for tissue that does not move.
+    pub(crate) fn grip(&self, number: u64, point: usize) -> Result<Grip, String> {
+        let (body, surface) = self.seen_body().ok_or("nothing is shown yet")?;
+        let node = *surface
+            .nodes
+            .get(point)
+            .ok_or_else(|| format!("there is no point {point}"))?;
+        let mut grip = Grip::at(number, body, node, (self.t(), [0.0; 3]));
+        let patch = Patch::of(&grip, body).ok_or("this tissue is fixed: pull it elsewhere")?;
+        let place = patch.place(&self.session, body);
+        grip = Grip::at(number, body, node, (self.t(), place));
+        Ok(grip)
+    }
+
+    /// The largest stiffness (N/m) of the spring of a grip on its body.
+    ///
+    /// # Errors
+    /// A sentence if its method takes no forces that are not known in advance.
+    pub(crate) fn stiffness_of(&self, grip: &Grip) -> Result<f64, String> {
+        let body = body(&self.session);
+        let Some((body, patch)) = body.and_then(|body| Some((body, Patch::of(grip, body)?))) else {
+            return Ok(f64::INFINITY);
+        };
+        let force = |(node, share): &(u32, f64)| (*node, [0.0, 0.0, f64::EPSILON * share]);
+        let forces = Command::Forces(patch.shares.iter().map(force).collect());
+        let checked = self.session.check(&forces);
+        checked.map_err(|error| error.to_string())?;
+        Ok(patch.stiffness(body, HELD.max(self.dt())))
+    }
+
     /// Records the impulses that tools have received before a step.
     fn receive(&mut self) {
-        for (tool, received) in self.session.tools().zip(&mut self.received) {
+        for (tool, received) in self.session.tools().zip(&mut self.sums.received) {
             let report = self.session.tool_report(tool);
             *received = report.map_or([0.0; 3], |report| report.impulse);
         }
@@ -442,7 +492,7 @@ impl Pane {
     /// Adds a step to impulses, work and other sums.
     fn look(&mut self, dt: f64) {
         let (system, state) = (self.session.body().system(), self.session.state());
-        let all = self.impulses.iter_mut().zip(&self.received);
+        let all = self.sums.impulses.iter_mut().zip(&self.sums.received);
         for (tool, (impulse, before)) in self.session.tools().zip(all) {
             let report = self.session.tool_report(tool);
             let after = report.map_or(*before, |report| report.impulse);
@@ -450,18 +500,24 @@ impl Pane {
                 impulse[axis] += after[axis] - before[axis];
             }
         }
-        for ((middle, before), u) in self.middle.iter_mut().zip(&self.before).zip(&state.u) {
+        for ((middle, before), u) in self
+            .sums
+            .middle
+            .iter_mut()
+            .zip(&self.sums.before)
+            .zip(&state.u)
+        {
             *middle = 0.5 * (before + u);
         }
         let when = LoadTime::at(state.t() - 0.5 * dt).under(self.session.inputs());
-        system.external_force(when, &self.middle, &mut self.force);
-        let moved = self.before.iter().zip(&state.u).zip(&self.force);
-        self.load_work += moved
+        system.external_force(when, &self.sums.middle, &mut self.sums.force);
+        let moved = self.sums.before.iter().zip(&state.u).zip(&self.sums.force);
+        self.sums.load_work += moved
             .map(|((before, after), force)| force * (after - before))
             .sum::<f64>();
         let kinetic = 0.5 * weighted_dot(system.mass(), &state.v, &state.v);
-        self.kinetic = kinetic;
-        self.settling.step(state.t(), dt, kinetic);
+        self.sums.kinetic = kinetic;
+        self.sums.settling.step(state.t(), dt, kinetic);
     }
 
     /// Computes the energies; the elastic one halfway through the last step, the time of its velocity.
@@ -471,13 +527,13 @@ impl Pane {
         }
         let begun = Instant::now();
         let state = self.session.state();
-        let u = match self.has_stepped {
-            true => &self.middle,
+        let u = match self.sums.has_stepped {
+            true => &self.sums.middle,
             false => &state.u,
         };
         let energy = self.session.body().system().energy(u, &state.v);
-        let energies = &mut self.energies;
-        (energies.kinetic, energies.loads) = (self.kinetic, self.load_work);
+        let energies = &mut self.sums.energies;
+        (energies.kinetic, energies.loads) = (self.sums.kinetic, self.sums.load_work);
         energies.tools = self.session.work_of_tools();
         energies.cuts = self.session.cuts().map_or(0.0, CutTotals::energy);
         energies.elastic = energy.map_or(f64::NAN, |energy| energy.elastic);
@@ -524,7 +580,7 @@ impl Pane {
     pub(crate) fn write(
         &mut self,
         frame: &mut FrameWriter,
-        (uncut, hands): (&Surface, &[Option<Course>]),
+        (uncut, hands): (&Surface, &Hands),
         field: Field,
         anew: bool,
     ) {
@@ -543,45 +599,54 @@ impl Pane {
         };
         let state = self.session.state();
         let tools = body.and_then(|body| body.tools.as_deref());
-        let saturated = match self.steps * state.v.len() as u64 {
+        let saturated = match self.sums.steps * state.v.len() as u64 {
             0 => 0.0,
-            all => self.saturated as f64 / all as f64,
+            all => self.sums.saturated as f64 / all as f64,
         };
-        let reports = (0..self.impulses.len()).filter_map(|tool| Some(tools?.report(state, tool)));
+        let reports =
+            (0..self.sums.impulses.len()).filter_map(|tool| Some(tools?.report(state, tool)));
         let contacts: usize = reports.map(|report| report.contacts).sum();
         let head = PaneHead {
             step: self.session.steps() as u64,
             t,
             dt: self.session.dt(),
-            kinetic: self.energies.kinetic,
-            elastic: self.energies.elastic,
-            tool_work: self.energies.tools,
-            load_work: self.energies.loads,
+            kinetic: self.sums.energies.kinetic,
+            elastic: self.sums.energies.elastic,
+            tool_work: self.sums.energies.tools,
+            load_work: self.sums.energies.loads,
             ms_per_step: self.ms_per_step,
             error: self.error,
             lag: self.lag,
             saturated,
-            settling: self.settling.ratio(),
+            settling: self.sums.settling.ratio(),
             lights: colours,
             reasons,
             inverted: shown.inverted(),
             contacts: contacts as u32,
-            balance: self.energies.balance(),
+            balance: self.sums.energies.balance(),
             nodes: body.map_or(0, |body| body.mesh.points.len()) as u32,
             tets: body.map_or(0, |body| body.mesh.tets.len()) as u32,
             cuts,
+            pull: match (&self.held, self.sums.span > 0.0) {
+                (Some(_), true) => self.sums.pulled.map(|impulse| impulse / self.sums.span),
+                _ => [0.0; 3],
+            },
+            grip: match (&self.held, body) {
+                (Some(held), Some(body)) => held.patch.place(&self.session, body),
+                _ => [f64::NAN; 3],
+            },
         };
-        frame.pane(&head, shown.surface.points.len(), self.impulses.len());
-        let all = self.session.tools().zip(&mut self.impulses);
-        for ((tool, impulse), hand) in all.zip(hands) {
+        frame.pane(&head, shown.surface.points.len(), self.sums.impulses.len());
+        let all = self.session.tools().zip(&mut self.sums.impulses);
+        for ((tool, impulse), hand) in all.zip(&hands.tools) {
             let (Some(tools), Some(report)) = (tools, self.session.tool_report(tool)) else {
                 continue;
             };
             let pose = self.session.tool_pose(tool);
             let ([x, y, z], [a, b, c]) = (pose.position(), pose.rotation_vector());
             let own = [x, y, z, a, b, c];
-            let force = match self.span > 0.0 {
-                true => impulse.map(|impulse| impulse / self.span),
+            let force = match self.sums.span > 0.0 {
+                true => impulse.map(|impulse| impulse / self.sums.span),
                 false => report.force,
             };
             let shape = &tools.tools()[tool.index()].shape;
@@ -594,7 +659,8 @@ impl Pane {
             });
             *impulse = [0.0; 3];
         }
-        (self.span, self.saturated, self.steps) = (0.0, 0, 0);
+        (self.sums.span, self.sums.saturated, self.sums.steps) = (0.0, 0, 0);
+        self.sums.pulled = [0.0; 3];
         frame.points(shown.places(), shown.values());
     }
 
@@ -624,21 +690,21 @@ impl Pane {
     }
 
     fn lights(&self) -> [Light; 3] {
-        let bounded = match self.has_stepped {
+        let bounded = match self.sums.has_stepped {
             false => Light::GREY,
             true => Bounds {
                 stopped: self.stopped.is_some(),
-                is_saturated: self.saturated > 0,
+                is_saturated: self.sums.saturated > 0,
                 inverted: self.shown.as_ref().map_or(0, Shown::inverted),
                 overlaps: self.overlaps,
-                balance: self.energies.balance(),
-                scale: self.energies.scale,
+                balance: self.sums.energies.balance(),
+                scale: self.sums.energies.scale,
             }
             .light(),
         };
         [
             bounded,
-            self.settling.light(self.session.t()),
+            self.sums.settling.light(self.session.t()),
             error_light(self.error),
         ]
     }
@@ -707,7 +773,7 @@ impl Pane {
 
     /// Displacement (m) before the last step.
     pub(crate) fn u_before(&self) -> &[f64] {
-        &self.before
+        &self.sums.before
     }
 
     /// Position (m) and rotation vector (rad) of a tool now.
@@ -716,6 +782,13 @@ impl Pane {
         let pose = id.map_or(Pose::identity(), |id| self.session.tool_pose(id));
         let ([x, y, z], [a, b, c]) = (pose.position(), pose.rotation_vector());
         [x, y, z, a, b, c]
+    }
+
+    /// Distance (m) of the farthest point of a tool from its place; 0 without one.
+    pub(crate) fn reach_of(&self, tool: usize) -> f64 {
+        let tool = self.tools().and_then(|tools| tools.tools().get(tool));
+        let reach = tool.map_or(0.0, |tool| tool.shape.reach());
+        if reach.is_finite() { reach } else { 0.0 }
     }
 
     /// The tools that touch its body.

@@ -9,9 +9,8 @@ use sinew_scene::SceneBody;
 use sinew_world::Command;
 
 use super::common::Common;
-use super::course::Course;
 use super::due::Due;
-use super::pane::Pane;
+use super::pane::{Hands, Pane};
 use crate::scene_values::SceneValues;
 
 /// The method of the trusted run, which takes short steps.
@@ -35,7 +34,7 @@ struct Span {
     /// Its end (s), and its length (s): a whole number of the trusted run's steps.
     until: f64,
     length: f64,
-    hands: Vec<Option<Course>>,
+    hands: Hands,
     commands: Vec<(f64, Command)>,
     looks: Vec<Look>,
 }
@@ -139,7 +138,7 @@ impl Trusted {
         &mut self,
         until: f64,
         tick: f64,
-        hands: &[Option<Course>],
+        hands: &Hands,
         panes: &[Pane],
     ) -> Result<(), String> {
         let mut looks = Vec::new();
@@ -163,7 +162,7 @@ impl Trusted {
         let span = Span {
             until,
             length: tick,
-            hands: hands.to_vec(),
+            hands: hands.clone(),
             commands: self.commands.take(),
             looks,
         };
@@ -247,7 +246,7 @@ impl Follower {
         self.go(span.until, &span.hands)
     }
 
-    fn go(&mut self, until: f64, hands: &[Option<Course>]) -> Result<(), String> {
+    fn go(&mut self, until: f64, hands: &Hands) -> Result<(), String> {
         let is_over = Arc::clone(&self.is_over);
         let may = || !is_over.load(Ordering::Relaxed);
         let refused = self.pane.follow(until, hands, may);

@@ -26,6 +26,22 @@ pub(crate) enum Order {
         /// Rotation vector (rad).
         rotation: [f64; 3],
     },
+    /// A grip of the tissue around a point of a pane's surface, with a spring.
+    Grip {
+        /// The pane, from 0.
+        pane: usize,
+        /// The point.
+        point: usize,
+        /// The surfaces that have this point.
+        epoch: u32,
+    },
+    /// A place to which the grip is pulled.
+    Pull {
+        /// The place (m).
+        to: [f64; 3],
+    },
+    /// The end of the grip.
+    LetGo,
     /// A load of the scene times a factor.
     Load {
         /// Its name.

@@ -40,6 +40,15 @@ pub(crate) enum Event {
         /// The reason.
         reason: String,
     },
+    /// A return of all panes to a moment before one of them failed.
+    WentBack {
+        /// The pane that failed.
+        pane: usize,
+        /// Time (s) by which they went back.
+        by: f64,
+        /// The reason of the failure.
+        reason: String,
+    },
     /// The tools changed.
     Tools {
         /// All of them.
@@ -88,8 +97,8 @@ pub(crate) struct Scenery {
     pub(crate) tools: Vec<ToolFacts>,
     /// The loads that can be scaled.
     pub(crate) loads: Vec<LoadFacts>,
-    /// Three loads with which the user pulls.
-    pub(crate) hand: Option<HandFacts>,
+    /// Largest speed (m/s) of steered tools.
+    pub(crate) hand_speed: f64,
     /// Material parameters for Hertz's formula, if the body is of one isotropic material.
     pub(crate) hertz: Option<Hertz>,
 }
@@ -125,19 +134,6 @@ pub(crate) struct LoadFacts {
     pub(crate) name: String,
     /// Description of it.
     pub(crate) what: String,
-}
-
-/// Three loads along x, y and z with which the user pulls at a point.
-#[derive(Clone, Debug, Serialize)]
-pub(crate) struct HandFacts {
-    /// The loads, by their indices in the list of loads.
-    pub(crate) loads: [usize; 3],
-    /// Force (N) of each for a factor of 1.
-    pub(crate) unit: f64,
-    /// Index of the point of the surface at which it pulls.
-    pub(crate) point: usize,
-    /// Sentence about it.
-    pub(crate) note: String,
 }
 
 /// Material parameters for Hertz's formula.

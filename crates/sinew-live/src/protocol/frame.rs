@@ -21,7 +21,7 @@ pub(crate) const APPLIED_AT: usize = 8;
 const HEAD: usize = 32;
 
 /// Number of bytes of the numbers of a pane.
-const PANE: usize = 176;
+const PANE: usize = 224;
 
 /// Number of bytes of a tool.
 const TOOL: usize = 136;
@@ -131,6 +131,10 @@ pub(crate) struct PaneHead {
     pub(crate) tets: u32,
     /// Totals of all cuts.
     pub(crate) cuts: CutHead,
+    /// Force (N) with which the user pulls the tissue without a tool, the mean since the last picture.
+    pub(crate) pull: [f64; 3],
+    /// The place (m) of that tissue; NaN if there is none.
+    pub(crate) grip: [f64; 3],
 }
 
 /// Totals of all cuts of a body since the beginning.
@@ -226,6 +230,8 @@ impl FrameWriter {
         for count in [head.nodes, head.tets, new_nodes, pieces, removed, changes] {
             self.0.extend(count.to_le_bytes());
         }
+        self.numbers(&head.pull);
+        self.numbers(&head.grip);
         debug_assert_eq!(self.0.len(), begins + PANE);
     }
 
@@ -290,6 +296,7 @@ mod tests {
                     changes: 4,
                     ..CutHead::default()
                 },
+                grip: [0.0, 0.0, 2.5],
                 ..PaneHead::default()
             };
             writer.pane(&numbers, 3, 1);
@@ -312,6 +319,7 @@ mod tests {
             assert_eq!([at + 112, at + 116].map(u32_at), [3, 1]);
             assert_eq!([at + 120, at + 128].map(f64_at), [-0.5, 0.75]);
             assert_eq!(u32_at(at + 172), 4);
+            assert_eq!(f64_at(at + 216), 2.5);
             assert_eq!(f64_at(at + PANE + 72), 0.25);
             assert_eq!(f32_at(at + PANE + TOOL), pane as f32);
             assert_eq!(f32_at(at + PANE + TOOL + 36), 4.0);

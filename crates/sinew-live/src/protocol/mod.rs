@@ -10,8 +10,8 @@ mod frame;
 
 pub(crate) use command::{Field, Order, Said, Shape};
 pub(crate) use event::{
-    Event, HandFacts, Hertz, IntegratorFacts, LoadFacts, NumberFacts, OptionFacts, PaneFacts,
-    PartFacts, Scenery, Stability, StepFacts, ToolFacts,
+    Event, Hertz, IntegratorFacts, LoadFacts, NumberFacts, OptionFacts, PaneFacts, PartFacts,
+    Scenery, Stability, StepFacts, ToolFacts,
 };
 pub(crate) use frame::{
     APPLIED_AT, CutHead, FrameHead, FrameWriter, NONE, PaneHead, SurfaceShape, ToolHead, is_frame,

@@ -45,14 +45,14 @@ pub(crate) fn settings(text: &str) -> Settings {
             integrator: Some("cnn-stabilised".to_owned()),
             dt: None,
         },
-        hand: None,
+        hand_speed: None,
         port: 0,
     }
 }
 
 /// Offset of the first pane in a picture, and the size of its numbers and of a tool.
 pub(crate) const PANE: usize = 32;
-pub(crate) const NUMBERS: usize = 176;
+pub(crate) const NUMBERS: usize = 224;
 pub(crate) const TOOL: usize = 136;
 
 /// A served page, which ends with this value.

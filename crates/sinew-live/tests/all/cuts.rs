@@ -234,18 +234,22 @@ fn what_is_taken_away_takes_its_energy_along() {
 }
 
 #[test]
-fn a_cut_that_leaves_nothing_stops_its_pane_with_a_sentence_and_a_reset_goes_on() {
+fn a_cut_that_leaves_nothing_is_undone_with_a_sentence() {
     let text = scene().replace("[[fixed]]\ngroup = \"bottom\"\n", "");
-    let page = open(&text.replace("[cutting]", "[cutting]\npieces = \"remove\""));
+    let mut page = open(&text.replace("[cutting]", "[cutting]\npieces = \"remove\""));
     let mut client = page.connect();
     client.say(&format!(r#"{{"id":1,{CUT}}}"#));
-    let reason = client.event("stopped")["reason"].to_string();
+    let event = client.event("went_back");
+    let reason = event["reason"].to_string();
     assert!(reason.contains("nothing that moves is left"), "{reason}");
-    picture(&mut client, |_| true);
-    client.say(r#"{"id":2,"do":"reset"}"#);
+    let by = event["by"].as_f64().unwrap();
+    assert!((0.0..0.3).contains(&by), "{event}");
+    let t = time(&picture(&mut client, |picture| applied(picture) >= 1));
     picture(&mut client, |picture| {
-        applied(picture) >= 2 && time(picture) > 0.05
+        time(picture) > t + 0.3 && changes(picture, PANE) == 0
     });
+    let log = page.end().logs[0].to_text();
+    assert!(!log.contains("cut"), "{log}");
 }
 
 #[test]

@@ -1,7 +1,5 @@
 //! Loads, and methods that must know them in advance.
 
-use sinew_live::{Hand, Live, PaneChoice, Settings};
-
 use crate::common::{CUBE, Page, applied, settings, time};
 
 const LOADS: &str = r#"
@@ -18,56 +16,6 @@ name = "z"
 group = "top"
 traction = [0.0, 0.0, 1.0]
 "#;
-
-fn modal() -> PaneChoice {
-    PaneChoice {
-        integrator: Some("modal".to_owned()),
-        dt: None,
-    }
-}
-
-/// Two panes at which the user pulls, with this second pane.
-fn pulled(second: PaneChoice) -> Settings {
-    Settings {
-        panes: vec![PaneChoice::default(), second],
-        hand: Some(Hand {
-            loads: ["x", "y", "z"].map(str::to_owned),
-            unit: 1.0,
-            at: [0.1; 3],
-            note: String::new(),
-        }),
-        ..settings(&format!("{CUBE}{LOADS}"))
-    }
-}
-
-#[test]
-fn a_hand_beside_a_method_that_has_to_know_loads_beforehand_is_refused_at_once() {
-    let error = Live::open(pulled(modal())).err().unwrap().to_string();
-    assert!(
-        error.contains("loads that are known before the run"),
-        "{error}"
-    );
-    let page = Page::of(Settings {
-        panes: vec![PaneChoice::default()],
-        second: modal(),
-        ..pulled(PaneChoice::default())
-    });
-    let mut client = page.connect();
-    for order in [
-        r#""do":"panes","count":2"#,
-        r#""do":"integrator","pane":0,"name":"modal""#,
-    ] {
-        // Also before the first step after a reset.
-        client.say(r#"{"id":1,"do":"pause","on":true}"#);
-        client.say(r#"{"id":2,"do":"reset"}"#);
-        client.say(&format!(r#"{{"id":3,{order}}}"#));
-        let reason = client.event("refused")["reason"].to_string();
-        assert!(
-            reason.contains("loads that are known before the run"),
-            "{reason}"
-        );
-    }
-}
 
 #[test]
 fn a_factor_that_the_method_does_not_take_is_refused_and_stays_as_it_was() {

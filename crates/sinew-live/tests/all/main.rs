@@ -10,3 +10,4 @@ mod cuts;
 mod files;
 mod loads;
 mod pauses;
+mod pulls;

@@ -67,7 +67,8 @@ impl Shape {
     }
 
     /// The radius (m) of a ball about the tool's origin that contains all parts but planes.
-    pub(crate) fn reach(&self) -> f64 {
+    #[must_use]
+    pub fn reach(&self) -> f64 {
         let reaches = self.parts.iter().filter_map(|part| {
             let reach = part.convex.reach()?;
             Some(length(part.pose.position()) + reach)

@@ -4,7 +4,7 @@ mod recording;
 
 use std::path::PathBuf;
 
-use sinew_live::{Hand, Live, PaneChoice, Settings};
+use sinew_live::{Live, PaneChoice, Settings};
 use sinew_scene::SceneSource;
 use sinew_scene::output::{Voice, complain};
 
@@ -13,7 +13,7 @@ use super::Failure;
 use super::interruption::Interruption;
 use super::scene_with::Values;
 
-/// The default scene: the paper's cube, whose top the user pulls.
+/// The default scene: the paper's cube.
 const CUBE: &str = include_str!("live/cube.toml");
 
 /// The methods that run side by side without a scene: the paper's, and one that is stable with its step.
@@ -30,6 +30,9 @@ pub(crate) struct Arguments {
     /// A second pane next to the first, with this integrator and the same commands
     #[arg(long, value_name = "ID")]
     beside: Option<String>,
+    /// The largest speed of tools that you lead, in m/s [default: a tenth of that of waves in the body]
+    #[arg(long, value_name = "M/S", value_parser = speed, allow_hyphen_values = true)]
+    hand_speed: Option<f64>,
     /// At the end write what `sinew run --out` writes: the motion since the last reset, into DIR, and that of a second pane into DIR-second
     #[arg(long, value_name = "DIR")]
     record: Option<PathBuf>,
@@ -44,13 +47,13 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         integrator: Some(id.to_owned()),
         dt: None,
     };
-    let (scene, hand, mut panes) = match &arguments.scene {
-        Some(path) => (arguments.values.load(path)?, None, vec![own]),
+    let (scene, mut panes) = match &arguments.scene {
+        Some(path) => (arguments.values.load(path)?, vec![own]),
         None => {
             let scene = arguments
                 .values
                 .apply(&SceneSource::new("cube.toml", CUBE))?;
-            (scene, Some(hand()), SIDE_BY_SIDE.map(beside).to_vec())
+            (scene, SIDE_BY_SIDE.map(beside).to_vec())
         }
     };
     if let Some(id) = &arguments.beside {
@@ -68,7 +71,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         values: arguments.values.assignments(),
         panes,
         second: second.unwrap_or_else(|| beside(SIDE_BY_SIDE[1])),
-        hand,
+        hand_speed: arguments.hand_speed,
         port: arguments.port,
     })?;
     if let Some(recording) = &recording {
@@ -91,13 +94,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
 }
 
-/// The loads with which the user pulls in the default scene.
-fn hand() -> Hand {
-    Hand {
-        loads: ["hand-x", "hand-y", "hand-z"].map(str::to_owned),
-        unit: 1.0,
-        at: [0.1, 0.1, 0.2],
-        note: "You pull at the middle of the top with a force, since cnn does not support tools."
-            .to_owned(),
-    }
+/// A speed (m/s) of the command line.
+fn speed(text: &str) -> Result<f64, String> {
+    let speed = text.parse::<f64>().ok();
+    let expected = || "expected a speed in m/s above 0, at most 100, such as 0.2".to_owned();
+    speed
+        .filter(|speed| *speed > 0.0 && *speed <= 100.0)
+        .ok_or_else(expected)
 }

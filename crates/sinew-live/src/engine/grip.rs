@@ -1,0 +1,199 @@
+//! Tissue that the user pulls without a tool.
+
+use std::sync::Arc;
+
+use sinew_mesh::TetMesh;
+use sinew_mesh::vector::{length, sub};
+use sinew_scene::BodyModel;
+use sinew_world::World;
+
+use super::course::{Course, Limits};
+use crate::picture::Surface;
+
+/// Simulated time (s) for which a force stays constant.
+pub(super) const HELD: f64 = 0.004;
+
+/// Largest number of nodes of a patch.
+const MOST_NODES: usize = 16;
+
+/// Radius of a patch over the mean edge of the surface at its middle.
+const RADIUS: f64 = 1.5;
+
+/// Share of the stiffness beyond which a spring that knows its length only every few milliseconds is unstable.
+const STABLE: f64 = 0.2;
+
+/// A spring from the tissue to the user's hand.
+#[derive(Clone, Debug)]
+pub(crate) struct Grip {
+    /// Number that no earlier grip had.
+    number: u64,
+    /// The node in the middle, by its number in the body with its copies, and in the uncut mesh.
+    node: u32,
+    origin: u32,
+    /// Stiffness (N/m).
+    stiffness: f64,
+    /// The path of the hand.
+    course: Course,
+}
+
+impl Grip {
+    /// A grip at a node of a body, at its place (m) at a time (s).
+    pub(super) fn at(
+        number: u64,
+        body: &BodyModel,
+        node: u32,
+        (t, place): (f64, [f64; 3]),
+    ) -> Self {
+        let [x, y, z] = place;
+        Self {
+            number,
+            node: number_in_body(body, node),
+            origin: origin(body, node),
+            stiffness: f64::INFINITY,
+            course: Course::at_rest(t, [x, y, z, 0.0, 0.0, 0.0]),
+        }
+    }
+
+    /// Makes the spring no stiffer than this (N/m).
+    pub(super) fn soften(&mut self, most: f64) {
+        self.stiffness = self.stiffness.min(most);
+    }
+
+    /// Moves the hand to a place (m) from a time (s) on.
+    pub(super) fn pull(&mut self, t: f64, [x, y, z]: [f64; 3], limits: Limits) {
+        self.course.go(t, [x, y, z, 0.0, 0.0, 0.0], limits);
+    }
+
+    pub(super) fn forget_before(&mut self, t: f64) {
+        self.course.forget_before(t);
+    }
+
+    /// The force (N) on tissue at a place (m), at a time (s).
+    pub(super) fn force(&self, t: f64, place: [f64; 3]) -> [f64; 3] {
+        let hand = self.course.at(t);
+        [0, 1, 2].map(|axis| self.stiffness * (hand[axis] - place[axis]))
+    }
+}
+
+/// The nodes of a body that a grip holds.
+pub(super) struct Patch {
+    number: u64,
+    mesh: Arc<TetMesh>,
+    /// Nodes with their shares of the force, which add up to 1.
+    pub(super) shares: Vec<(u32, f64)>,
+    radius: f64,
+}
+
+impl Patch {
+    /// The patch of a grip on a body; `None` where all of it is fixed, or was removed.
+    pub(super) fn of(grip: &Grip, body: &BodyModel) -> Option<Self> {
+        let mesh = &body.mesh;
+        let nodes = 0..mesh.points.len() as u32;
+        let mut same = nodes.filter(|node| origin(body, *node) == grip.origin);
+        let first = same.clone().next();
+        let middle = same
+            .find(|node| number_in_body(body, *node) == grip.node)
+            .or(first)?;
+        let surface = Surface::of(mesh);
+        let corners = |triangle: &[u32; 3]| triangle.map(|point| surface.nodes[point as usize]);
+        let triangles: Vec<[u32; 3]> = surface.triangles.iter().map(corners).collect();
+        let away = |node: u32| {
+            length(sub(
+                mesh.points[node as usize],
+                mesh.points[middle as usize],
+            ))
+        };
+        let beside = triangles
+            .iter()
+            .filter(|triangle| triangle.contains(&middle))
+            .flatten();
+        let (sum, count) = beside
+            .filter(|node| **node != middle)
+            .fold((0.0, 0), |(sum, count), node| {
+                (sum + away(*node), count + 1)
+            });
+        let radius = RADIUS * sum / f64::from(count.max(1));
+        // Over the surface, so that it stays on one side of a cut.
+        let mut found = vec![middle];
+        let mut seen = 0;
+        while seen < found.len() {
+            let node = found[seen];
+            seen += 1;
+            for corner in triangles
+                .iter()
+                .filter(|triangle| triangle.contains(&node))
+                .flatten()
+            {
+                if away(*corner) < radius && !found.contains(corner) {
+                    found.push(*corner);
+                }
+            }
+        }
+        found.retain(|node| body.model.cell_of_node(*node).is_some());
+        found.sort_by(|a, b| away(*a).total_cmp(&away(*b)));
+        found.truncate(MOST_NODES);
+        let weight = |node: u32| 1.0 - 0.9 * (away(node) / radius).powi(2);
+        let all: f64 = found.iter().map(|node| weight(*node)).sum();
+        let shares: Vec<(u32, f64)> = found
+            .iter()
+            .map(|node| (*node, weight(*node) / all))
+            .collect();
+        (!shares.is_empty()).then(|| Self {
+            number: grip.number,
+            mesh: Arc::clone(mesh),
+            shares,
+            radius,
+        })
+    }
+
+    /// True if it is that of a grip on a body.
+    pub(super) fn is_of(&self, grip: &Grip, body: &BodyModel) -> bool {
+        self.number == grip.number && Arc::ptr_eq(&self.mesh, &body.mesh)
+    }
+
+    /// Its mean place (m).
+    pub(super) fn place(&self, session: &World, body: &BodyModel) -> [f64; 3] {
+        let u = &session.state().u;
+        let mut place = [0.0; 3];
+        for (node, share) in &self.shares {
+            let point = body.mesh.points[*node as usize];
+            let cell = body.model.cell_of_node(*node).map(|cell| 3 * cell as usize);
+            for axis in 0..3 {
+                let moved = cell.and_then(|cell| u.get(cell + axis)).copied();
+                place[axis] += share * (point[axis] + moved.unwrap_or(0.0));
+            }
+        }
+        place
+    }
+
+    /// The stiffness (N/m) of a spring for it: about that of the tissue under a stamp of its size, and stable if its
+    /// force changes in steps of this time (s).
+    pub(super) fn stiffness(&self, body: &BodyModel, time: f64) -> f64 {
+        let is_beside = |(_, nodes): &(usize, &[u32; 4])| {
+            self.shares.iter().any(|(node, _)| nodes.contains(node))
+        };
+        let beside = body.mesh.tets.iter().enumerate().filter(is_beside);
+        let moduli = beside.map(|(tet, _)| {
+            let region = body.model.region_of()[tet] as usize;
+            body.problem.regions[region].law.youngs_modulus()
+        });
+        let modulus = moduli.fold(f64::INFINITY, f64::min);
+        let masses = body.model.node_masses();
+        let inverse: f64 = (self.shares.iter())
+            .map(|(node, share)| share * share / masses[*node as usize])
+            .sum();
+        (2.0 * modulus * self.radius).min(STABLE * 4.0 / (inverse * time * time))
+    }
+}
+
+/// Number of a node of a mesh in the body with all its copies.
+fn number_in_body(body: &BodyModel, node: u32) -> u32 {
+    let cut = body.cut.as_ref();
+    cut.map_or(node, |from| from.cut.nodes[node as usize])
+}
+
+/// Number of a node of a mesh, or of the node that it is a copy of, in the uncut mesh.
+fn origin(body: &BodyModel, node: u32) -> u32 {
+    let cut = body.cut.as_ref();
+    cut.map_or(node, |from| from.cut.origins[node as usize])
+}
