@@ -4,6 +4,7 @@ mod bench;
 mod blade;
 mod cdp;
 mod chromium;
+mod drags;
 mod fingers;
 mod hand;
 mod picture;
@@ -31,6 +32,9 @@ pub(crate) struct Arguments {
     /// Seconds of random input, at least 30: memory is compared with its value after 20
     #[arg(long, value_name = "S", default_value_t = 60, value_parser = clap::value_parser!(u64).range(30..))]
     seconds: u64,
+    /// Random drags in ready scenes
+    #[arg(long, value_name = "N", default_value_t = 60)]
+    drags: u32,
     /// A sinew that is built already, instead of a release build of this one
     #[arg(long, value_name = "PROGRAM")]
     sinew: Option<PathBuf>,
@@ -71,6 +75,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     stage::is_set_up(&bench)?;
     fingers::press_pull_and_cut(&bench)?;
     blade::cuts(&bench)?;
+    drags::end_no_session(&bench, arguments.drags)?;
     strangers::are_refused(&bench)?;
     strangers::do_no_harm(&bench)?;
     strangers::ctrl_c_and_taken_port(&bench)?;

@@ -85,7 +85,7 @@ pub(super) struct Patch {
 }
 
 impl Patch {
-    /// The patch of a grip on a body; `None` where all of it is fixed, or was removed.
+    /// The patch of a grip on a body; `None` where its middle is fixed, or was removed.
     pub(super) fn of(grip: &Grip, body: &BodyModel) -> Option<Self> {
         let mesh = &body.mesh;
         let nodes = 0..mesh.points.len() as u32;
@@ -94,6 +94,7 @@ impl Patch {
         let middle = same
             .find(|node| number_in_body(body, *node) == grip.node)
             .or(first)?;
+        body.model.cell_of_node(middle)?;
         let surface = Surface::of(mesh);
         let corners = |triangle: &[u32; 3]| triangle.map(|point| surface.nodes[point as usize]);
         let triangles: Vec<[u32; 3]> = surface.triangles.iter().map(corners).collect();
@@ -138,7 +139,7 @@ impl Patch {
             .iter()
             .map(|node| (*node, weight(*node) / all))
             .collect();
-        (!shares.is_empty()).then(|| Self {
+        Some(Self {
             number: grip.number,
             mesh: Arc::clone(mesh),
             shares,

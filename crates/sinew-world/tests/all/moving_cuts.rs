@@ -115,7 +115,12 @@ fn a_slow_blade_cuts_what_one_cuts_that_is_followed_in_each_step() {
     assert!((100..200).contains(&calls), "followed {calls} times");
     let area = |world: &World| world.cuts().unwrap().report.area;
     assert!(area(&driven) > 0.005 && changes > 2, "{changes}");
-    assert_eq!((area(&followed), own_changes), (area(&driven), changes));
+    assert_eq!(area(&followed), area(&driven));
+    // What is cut within eight steps is one change.
+    assert!(
+        (2..=changes).contains(&own_changes),
+        "{own_changes} of {changes}"
+    );
     // A delay by some steps of 900 of a motion whose size is 1.
     let largest = driven
         .state()
