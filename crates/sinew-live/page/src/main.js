@@ -442,7 +442,7 @@ window.sinew = {
   gripOnPage() {
     const number = picture.panes.length - 1;
     const tool = picture.panes[number].tools[hand.selected];
-    return view.camera.project(tool ? new Vector3(...tool.position) : view.centre, number);
+    return view.camera.project(tool ? new Vector3(...tool.position) : new Vector3(view.centre.x, view.centre.y, view.box.high[2]), number);
   },
   get led() { return hand.tools.map((tool) => hand.target(tool).toArray()); },
   lights(pane = 0) { return [0, 1, 2].map((light) => [colourOfLight(picture.panes[pane], light), reasonOf(light, numberOfReason(picture.panes[pane], light), picture.panes[pane])]); },
