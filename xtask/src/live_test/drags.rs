@@ -34,7 +34,7 @@ const RATES: [f64; 3] = [30.0, 60.0, 144.0];
 /// Longest wait for a picture.
 const PATIENCE: Duration = Duration::from_secs(20);
 
-/// Drags tools, or the tissue where there are none, to random places in the box around the body and beyond it.
+/// Drags tools, or the tissue of scenes without any, to random places in the box around the body and beyond it.
 pub(super) fn end_no_session(bench: &Bench, drags: u32) -> Result<(), Failure> {
     let each = drags.div_ceil(SCENES.len() as u32);
     let mut numbers = Numbers(1);

@@ -59,7 +59,7 @@ pub(crate) struct Pane {
     is_pulled: bool,
 }
 
-/// What the user steers.
+/// The tools and the tissue that the user moves.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Hands {
     /// Steered path of each tool; `None` as long as it follows its own motion.
