@@ -370,6 +370,8 @@ impl Engine {
             }
             shared.clients.tell_all(&Event::Stopped { pane, reason });
             self.news.settings = true;
+            // The others go back without it from now on.
+            self.begin_moments();
         }
         if !self.panes.iter().all(|pane| pane.is_at(until)) {
             return;
@@ -396,15 +398,14 @@ impl Engine {
         self.tell_applied(shared);
     }
 
-    /// Keeps the present moment, unless a pane has stopped.
+    /// Keeps the present moment of the panes that have not stopped.
     fn keep_moment(&mut self) {
-        if self.panes.iter().any(|pane| pane.stopped.is_some()) {
-            return;
-        }
         let t = self.t();
         self.moments.keep(Moment {
             clock: self.clock,
-            panes: self.panes.iter().map(Pane::moment).collect(),
+            panes: (self.panes.iter())
+                .map(|pane| pane.stopped.is_none().then(|| pane.moment()))
+                .collect(),
             hands: (self.hands.tools.iter())
                 .map(|hand| hand.as_ref().map(|hand| hand.at(t)))
                 .collect(),
@@ -419,7 +420,8 @@ impl Engine {
         let Some(moment) = self.moments.before_failure(failed_at) else {
             return false;
         };
-        let mut both = self.panes.iter_mut().zip(&moment.panes);
+        let both = self.panes.iter_mut().zip(&moment.panes);
+        let mut both = both.filter_map(|(pane, to)| Some((pane, to.as_ref()?)));
         if both.any(|(pane, to)| pane.go_back(to).is_err()) {
             return false;
         }

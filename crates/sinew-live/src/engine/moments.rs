@@ -27,7 +27,8 @@ const DUE_TO_COMMAND: f64 = 1.0;
 /// A moment of all panes.
 pub(super) struct Moment {
     pub(super) clock: Clock,
-    pub(super) panes: Vec<PaneMoment>,
+    /// `None` for panes that have stopped.
+    pub(super) panes: Vec<Option<PaneMoment>>,
     /// Pose of each steered tool.
     pub(super) hands: Vec<Option<[f64; 6]>>,
     pub(super) factors: Vec<f64>,
