@@ -1,4 +1,4 @@
-//! `cargo xtask gallery`: the pictures of the ready scenes, and the README's film.
+//! `cargo xtask gallery`: the pictures of the ready scenes in the book and on the start page, and the README's film.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -16,13 +16,21 @@ const SCENES: &str = "scenes/ready";
 const PICTURES: &str = "docs/book/src/gallery";
 /// Size of a picture (pixels).
 const SIZE: &str = "720x405";
+/// Folder of the pictures of the start page, and their size (pixels).
+const SMALL_PICTURES: &str = "crates/sinew/ready/pictures";
+const SMALL: &str = "320x180";
+/// The paper's cube, which is on the start page only, and the instant (s) at which it is drawn: at the end most of it
+/// has come apart.
+const PAPERS_CUBE: &str = "crates/sinew/src/command/live/papers-cube.toml";
+const PAPERS_INSTANT: &str = "1";
 /// Colours of scenes that are not coloured by their displacement.
-const COLOURS: [(&str, &str); 8] = [
+const COLOURS: [(&str, &str); 9] = [
     ("artery", "stress"),
     ("handle", "tissue"),
     ("incision", "stress"),
     ("layers", "tissue"),
     ("needle-push", "tissue"),
+    ("papers-cube", "tissue"),
     ("press", "tissue"),
     ("retract", "tissue"),
     ("slit", "stress"),
@@ -30,7 +38,7 @@ const COLOURS: [(&str, &str); 8] = [
 /// Scene of the README's film, and the film.
 const FILM: (&str, &str) = ("retract", "docs/film.png");
 
-/// Runs every ready scene, and draws each of them at the instant of its largest displacement.
+/// Runs every ready scene and the paper's cube, and draws each ready scene at the instant of its largest displacement.
 ///
 /// # Errors
 /// [`Failure::Chore`] for the first run or picture that fails.
@@ -38,7 +46,7 @@ pub(crate) fn run() -> Result<(), Failure> {
     let sinew = program::build()?;
     let runs = root().join("target/gallery");
     fs::create_dir_all(&runs).map_err(Failure::chore)?;
-    for scene in scenes()? {
+    for scene in scenes()?.into_iter().chain([root().join(PAPERS_CUBE)]) {
         let name = scene.file_stem().unwrap_or_default().to_string_lossy();
         say(&name)?;
         let folder = runs.join(&*name);
@@ -47,13 +55,23 @@ pub(crate) fn run() -> Result<(), Failure> {
         }
         let shown = |path: &Path| path.display().to_string();
         call(&sinew, &["run", &shown(&scene), "--out", &shown(&folder)])?;
-        let at = instant(&folder)?;
-        let picture = shown(&root().join(PICTURES).join(format!("{name}.png")));
+        let is_papers = scene.ends_with(PAPERS_CUBE);
+        let at = match is_papers {
+            true => PAPERS_INSTANT.to_owned(),
+            false => instant(&folder)?,
+        };
+        let picture = |folder: &str| shown(&root().join(folder).join(format!("{name}.png")));
         let film = ["film", &shown(&folder), "--force", "--out"];
         let own = COLOURS.iter().find(|(scene, _)| *scene == name);
         let colour = own.map_or("displacement", |(_, colour)| colour);
-        let options = [&picture, "--at", &at, "--size", SIZE, "--colour", colour];
-        call(&sinew, &[&film[..], &options].concat())?;
+        let look = ["--at", &at, "--colour", colour];
+        let small = [&picture(SMALL_PICTURES), "--size", SMALL, "--bare"];
+        call(&sinew, &[&film[..], &small, &look].concat())?;
+        if is_papers {
+            continue;
+        }
+        let large = [&picture(PICTURES), "--size", SIZE];
+        call(&sinew, &[&film[..], &large, &look].concat())?;
         if name == FILM.0 {
             call(
                 &sinew,

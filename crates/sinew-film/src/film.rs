@@ -4,7 +4,7 @@ use crate::body::Kind;
 use crate::files::{Animation, Colours};
 use crate::overlay::{Bar, Overlay, room};
 use crate::range::Range;
-use crate::render::{Camera, Model, Paint, Stage, Vertex, draw, fitted};
+use crate::render::{Camera, Model, Paint, Room, Stage, Vertex, draw, fitted};
 use crate::tool::{Part, Solid, placed, solid};
 use crate::vector::{V3, add, cross, scaled, sub, turned, unit};
 use crate::{Clip, Colouring, FilmError, Frame, Picture, Size, Timing, Tool, View};
@@ -44,6 +44,8 @@ pub struct Film {
     scale: Scale,
     stage: Stage,
     overlay: Overlay,
+    has_words: bool,
+    view: View,
     size: Size,
     span: [f64; 2],
 }
@@ -131,14 +133,29 @@ impl Film {
                 pixels_per_metre: 1.0,
                 bar,
             },
+            has_words: true,
+            view: look.view,
             size: look.size,
             span,
         };
-        let (points, floor) = film.extent();
-        let camera = fitted(look.view, look.size, room(field.is_some()), &points);
-        film.overlay.pixels_per_metre = f64::from(camera.scale) / scale.radius;
-        film.stage = Stage::new(camera, floor);
+        film.fit(room(field.is_some()));
         Ok(film)
+    }
+
+    /// The same film without title, time, length and the values of colours: pictures for a small size.
+    #[must_use]
+    pub fn without_words(mut self) -> Self {
+        self.has_words = false;
+        self.fit(Room::EVEN);
+        self
+    }
+
+    /// Places the camera so that all of the motion is within the margins.
+    fn fit(&mut self, room: Room) {
+        let (points, floor) = self.extent();
+        let camera = fitted(self.view, self.size, room, &points);
+        self.overlay.pixels_per_metre = f64::from(camera.scale) / self.scale.radius;
+        self.stage = Stage::new(camera, floor);
     }
 
     /// Times (s) of the first and the last frame.
@@ -182,7 +199,9 @@ impl Film {
     #[must_use]
     pub fn picture(&self, t: f64) -> Picture {
         let mut picture = draw(&self.stage, &self.model(t), self.size);
-        self.overlay.draw(&mut picture, t);
+        if self.has_words {
+            self.overlay.draw(&mut picture, t);
+        }
         picture
     }
 

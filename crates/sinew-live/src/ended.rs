@@ -8,6 +8,8 @@ use sinew_world::{JournalError, Log};
 pub struct Ended {
     /// The simulated time (s).
     pub t: f64,
+    /// True if a page asked for the start page.
+    pub goes_to_start: bool,
     /// The scene, with the page's changes of tools.
     pub scene: Scene,
     /// Values that were set in its file to get it, as `KEY=VALUE`.

@@ -1,20 +1,16 @@
 //! A scene that a page shows.
 
-use std::future::IntoFuture;
-use std::io::ErrorKind;
-use std::net::{Ipv4Addr, SocketAddr};
-use std::pin::pin;
+use std::net::TcpListener;
 use std::sync::Arc;
 use std::thread;
 use std::time::{Duration, Instant};
 
-use futures_util::future::{Either, select};
 use sinew_fem::{Law, LoadKind};
 use sinew_scene::{BodyModel, Scene, Simulation};
 use sinew_world::{Journal, JournalError, World};
-use tokio::net::TcpListener;
-use tokio::runtime::{Builder, Runtime};
+use tokio::runtime::Runtime;
 
+use crate::door::Door;
 use crate::ended::Ended;
 use crate::engine::{Beginning, Engine, Survey};
 use crate::error::LiveError;
@@ -22,7 +18,7 @@ use crate::pane_choice::PaneChoice;
 use crate::picture::{Colours, Surface};
 use crate::protocol::{Hertz, LoadFacts, Scenery};
 use crate::scene_values::SceneValues;
-use crate::server::{Guests, Shared, Standing, Token, router};
+use crate::server::{Shared, Token, router, runtime, serve};
 use crate::tool_facts::tools_of;
 
 /// Time between two checks for a request to end.
@@ -44,15 +40,15 @@ pub struct Settings {
     pub second: PaneChoice,
     /// The largest speed (m/s) of tools that the user steers; `None` for a tenth of that of waves in the body.
     pub hand_speed: Option<f64>,
-    /// The port of this computer; 0 for a free one.
-    pub port: u16,
+    /// Advice for the user's first moves, if the scene was chosen on a start page: then it begins paused, and its page has
+    /// a way back.
+    pub from_start: Option<String>,
 }
 
 /// A scene with its page, before the page is opened.
 pub struct Live {
     runtime: Runtime,
     listener: TcpListener,
-    address: SocketAddr,
     token: Token,
     shared: Arc<Shared>,
     engine: Engine,
@@ -60,32 +56,21 @@ pub struct Live {
 }
 
 impl Live {
-    /// Builds the sessions and listens to the port.
+    /// Builds the sessions for a page at this address.
     ///
     /// # Errors
-    /// [`LiveError`] for a scene that cannot be simulated, or a port that cannot be listened to.
-    pub fn open(settings: Settings) -> Result<Self, LiveError> {
+    /// [`LiveError`] for a scene that cannot be simulated.
+    pub fn open(door: &Door, settings: Settings) -> Result<Self, LiveError> {
         let Settings {
             scene,
             values,
             panes,
             second,
             hand_speed,
-            port,
+            from_start,
         } = settings;
-        let token = Token::random().map_err(LiveError::Random)?;
-        let runtime = Builder::new_current_thread()
-            .enable_all()
-            .build()
-            .map_err(LiveError::Serve)?;
-        // Before the scene is built, which may take long.
-        let listener = runtime
-            .block_on(TcpListener::bind((Ipv4Addr::LOCALHOST, port)))
-            .map_err(|source| match source.kind() {
-                ErrorKind::AddrInUse => LiveError::PortTaken { port },
-                _ => LiveError::Listen { port, source },
-            })?;
-        let address = listener.local_addr().map_err(LiveError::Serve)?;
+        let runtime = runtime().map_err(LiveError::Serve)?;
+        let listener = door.listener().map_err(LiveError::Serve)?;
         let session = World::new(scene.clone())?.with_values(&values);
         let simulation = Arc::clone(session.scene());
         let body = simulation.model().body().ok_or(LiveError::NoBody)?;
@@ -111,6 +96,7 @@ impl Live {
             fields: fields.clone(),
             hand_speed,
             loads: loads.iter().map(|load| load.name.clone()).collect(),
+            from_start: from_start.is_some(),
         };
         let scenery = Scenery {
             title,
@@ -127,24 +113,18 @@ impl Live {
             hand_speed,
             loads,
             hertz: hertz_of(&laws),
+            from_start,
         };
         let engine = Engine::new(beginning, session, surface)?;
         let shared = Arc::new(Shared::new(scenery));
         Ok(Self {
             runtime,
             listener,
-            address,
-            token,
+            token: door.token(),
             shared,
             engine,
             simulation,
         })
-    }
-
-    /// The address of the page, with its secret.
-    #[must_use]
-    pub fn url(&self) -> String {
-        format!("http://{}/{}/", self.address, self.token)
     }
 
     /// The simulation without its page.
@@ -186,22 +166,14 @@ impl Live {
                 .map_err(LiveError::Serve)?
         };
         let router = router(Arc::clone(&shared), token);
-        let service = router.into_make_service_with_connect_info::<Standing>();
-        let outcome = runtime.block_on(async {
-            let server = pin!(axum::serve(Guests::of(listener), service).into_future());
-            let end = pin!(async {
-                let mut look = tokio::time::interval(LOOK);
-                while !ends() && !simulated.is_finished() {
-                    look.tick().await;
-                }
-                // Pages are notified that the connection closes.
-                shared.clients.dismiss();
-                tokio::time::sleep(LOOK).await;
-            });
-            match select(server, end).await {
-                Either::Left((outcome, _)) => outcome,
-                Either::Right(_) => Ok(()),
+        let outcome = serve(&runtime, listener, router, async {
+            let mut look = tokio::time::interval(LOOK);
+            while !ends() && !simulated.is_finished() {
+                look.tick().await;
             }
+            // Pages are notified that the connection closes.
+            shared.clients.dismiss();
+            tokio::time::sleep(LOOK).await;
         });
         shared.inbox.end();
         runtime.shutdown_background();

@@ -11,6 +11,9 @@ use crate::failure::Failure;
 /// The scene under the ball.
 const CUBE: &str = include_str!("cube.toml");
 
+/// The paper's cube, which the start page offers.
+const PAPERS_CUBE: &str = include_str!("../../../crates/sinew/src/command/live/papers-cube.toml");
+
 /// Programs and folder for the tests.
 pub(super) struct Bench {
     pub(super) sinew: PathBuf,
@@ -19,6 +22,13 @@ pub(super) struct Bench {
 }
 
 impl Bench {
+    /// Arguments for the paper's cube by two methods side by side.
+    pub(super) fn papers_cube(&self) -> Result<[PathBuf; 3], Failure> {
+        let path = self.folder.path().join("papers-cube.toml");
+        std::fs::write(&path, PAPERS_CUBE).map_err(Failure::chore)?;
+        Ok([path, "--beside".into(), "cnn-stabilised".into()])
+    }
+
     /// A scene with `cells` cells along an edge, by this method in steps of `dt` (s).
     pub(super) fn scene(&self, cells: usize, method: &str, dt: f64) -> Result<PathBuf, Failure> {
         let text = CUBE

@@ -186,6 +186,38 @@ impl Tab {
         Ok(())
     }
 
+    /// Leaves the page, so that it asks nothing any more.
+    pub(super) fn close(&mut self) -> Result<(), Failure> {
+        self.go("about:blank")
+    }
+
+    /// Makes the page see a light or a dark scheme of colours.
+    pub(super) fn scheme(&mut self, scheme: &str) -> Result<(), Failure> {
+        let feature = json!({ "name": "prefers-color-scheme", "value": scheme });
+        self.call(
+            "Emulation.setEmulatedMedia",
+            json!({ "features": [feature] }),
+        )?;
+        Ok(())
+    }
+
+    /// Presses and releases Tab or Enter, with what a browser does by them.
+    pub(super) fn act(&mut self, key: &str) -> Result<(), Failure> {
+        let (code, text) = match key {
+            "Tab" => (9, ""),
+            _ => (13, "\r"),
+        };
+        for kind in ["keyDown", "keyUp"] {
+            let mut event =
+                json!({ "type": kind, "key": key, "code": key, "windowsVirtualKeyCode": code });
+            if kind == "keyDown" {
+                event["text"] = json!(text);
+            }
+            self.call("Input.dispatchKeyEvent", event)?;
+        }
+        Ok(())
+    }
+
     fn call(&mut self, method: &str, parameters: Value) -> Result<Value, Failure> {
         self.last += 1;
         let mut question = json!({ "id": self.last, "method": method, "params": parameters });

@@ -55,7 +55,7 @@ pub(super) fn press_pull_and_cut(bench: &Bench) -> Result<(), Failure> {
     })?;
     complaints(&tab)?;
 
-    let served = Served::start(&bench.sinew, &[])?;
+    let served = Served::start(&bench.sinew, &bench.papers_cube()?)?;
     let mut tab = open(bench, &served)?;
     tab.has_fingers()?;
     tab.wait_for("window.sinew.picture.panes.length === 2", PATIENCE)?;

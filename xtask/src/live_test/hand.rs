@@ -149,9 +149,9 @@ pub(super) fn press_hold_and_switch(bench: &Bench) -> Result<(), Failure> {
     complaints(&tab)
 }
 
-/// The page without a scene: two panes with the same pointer, reloaded once.
+/// Two panes with the same pointer, reloaded once.
 pub(super) fn side_by_side(bench: &Bench) -> Result<(), Failure> {
-    let served = Served::start(&bench.sinew, &[])?;
+    let served = Served::start(&bench.sinew, &bench.papers_cube()?)?;
     let mut tab = open(bench, &served)?;
     tab.wait_for("window.sinew.picture.panes.length === 2", PATIENCE)?;
     let at = drag(&mut tab, [60.0, -50.0], 20, Duration::from_millis(400))?;

@@ -11,6 +11,7 @@ mod picture;
 mod served;
 mod speed;
 mod stage;
+mod start;
 mod strangers;
 
 use std::path::PathBuf;
@@ -70,6 +71,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
             "load of this computer in the last minute: {minute}"
         ))?;
     }
+    start::opens_scenes(&bench)?;
     hand::press_hold_and_switch(&bench)?;
     hand::side_by_side(&bench)?;
     stage::is_set_up(&bench)?;

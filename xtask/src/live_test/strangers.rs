@@ -15,7 +15,7 @@ use crate::failure::Failure;
 
 /// Tests with foreign origins, hosts and tokens.
 pub(super) fn are_refused(bench: &Bench) -> Result<(), Failure> {
-    let served = Served::start(&bench.sinew, &[])?;
+    let served = Served::start(&bench.sinew, &bench.papers_cube()?)?;
     for origin in [
         "http://evil.example",
         "null",
@@ -159,7 +159,7 @@ pub(super) fn do_no_harm(bench: &Bench) -> Result<(), Failure> {
 
 /// The end by Ctrl-C with an open page, and a port that is in use.
 pub(super) fn ctrl_c_and_taken_port(bench: &Bench) -> Result<(), Failure> {
-    let served = Served::start(&bench.sinew, &[])?;
+    let served = Served::start(&bench.sinew, &bench.papers_cube()?)?;
     let mut tab = open(bench, &served)?;
     let port = served
         .host()

@@ -21,7 +21,7 @@ const LISTS: [&str; 17] = [
     "sinew-bench/src/reproduce/",
     "sinew-bench/src/verify/subjects/",
     "sinew-bench/src/verify/quasi_static.rs",
-    "sinew/src/command/live.rs",
+    "sinew/src/command/live/papers_cube.rs",
 ];
 
 fn sources(folder: &Path, into: &mut Vec<PathBuf>) {

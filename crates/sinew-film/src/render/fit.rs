@@ -16,6 +16,16 @@ pub(crate) struct Room {
     pub(crate) bottom: f32,
 }
 
+impl Room {
+    /// Equal margins, for pictures without texts.
+    pub(crate) const EVEN: Self = Self {
+        left: 0.06,
+        right: 0.06,
+        top: 0.08,
+        bottom: 0.08,
+    };
+}
+
 /// A camera that shows these points between the margins, as large as possible.
 pub(crate) fn fitted(view: View, size: Size, room: Room, points: &[V3]) -> Camera {
     let mut camera = Camera::new(view);

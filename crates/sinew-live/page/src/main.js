@@ -1,6 +1,7 @@
 // The page of sinew live.
 
 import { Vector3 } from "three";
+import { Beginning } from "./begin.js";
 import { Blade } from "./blade.js";
 import { FIELDS, NOT_KNOWN, roundUp } from "./colours.js";
 import { SIDES } from "./camera.js";
@@ -107,6 +108,10 @@ const connection = new Connection({
     view.setTools(tools);
     showShape();
   },
+  scenes: () => {
+    beginning.isLeaving = true;
+    say("Back to the scenes …", Infinity);
+  },
   trusted_ended: ({ reason }) => say(reason),
   saved: (event) => {
     last.saved = event;
@@ -114,6 +119,10 @@ const connection = new Connection({
   },
   closed: () => {
     connected = false;
+    if (beginning.isLeaving) {
+      beginning.go();
+      return;
+    }
     if (!scenery) {
       get("title").textContent = "Not connected";
       // A refusal has been said.
@@ -124,6 +133,8 @@ const connection = new Connection({
   },
 });
 
+const beginning = new Beginning(() => connection.command("scenes"));
+const showBeginning = () => settings && beginning.show(settings.paused, picture?.panes[0].t ?? 0);
 const screen = new Screen();
 const paneAt = (x) => Math.min(view.count - 1, Math.floor((x - canvas.getBoundingClientRect().left) / (canvas.clientWidth / view.count)));
 const cutPanel = new CutPanel(view);
@@ -161,6 +172,7 @@ function begin(event) {
   hand.begin(event.tools);
   get("force-title").textContent = event.tools.length > 0 ? "Force of the tool" : "Force of your pull";
   get("footer").textContent = `sinew ${event.version} · ${event.nodes} nodes · ${event.tets} tetrahedra · this computer only`;
+  beginning.offer(event.from_start);
   cutPanel.offer(event.cuts);
   showHint(event, blade.isOn);
   get("loads-card").hidden = event.loads.length === 0;
@@ -212,6 +224,7 @@ function configure(event) {
   }));
   get("pause").setAttribute("aria-pressed", String(event.paused));
   get("pause").textContent = event.paused ? "Go on" : "Pause";
+  showBeginning();
   get("panes").textContent = panes.length === 1 ? "Compare" : "One alone";
   const choice = get("field");
   choice.querySelector("option[value=difference]").disabled = panes.length === 1;
@@ -380,6 +393,7 @@ function frame(now) {
   if (next && next.panes.length === settings.panes.length) {
     picture = next;
     pictures += 1;
+    showBeginning();
     show();
     blade.flush(picture.applied);
   }

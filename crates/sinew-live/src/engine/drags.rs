@@ -4,6 +4,7 @@ use sinew_scene::{Scene, SceneSource};
 use sinew_world::Replay;
 
 use super::Engine;
+use crate::door::Door;
 use crate::inbox::Place;
 use crate::live::{Live, Settings};
 use crate::pane_choice::PaneChoice;
@@ -118,9 +119,10 @@ fn open(text: &str, hand_speed: Option<f64>) -> (Scene, Engine, std::sync::Arc<S
         panes: vec![PaneChoice::default()],
         second: PaneChoice::default(),
         hand_speed,
-        port: 0,
+        from_start: None,
     };
-    let (engine, shared) = Live::open(settings).unwrap().into_engine();
+    let door = Door::open(0).unwrap();
+    let (engine, shared) = Live::open(&door, settings).unwrap().into_engine();
     (scene, engine, shared)
 }
 

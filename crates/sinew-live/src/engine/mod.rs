@@ -111,6 +111,10 @@ pub(crate) struct Engine {
     repaint: bool,
     trusted: Option<Trusted>,
     paused: bool,
+    /// True if the scene was chosen on a start page.
+    from_start: bool,
+    /// True if a page asked for the start page.
+    goes_to_start: bool,
     /// Simulated time up to which all panes have stepped, with the same rounding.
     clock: Clock,
     /// Span that the panes are stepping through.
@@ -161,6 +165,8 @@ pub(crate) struct Beginning {
     pub(crate) loads: Vec<String>,
     /// Largest speed (m/s) of steered tools.
     pub(crate) hand_speed: f64,
+    /// True if the scene was chosen on a start page: then it begins paused.
+    pub(crate) from_start: bool,
 }
 
 impl Engine {
@@ -177,6 +183,7 @@ impl Engine {
             fields,
             loads,
             hand_speed,
+            from_start,
         } = beginning;
         let mut panes = vec![Pane::new(session)?];
         while panes.len() < choices.len() {
@@ -213,7 +220,9 @@ impl Engine {
             fields,
             repaint: true,
             trusted: None,
-            paused: false,
+            paused: from_start,
+            from_start,
+            goes_to_start: false,
             clock: Clock::at(t),
             ahead: None,
             pace: Pace::new(t),
@@ -249,6 +258,10 @@ impl Engine {
                 return self.end();
             }
             is_done = self.obey(&mut waiting, shared);
+            if self.goes_to_start {
+                shared.clients.tell_all(&Event::Scenes);
+                return self.end();
+            }
             self.tell(shared);
             self.advance(shared);
             self.show(shared);
@@ -267,6 +280,7 @@ impl Engine {
         let unkept = finished.filter_map(|(journal, log)| journal.finish(log).err());
         Ended {
             t: self.clock.time(),
+            goes_to_start: self.goes_to_start,
             scene: self.scene.scene,
             values: self.scene.values,
             unkept: unkept.collect(),
@@ -690,7 +704,10 @@ impl Engine {
 
     /// Pulls the tissue that is gripped to a place (m).
     fn pull(&mut self, client: u32, id: u32, to: [f64; 3]) -> Result<(), String> {
-        if to.iter().any(|place| !(place.abs() <= FARTHEST)) {
+        if to
+            .iter()
+            .any(|place| place.is_nan() || place.abs() > FARTHEST)
+        {
             return Err(format!(
                 "a pull to {to:?}: expected finite numbers, at most {FARTHEST:e} m in size"
             ));
@@ -846,6 +863,8 @@ impl Engine {
                     .clients
                     .tell_all(&saved.map_err(|error| error.to_string())?);
             }
+            Order::Scenes if self.from_start => self.goes_to_start = true,
+            Order::Scenes => return Err("this scene was not chosen on a start page".to_owned()),
         }
         Ok(())
     }

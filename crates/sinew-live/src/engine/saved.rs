@@ -50,7 +50,7 @@ pub(crate) fn save(scene: &SceneValues, panes: &[Pane]) -> Result<Event, SaveErr
     let places = places(&files);
     let mut inputs = Vec::new();
     for (file, place) in files.iter().zip(&places).skip(1) {
-        match std::fs::read(file) {
+        match scene.scene.source().read(file) {
             Ok(content) => inputs.push((place, content)),
             Err(source) => {
                 let path = file.clone();

@@ -114,6 +114,8 @@ pub(crate) enum Order {
     },
     /// A folder with the scene, the state and all commands so far.
     Save,
+    /// The end of the session, and the start page in its place.
+    Scenes,
 }
 
 /// The shape of a tool, the same as in scenes.

@@ -68,6 +68,8 @@ pub(crate) enum Event {
         /// The command that repeats the session.
         replay: String,
     },
+    /// The start page takes the place of this session.
+    Scenes,
 }
 
 impl Event {
@@ -101,6 +103,8 @@ pub(crate) struct Scenery {
     pub(crate) hand_speed: f64,
     /// Material parameters for Hertz's formula, if the body is of one isotropic material.
     pub(crate) hertz: Option<Hertz>,
+    /// Advice for the user's first moves, if the scene was chosen on a start page.
+    pub(crate) from_start: Option<String>,
 }
 
 /// A tool.

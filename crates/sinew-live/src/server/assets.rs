@@ -1,6 +1,6 @@
-//! The files of the page, which are parts of the program.
+//! The files of the pages, which are parts of the program.
 
-/// A file of the page.
+/// A file of a page.
 pub(crate) struct Asset {
     /// Its name below the address of the page.
     name: &'static str,
@@ -10,27 +10,59 @@ pub(crate) struct Asset {
     pub(crate) content: &'static [u8],
 }
 
-static ASSETS: [Asset; 3] = [
+const HTML: &str = "text/html; charset=utf-8";
+const CSS: &str = "text/css; charset=utf-8";
+const JAVASCRIPT: &str = "text/javascript; charset=utf-8";
+
+/// Name of the message by which a page finds out which of the pages is served now.
+pub(crate) const STATE: &str = "state";
+
+/// The files of a session's page, beginning with the page itself.
+pub(crate) static OF_SESSION: &[Asset] = &[
     Asset {
         name: "",
-        kind: "text/html; charset=utf-8",
+        kind: HTML,
         content: include_bytes!("../../page/index.html"),
     },
     Asset {
         name: "live.css",
-        kind: "text/css; charset=utf-8",
+        kind: CSS,
         content: include_bytes!("../../page/live.css"),
     },
     Asset {
         name: "live.js",
-        kind: "text/javascript; charset=utf-8",
+        kind: JAVASCRIPT,
         content: include_bytes!("../../page/dist/live.js"),
+    },
+    Asset {
+        name: STATE,
+        kind: "application/json",
+        content: br#"{"page":"live"}"#,
+    },
+];
+
+/// The files of the start page, beginning with the page itself.
+pub(crate) static OF_START: &[Asset] = &[
+    Asset {
+        name: "",
+        kind: HTML,
+        content: include_bytes!("../../page/start.html"),
+    },
+    Asset {
+        name: "start.css",
+        kind: CSS,
+        content: include_bytes!("../../page/start.css"),
+    },
+    Asset {
+        name: "start.js",
+        kind: JAVASCRIPT,
+        content: include_bytes!("../../page/start.js"),
     },
 ];
 
 /// The file of this name.
-pub(crate) fn find(name: &str) -> Option<&'static Asset> {
-    ASSETS.iter().find(|asset| asset.name == name)
+pub(crate) fn find(assets: &'static [Asset], name: &str) -> Option<&'static Asset> {
+    assets.iter().find(|asset| asset.name == name)
 }
 
 #[cfg(test)]
@@ -43,8 +75,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_page_needs_nothing_from_elsewhere() {
-        for asset in &ASSETS[..2] {
+    fn the_pages_need_nothing_from_elsewhere() {
+        for asset in OF_SESSION[..2].iter().chain(OF_START) {
             let text = str::from_utf8(asset.content).unwrap();
             assert!(
                 !text.contains("http:") && !text.contains("https:"),
@@ -52,19 +84,21 @@ mod tests {
                 asset.name
             );
         }
-        let page = str::from_utf8(ASSETS[0].content).unwrap();
-        for other in &ASSETS[1..] {
-            assert!(
-                page.contains(&format!("\"{}\"", other.name)),
-                "{}",
-                other.name
-            );
+        for files in [&OF_SESSION[..3], OF_START] {
+            let page = str::from_utf8(files[0].content).unwrap();
+            for other in &files[1..] {
+                assert!(
+                    page.contains(&format!("\"{}\"", other.name)),
+                    "{}",
+                    other.name
+                );
+            }
         }
     }
 
     #[test]
     fn the_bundle_carries_the_notice_of_its_library() {
-        let bundle = str::from_utf8(ASSETS[2].content).unwrap();
+        let bundle = str::from_utf8(OF_SESSION[2].content).unwrap();
         assert!(bundle.contains(include_str!("../../page/THREE-LICENSE").trim()));
         assert!(bundle.contains("three.js authors"));
         assert!(bundle.contains("Permission is hereby granted"));
@@ -87,7 +121,7 @@ mod tests {
             sources.add(&read(name));
         }
         let mut bundle = Hash::new();
-        bundle.add(ASSETS[2].content);
+        bundle.add(OF_SESSION[2].content);
         let (sources, bundle) = (sources.value(), bundle.value());
         let found = format!("sources {sources:016x}\nlive.js {bundle:016x}\n");
         assert_eq!(

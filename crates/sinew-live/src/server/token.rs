@@ -1,6 +1,6 @@
 //! The secret in the address of a page.
 
-use std::fmt::{self, Display, Formatter, Write};
+use std::fmt::{self, Debug, Display, Formatter, Write};
 
 /// Random bytes of a token.
 const BYTES: usize = 16;
@@ -8,6 +8,13 @@ const BYTES: usize = 16;
 /// A secret that the address of the page contains, so that no other page and no other user of this computer finds it.
 #[derive(Clone)]
 pub(crate) struct Token(String);
+
+/// Without the secret, so that no message shows it by mistake.
+impl Debug for Token {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        f.write_str("Token(..)")
+    }
+}
 
 impl Token {
     /// A new random token.

@@ -8,7 +8,7 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use serde_json::Value;
-use sinew_live::{Ended, Live, LiveError, PaneChoice, Settings};
+use sinew_live::{Door, Ended, Live, LiveError, PaneChoice, Settings};
 use sinew_scene::{Scene, SceneSource};
 use tungstenite::client::IntoClientRequest;
 use tungstenite::{Error, HandshakeError, Message, WebSocket, client};
@@ -46,7 +46,7 @@ pub(crate) fn settings(text: &str) -> Settings {
             dt: None,
         },
         hand_speed: None,
-        port: 0,
+        from_start: None,
     }
 }
 
@@ -64,8 +64,9 @@ pub(crate) struct Page {
 
 impl Page {
     pub(crate) fn of(settings: Settings) -> Self {
-        let live = Live::open(settings).unwrap();
-        let (url, ends) = (live.url(), Arc::new(AtomicBool::new(false)));
+        let door = Door::open(0).unwrap();
+        let live = Live::open(&door, settings).unwrap();
+        let (url, ends) = (door.url(), Arc::new(AtomicBool::new(false)));
         let asked = Arc::clone(&ends);
         let server = std::thread::spawn(move || live.run(|| asked.load(Ordering::Relaxed)));
         Self {

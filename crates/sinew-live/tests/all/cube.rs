@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use serde_json::Value;
-use sinew_live::{Live, LiveError, Settings};
+use sinew_live::{Door, LiveError};
 use sinew_testkit::scenes::ROLLED;
 use tungstenite::Message;
 
@@ -592,11 +592,7 @@ fn a_page_that_reads_nothing_holds_nobody_up() {
 fn a_port_that_is_taken_is_one_sentence() {
     let page = open();
     let port = page.host().rsplit(':').next().unwrap().parse().unwrap();
-    let settings = Settings {
-        port,
-        ..settings(&scene())
-    };
-    let error = Live::open(settings).err().unwrap();
+    let error = Door::open(port).unwrap_err();
     assert!(matches!(error, LiveError::PortTaken { .. }));
     assert!(error.to_string().contains("--port 0"), "{error}");
 }

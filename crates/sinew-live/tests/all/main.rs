@@ -11,3 +11,4 @@ mod files;
 mod loads;
 mod pauses;
 mod pulls;
+mod start;

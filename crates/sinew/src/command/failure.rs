@@ -287,6 +287,15 @@ pub(crate) enum Failure {
     #[cfg(feature = "implicit")]
     #[error(transparent)]
     Modes(#[from] sinew_record::ModesError),
+    /// An option that needs a scene, and none.
+    #[cfg(feature = "live")]
+    #[error(
+        "{option} is for a scene of yours, and the start page opens ready ones: name a scene file, as in `sinew live SCENE {option} ...`"
+    )]
+    NoScene {
+        /// The option.
+        option: &'static str,
+    },
     /// A page that cannot be served.
     #[cfg(feature = "live")]
     #[error(transparent)]
@@ -441,7 +450,7 @@ impl Failure {
             #[cfg(feature = "implicit")]
             Self::Modes(_) => FAILED,
             #[cfg(feature = "live")]
-            Self::Journal(_) => REFUSED,
+            Self::Journal(_) | Self::NoScene { .. } => REFUSED,
             #[cfg(feature = "live")]
             Self::Live(error) if error.is_refusal() => REFUSED,
             #[cfg(feature = "live")]

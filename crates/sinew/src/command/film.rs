@@ -62,6 +62,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         title: known.title.unwrap_or_default(),
     };
     let film = Film::new(clip, known.instruments.tools, &look).map_err(refused)?;
+    let film = match arguments.bare {
+        true => film.without_words(),
+        false => film,
+    };
     let maker = Maker {
         arguments,
         film: &film,

@@ -1,28 +1,25 @@
 //! `sinew live`.
 
+mod cards;
+mod from_start;
+mod papers_cube;
 mod recording;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use sinew_live::{Live, PaneChoice, Settings};
-use sinew_scene::SceneSource;
+use sinew_live::{Door, Live, PaneChoice, Settings};
 use sinew_scene::output::{Voice, complain};
 
+use self::papers_cube::BESIDE;
 use self::recording::Recording;
 use super::Failure;
 use super::interruption::Interruption;
 use super::scene_with::Values;
 
-/// The default scene: the paper's cube.
-const CUBE: &str = include_str!("live/cube.toml");
-
-/// The methods that run side by side without a scene: the paper's, and one that is stable with its step.
-const SIDE_BY_SIDE: [&str; 2] = ["cnn", "cnn-stabilised"];
-
 /// A scene and the port of its page.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// The scene file [default: the paper's cube in steps of 20 ms, by two methods side by side]
+    /// The scene file [default: a start page, which offers the ready scenes and the paper's cube]
     scene: Option<PathBuf>,
     /// The port of this computer, or 0 for a free one
     #[arg(long, value_name = "PORT", default_value_t = 0)]
@@ -40,46 +37,56 @@ pub(crate) struct Arguments {
     values: Values,
 }
 
+impl Arguments {
+    /// The first option that is for a given scene only.
+    fn of_scene(&self) -> Option<&'static str> {
+        let beside = self.beside.as_ref().map(|_| "--beside");
+        let record = self.record.as_ref().map(|_| "--record");
+        beside.or(record).or(self.values.first_option())
+    }
+}
+
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let interruption = Interruption::listen().map_err(Failure::Signals)?;
-    let own = PaneChoice::default();
-    let beside = |id: &str| PaneChoice {
+    match (&arguments.scene, arguments.of_scene()) {
+        (Some(scene), _) => session(arguments, scene, &interruption),
+        (None, Some(option)) => Err(Failure::NoScene { option }),
+        (None, None) => from_start::run(arguments.port, arguments.hand_speed, &interruption),
+    }
+}
+
+/// A session with a scene of the user.
+fn session(arguments: &Arguments, path: &Path, interruption: &Interruption) -> Result<(), Failure> {
+    let scene = arguments.values.load(path)?;
+    let pane = |id: &str| PaneChoice {
         integrator: Some(id.to_owned()),
         dt: None,
     };
-    let (scene, mut panes) = match &arguments.scene {
-        Some(path) => (arguments.values.load(path)?, vec![own]),
-        None => {
-            let scene = arguments
-                .values
-                .apply(&SceneSource::new("cube.toml", CUBE))?;
-            (scene, SIDE_BY_SIDE.map(beside).to_vec())
-        }
-    };
-    if let Some(id) = &arguments.beside {
-        panes.truncate(1);
-        panes.push(beside(id));
-    }
+    let beside = arguments.beside.as_deref().map(pane);
     let recording = arguments
         .record
         .as_ref()
         .map(|path| Recording::new(path, &scene))
         .transpose()?;
-    let second = panes.get(1).cloned();
-    let mut live = Live::open(Settings {
+    let door = Door::open(arguments.port)?;
+    let settings = Settings {
         scene,
         values: arguments.values.assignments(),
-        panes,
-        second: second.unwrap_or_else(|| beside(SIDE_BY_SIDE[1])),
+        panes: [PaneChoice::default()]
+            .into_iter()
+            .chain(beside.clone())
+            .collect(),
+        second: beside.unwrap_or_else(|| pane(BESIDE)),
         hand_speed: arguments.hand_speed,
-        port: arguments.port,
-    })?;
+        from_start: None,
+    };
+    let mut live = Live::open(&door, settings)?;
     if let Some(recording) = &recording {
         let journals = recording.journals()?;
         let kept = live.keep_logs(journals);
         kept.inspect_err(|_| recording.remove_journals())?;
     }
-    let said = Voice::StandardOutput.say(&live.url());
+    let said = Voice::StandardOutput.say(&door.url());
     // Nobody gave a command yet.
     said.inspect_err(|_| recording.iter().for_each(Recording::remove_journals))?;
     complain("open this address in a browser on this computer; Ctrl-C ends");
@@ -89,7 +96,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     interruption.is_followed();
     complain(&format!("the session ended at t = {:.6} s", session.t));
     match recording {
-        Some(recording) => recording.write(session, &interruption),
+        Some(recording) => recording.write(session, interruption),
         None => Ok(()),
     }
 }

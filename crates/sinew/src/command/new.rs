@@ -24,6 +24,9 @@ pub(crate) struct Arguments {
     /// List the ready scenes
     #[arg(long)]
     list: bool,
+    /// With --list: measure for a second each how fast they are on this computer, and mark those in real time
+    #[arg(long, requires = "list")]
+    pace: bool,
     /// Write a ready scene and, next to it, its mesh
     #[arg(long, value_name = "NAME")]
     ready: Option<String>,
@@ -46,7 +49,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(name) = &arguments.ready {
         return ready::write(name, &out(Path::new(name)), arguments.force);
     }
-    ready::list()
+    match arguments.pace {
+        true => ready::list_with_paces(),
+        false => ready::list(),
+    }
 }
 
 /// A file name ending in .toml.

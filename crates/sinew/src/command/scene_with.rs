@@ -5,8 +5,6 @@ use std::path::Path;
 #[cfg(feature = "implicit")]
 use sinew_integrators::Memory;
 use sinew_integrators::explicit::Substeps;
-#[cfg(feature = "live")]
-use sinew_scene::SceneSource;
 use sinew_scene::output::complain;
 use sinew_scene::{Scene, TimeStep};
 
@@ -66,13 +64,13 @@ impl Values {
         }
     }
 
-    /// Reads a scene that comes from no file with them.
+    /// The first option that was given.
     #[cfg(feature = "live")]
-    pub(crate) fn apply(&self, source: &SceneSource) -> Result<Scene, Failure> {
-        self.check()?;
-        let scene = Scene::parse_with(source, &self.assignments())?;
-        limit_memory(&scene);
-        Ok(scene)
+    pub(crate) fn first_option(&self) -> Option<&'static str> {
+        let integrator = self.integrator.as_ref().map(|_| "--integrator");
+        let dt = self.dt.as_ref().map(|_| "--dt");
+        let set = self.set.first().map(|_| "--set");
+        integrator.or(dt).or(set)
     }
 
     /// Refuses two values for one key.

@@ -32,6 +32,9 @@ pub(crate) struct Arguments {
     /// Width and height in pixels [default: 720x405 for a film as .png, else 1280x720]
     #[arg(long, value_name = "WxH")]
     pub(super) size: Option<String>,
+    /// Leave out title, time, length and the values of colours, as for a small picture
+    #[arg(long)]
+    pub(super) bare: bool,
     /// Pictures per second
     #[arg(
         long,

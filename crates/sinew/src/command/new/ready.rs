@@ -1,165 +1,52 @@
-//! The ready scenes, which come with the command.
+//! The ready scenes: a list of them, and files.
 
 use std::path::Path;
 
+use sinew_scene::Scene;
 use sinew_scene::output::{Destination, say};
-use sinew_scene::{Scene, SceneSource};
 
 use super::scene_file::written;
 use crate::command::Failure;
 use crate::command::own_file::{Force, holds};
-
-/// A ready scene, with the file that it reads.
-struct Ready {
-    name: &'static str,
-    scene: &'static str,
-    /// Name and contents of the file next to it: a mesh, or the table of a tool.
-    file: Option<(&'static str, &'static [u8])>,
-}
-
-macro_rules! scene {
-    ($file:literal) => {
-        include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/ready/", $file))
-    };
-}
-
-macro_rules! file {
-    ($file:literal) => {
-        include_bytes!(concat!(env!("CARGO_MANIFEST_DIR"), "/ready/", $file))
-    };
-}
-
-/// All ready scenes; the recommended first one comes first.
-const READY: &[Ready] = &[
-    Ready {
-        name: "held-cube",
-        scene: scene!("held-cube.toml"),
-        file: Some(("paper-cube-mirrored.msh", file!("paper-cube-mirrored.msh"))),
-    },
-    Ready {
-        name: "organ",
-        scene: scene!("organ.toml"),
-        file: Some(("organ.msh", file!("organ.msh"))),
-    },
-    Ready {
-        name: "organ-pressed",
-        scene: scene!("organ-pressed.toml"),
-        file: Some(("organ.msh", file!("organ.msh"))),
-    },
-    Ready {
-        name: "organ-fibres",
-        scene: scene!("organ-fibres.toml"),
-        file: Some(("organ.msh", file!("organ.msh"))),
-    },
-    Ready {
-        name: "muscle",
-        scene: scene!("muscle.toml"),
-        file: Some(("muscle.msh", file!("muscle.msh"))),
-    },
-    Ready {
-        name: "artery",
-        scene: scene!("artery.toml"),
-        file: Some(("artery.msh", file!("artery.msh"))),
-    },
-    Ready {
-        name: "creep",
-        scene: scene!("creep.toml"),
-        file: None,
-    },
-    Ready {
-        name: "twisted-column",
-        scene: scene!("twisted-column.toml"),
-        file: None,
-    },
-    Ready {
-        name: "beam",
-        scene: scene!("beam.toml"),
-        file: Some(("beam.msh", file!("beam.msh"))),
-    },
-    Ready {
-        name: "vessel",
-        scene: scene!("vessel.toml"),
-        file: Some(("vessel.msh", file!("vessel.msh"))),
-    },
-    Ready {
-        name: "layers",
-        scene: scene!("layers.toml"),
-        file: Some(("layers.msh", file!("layers.msh"))),
-    },
-    Ready {
-        name: "press",
-        scene: scene!("press.toml"),
-        file: Some(("press.csv", file!("press.csv"))),
-    },
-    Ready {
-        name: "handle",
-        scene: scene!("handle.toml"),
-        file: Some(("handle.csv", file!("handle.csv"))),
-    },
-    Ready {
-        name: "needle-push",
-        scene: scene!("needle-push.toml"),
-        file: Some(("needle-push.csv", file!("needle-push.csv"))),
-    },
-    Ready {
-        name: "slit",
-        scene: scene!("slit.toml"),
-        file: Some(("slit.csv", file!("slit.csv"))),
-    },
-    Ready {
-        name: "retract",
-        scene: scene!("retract.toml"),
-        file: Some(("retract.csv", file!("retract.csv"))),
-    },
-    Ready {
-        name: "needle",
-        scene: scene!("needle.toml"),
-        file: Some(("needle.msh", file!("needle.msh"))),
-    },
-    Ready {
-        name: "inclusion",
-        scene: scene!("inclusion.toml"),
-        file: None,
-    },
-    Ready {
-        name: "incision",
-        scene: scene!("incision.toml"),
-        file: Some(("incision.msh", file!("incision.msh"))),
-    },
-    Ready {
-        name: "slivers",
-        scene: scene!("slivers.toml"),
-        file: Some(("slivers.msh", file!("slivers.msh"))),
-    },
-];
-
-/// The folder of the meshes as seen from the scenes.
-const MESHES: &str = "../../meshes/";
+use crate::command::pace::{in_words, pace_of};
+use crate::command::ready::{READY, Ready};
 
 /// Prints names and titles.
 pub(super) fn list() -> Result<(), Failure> {
-    for Ready { name, scene, .. } in READY {
-        let scene = Scene::parse(SceneSource::new(*name, *scene))?;
-        say(&format!("{name:<12} {}", scene.title()))?;
+    for ready in READY {
+        let scene = Scene::parse(ready.source())?;
+        say(&format!("{:<14} {}", ready.name, scene.title()))?;
     }
     Ok(say(
-        "`sinew new --ready NAME` writes one, with what it reads",
+        "`sinew new --ready NAME` writes one, with what it reads; `sinew new --list --pace` measures for a second each how fast they are on this computer",
+    )?)
+}
+
+/// Prints names, measured paces and titles, each as soon as it is measured.
+pub(super) fn list_with_paces() -> Result<(), Failure> {
+    for ready in READY {
+        let scene = Scene::parse(ready.source())?;
+        let title = scene.title().to_owned();
+        let pace = in_words(pace_of(scene, &[], &|| false)?);
+        say(&format!("{:<14} {pace:<34} {title}", ready.name))?;
+    }
+    Ok(say(
+        "paces are simulated time over time, measured for a second each beside all else that this computer does now",
     )?)
 }
 
 /// Writes a scene to `out`, with the file that it reads next to it.
 pub(super) fn write(name: &str, out: &Path, force: Force) -> Result<(), Failure> {
-    let ready = READY.iter().find(|ready| ready.name == name);
-    let Some(Ready { scene, file, .. }) = ready else {
+    let Some(ready) = Ready::find(name) else {
         return Err(Failure::NotReady {
             name: name.to_owned(),
             known: READY.iter().map(|ready| ready.name).collect(),
         });
     };
-    let scene = scene.replace(MESHES, "");
+    let scene = ready.text();
     let destination = Destination::new(out, &[])?;
     force.check(&destination, || holds(out, scene.as_bytes()))?;
-    if let Some((name, bytes)) = file {
+    if let Some((name, bytes)) = ready.file {
         let beside = out.with_file_name(name);
         // One that is there already may be used by other scenes, and stays.
         if !holds(&beside, bytes) {
