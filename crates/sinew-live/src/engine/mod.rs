@@ -1,5 +1,6 @@
 //! The thread that simulates.
 
+mod beside;
 mod common;
 mod course;
 #[cfg(test)]
@@ -25,6 +26,7 @@ use std::time::{Duration, Instant};
 use sinew_core::Clock;
 use sinew_world::{Command, CommandError, Journal, JournalError, Log, World};
 
+use self::beside::choose_beside;
 use self::course::{Course, Limits};
 use self::moments::{Moment, Moments};
 use self::pace::Pace;
@@ -836,7 +838,12 @@ impl Engine {
                 }
                 if count > self.panes.len() {
                     let mut second = Pane::of(&self.scene).map_err(|error| error.to_string())?;
-                    choose(&mut second, &self.second).map_err(words)?;
+                    let first = self.panes.first().map(Pane::facts);
+                    let first = first.map_or_else(String::new, |facts| facts.integrator);
+                    let other = choose_beside(&mut second, &self.second, &first)?;
+                    if let Some(reason) = other {
+                        shared.clients.tell_all(&Event::Refused { reason });
+                    }
                     self.panes.push(second);
                 }
                 self.panes.truncate(count);

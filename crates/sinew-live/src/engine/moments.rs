@@ -139,6 +139,7 @@ mod tests {
             moments.note_command(1.0);
             back(&mut moments, 1.0);
         }
+        moments.note_command(0.5);
         assert!(is_last_until(back(&mut moments, 0.5), 0.0));
     }
 

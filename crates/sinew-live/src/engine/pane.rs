@@ -756,6 +756,12 @@ impl Pane {
         self.session.stable_step()
     }
 
+    /// False if its step is known to be unstable.
+    pub(crate) fn has_stable_step(&self) -> bool {
+        let stable_step = self.step_facts.stable_step;
+        stable_step.is_none_or(|stable_step| self.dt() <= stable_step)
+    }
+
     /// Simulated time (s).
     pub(crate) fn t(&self) -> f64 {
         self.session.t()

@@ -318,6 +318,29 @@ fn colours_tell_the_step_that_single_elements_bear() {
     }
 }
 
+/// The wished method is linear, or that of the first pane.
+#[test]
+fn a_second_pane_has_the_first_method_that_runs_here_and_says_why() {
+    let rubber = scene().replace("\"linear\"", "\"neo-hookean\"");
+    let same = scene().replace("symplectic-euler", "cnn-stabilised");
+    for (text, reason) in [(rubber, "cnn-stabilised"), (same, "runs in the first pane")] {
+        let page = Page::of(settings(&text));
+        let mut client = page.connect();
+        client.say(r#"{"id":1,"do":"panes","count":2}"#);
+        let told = client.event("refused")["reason"].to_string();
+        assert!(told.contains(reason), "{told}");
+        client.event("reset");
+        let panes = client.event("settings")["panes"].clone();
+        let second = panes[1]["integrator"].as_str().unwrap();
+        assert!(
+            told.contains(&format!("`{second}` runs beside it")),
+            "{told}"
+        );
+        assert_ne!(second, "cnn-stabilised");
+        client.picture(|picture| u32_at(picture, 16) == 2 && time(picture) > 0.05);
+    }
+}
+
 #[test]
 fn all_begin_anew_where_one_that_stopped_gets_another_method() {
     let page = open();

@@ -121,8 +121,9 @@ impl Place {
         self.ask("POST", self.host(), Some(&origin), &path, body).0
     }
 
+    /// The state of the page; null from a server that ends in this moment.
     fn state(&self) -> Value {
-        serde_json::from_str(&self.get("state").1).unwrap()
+        serde_json::from_str(&self.get("state").1).unwrap_or_default()
     }
 
     /// Waits until this page is served.
