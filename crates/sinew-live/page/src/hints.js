@@ -12,7 +12,7 @@ function sentences({ tools, cuts, hand_speed: speed }) {
     rest: `Drag on tissue: pull it · drag beside it, right button or two fingers: turn the view · ${NAVIGATION} · G: grip the tissue in the middle, arrows pull it, G again: let go`,
   };
   if (tools.length > 0) {
-    all.rest = `Drag: move the tool · E and Q, or the handle at the left: deeper and nearer · Shift in a drag: lift it off · right button or two fingers: turn the view · ${NAVIGATION} · arrows and Page keys move it, too`;
+    all.rest = `Drag: move the tool · E and Q, or the handle at the left: deeper and nearer · Shift in a drag: lift it off · G: grasp what it touches, and let go · right button or two fingers: turn the view · ${NAVIGATION} · arrows and Page keys move it, too`;
   }
   all.rest += ` · at most ${plain(speed, 2)} m/s (--hand-speed)`;
   if (cuts) all.rest += " · C: a blade";

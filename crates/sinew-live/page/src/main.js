@@ -170,6 +170,7 @@ function begin(event) {
   const fields = [...event.fields.map((name) => [FIELDS[name].title, name]), [FIELDS.difference.title, "difference"]];
   get("field").replaceChildren(...[["Tissue", "tissue"], ...fields].map(([title, name]) => new Option(title, name)));
   hand.begin(event.tools);
+  get("grasp").hidden = event.tools.length === 0;
   get("force-title").textContent = event.tools.length > 0 ? "Force of the tool" : "Force of your pull";
   get("footer").textContent = `sinew ${event.version} · ${event.nodes} nodes · ${event.tets} tetrahedra · this computer only`;
   beginning.offer(event.from_start);
@@ -359,6 +360,7 @@ function panels() {
     : "E − W, energy less the work of loads and tools: what damping takes makes it fall. It must not rise above 0.";
   get("energy-now").textContent = `E ${withUnit(first.kinetic + first.elastic, "J")} · W ${withUnit(first.loadWork + first.toolWork, "J")}`;
   if (shapeRow.number !== hand.selected) showShape();
+  get("grasp").setAttribute("aria-pressed", String(settings.grasped[hand.selected] ?? false));
   const tool = first.tools[hand.selected];
   if (tool) get("force-now").textContent = `${withUnit(Math.hypot(...tool.force), "N")} · ${plain(1000 * Math.max(0, tool.depth), 3)} mm deep`;
   else get("force-now").textContent = `${withUnit(histories[0].force.at(-1) ?? 0, "N")} · ${plain(1000 * (histories[0].depth.at(-1) ?? 0), 3)} mm moved`;
@@ -428,10 +430,11 @@ get("field").addEventListener("change", () => {
 // A scheme that changes brings another ground.
 window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { view.dirty = true; });
 get("fine").addEventListener("change", () => view.setFine(get("fine").checked));
+get("grasp").addEventListener("click", () => connection.command("grasp", { tool: hand.selected, on: !settings.grasped[hand.selected] }));
 get("edges").addEventListener("change", () => view.setEdges(get("edges").checked));
 window.addEventListener("keydown", (event) => {
   if (event.ctrlKey || event.metaKey || event.altKey || ["INPUT", "SELECT"].includes(event.target.tagName)) return;
-  const press = { " ": "pause", ".": "step", r: "reset", v: "view", c: "cut", ...SIDE_KEYS }[event.key];
+  const press = { " ": "pause", ".": "step", r: "reset", v: "view", c: "cut", g: "grasp", ...SIDE_KEYS }[event.key];
   if (!press || get(press).hidden || get(press).closest("[hidden]") || (event.key === " " && event.target.closest("button, summary"))) return;
   event.preventDefault();
   // A key that is held down presses once, but goes on step by step.

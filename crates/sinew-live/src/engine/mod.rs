@@ -100,6 +100,8 @@ pub(crate) struct Engine {
     /// Names and factors of the loads.
     loads: Vec<String>,
     factors: Vec<f64>,
+    /// True for each tool whose jaws a user closed.
+    grasped: Vec<bool>,
     /// The surface of the body before all cuts.
     uncut: Surface,
     topology: Topology,
@@ -208,6 +210,7 @@ impl Engine {
                 grip: None,
             },
             grips: 0,
+            grasped: vec![false; tools],
             gripped_by: None,
             hand_speed,
             deaf_until: f64::NEG_INFINITY,
@@ -426,6 +429,7 @@ impl Engine {
                 .map(|hand| hand.as_ref().map(|hand| hand.at(t)))
                 .collect(),
             factors: self.factors.clone(),
+            grasped: self.grasped.clone(),
         });
     }
 
@@ -444,6 +448,7 @@ impl Engine {
         let t = moment.clock.time();
         self.clock = moment.clock;
         self.factors.clone_from(&moment.factors);
+        self.grasped.clone_from(&moment.grasped);
         let poses = moment.hands.iter();
         self.hands = Hands {
             tools: poses
@@ -601,7 +606,11 @@ impl Engine {
             && let Some(Request { client, id, what }) = waiting.orders.pop_front()
         {
             let is_pose = matches!(what, Order::Pose { .. } | Order::Pull { .. });
-            let waits = is_pose || matches!(what, Order::Load { .. } | Order::Cut { .. });
+            let waits = is_pose
+                || matches!(
+                    what,
+                    Order::Load { .. } | Order::Cut { .. } | Order::Grasp { .. }
+                );
             // What colours show stays as it is under the others, and to paint may take longer than a step.
             let repaints = match &what {
                 Order::Field { name } => *name != self.field,
@@ -655,10 +664,8 @@ impl Engine {
     fn lead(&mut self, client: u32, id: u32, place: Place) -> Result<(), String> {
         let Place { tool, pose } = place;
         let [x, y, z, a, b, c] = pose;
-        let first = self.panes.first();
-        let name = first.and_then(|pane| Some(pane.tools()?.tools().get(tool)?.name.clone()));
-        let (Some(name), Some(first), Some(hand)) = (name, first, self.hands.tools.get(tool))
-        else {
+        let name = self.tool_name(tool)?;
+        let (Some(first), Some(hand)) = (self.panes.first(), self.hands.tools.get(tool)) else {
             return Err(format!("there is no tool {tool}"));
         };
         let here = hand.is_none().then(|| first.tool_pose(tool));
@@ -668,7 +675,7 @@ impl Engine {
             reach: first.reach_of(tool),
         };
         self.check(&Command::Pose {
-            tool: name.into(),
+            tool: name,
             position: [x, y, z],
             rotation_vector: [a, b, c],
         })?;
@@ -681,6 +688,27 @@ impl Engine {
         let course = self.hands.tools[tool]
             .get_or_insert_with(|| Course::at_rest(t, here.unwrap_or_default()));
         course.go(t, pose, limits);
+        Ok(())
+    }
+
+    fn tool_name(&self, tool: usize) -> Result<Arc<str>, String> {
+        let tools = self.panes.first().and_then(Pane::tools);
+        let tool_of = tools.and_then(|tools| tools.tools().get(tool));
+        let name = tool_of.map(|tool| tool.name.as_str().into());
+        name.ok_or_else(|| format!("there is no tool {tool}"))
+    }
+
+    /// Closes or opens the jaws of a tool.
+    fn grasp(&mut self, client: u32, id: u32, tool: usize, on: bool) -> Result<(), String> {
+        let name = self.tool_name(tool)?;
+        let command = match on {
+            true => Command::Grasp { tool: name },
+            false => Command::Release { tool: name },
+        };
+        self.give(client, id, command)?;
+        if let Some(grasped) = self.grasped.get_mut(tool) {
+            *grasped = on;
+        }
         Ok(())
     }
 
@@ -794,6 +822,7 @@ impl Engine {
             Order::Grip { pane, point, epoch } => self.grip(client, pane, point, epoch)?,
             Order::Pull { to } => self.pull(client, id, to)?,
             Order::LetGo => self.let_go(),
+            Order::Grasp { tool, on } => self.grasp(client, id, tool, on)?,
             Order::Load { load, factor } => {
                 let place = self.loads.iter().position(|name| *name == load);
                 let command = Command::LoadFactor {
@@ -956,6 +985,7 @@ impl Engine {
         self.ahead = None;
         self.pace = Pace::new(self.t());
         self.factors.fill(1.0);
+        self.grasped.fill(false);
         self.begin_moments();
         (self.news.settings, self.news.went_back) = (true, true);
     }
@@ -973,6 +1003,7 @@ impl Engine {
             paused: self.paused,
             field: self.field,
             factors: self.factors.clone(),
+            grasped: self.grasped.clone(),
             trusted: self.trusted.is_some(),
         }
     }

@@ -32,6 +32,7 @@ pub(super) struct Moment {
     /// Pose of each steered tool.
     pub(super) hands: Vec<Option<[f64; 6]>>,
     pub(super) factors: Vec<f64>,
+    pub(super) grasped: Vec<bool>,
 }
 
 /// The latest moments of all panes, and the failures since the last one that was survived.
@@ -109,6 +110,7 @@ mod tests {
                     panes: Vec::new(),
                     hands: Vec::new(),
                     factors: Vec::new(),
+                    grasped: Vec::new(),
                 });
             }
             clock.advance(0.01);

@@ -42,6 +42,13 @@ pub(crate) enum Order {
     },
     /// The end of the grip.
     LetGo,
+    /// Closes or opens the jaws of a tool.
+    Grasp {
+        /// Number of the tool.
+        tool: usize,
+        /// True to close them: then they hold what the tool pushes.
+        on: bool,
+    },
     /// A load of the scene times a factor.
     Load {
         /// Its name.

@@ -20,6 +20,8 @@ pub(crate) enum Event {
         field: Field,
         /// Factors of the loads, in the order of the scenery.
         factors: Vec<f64>,
+        /// True for each tool whose jaws a user closed.
+        grasped: Vec<bool>,
         /// True if a trusted run is computed next to the panes.
         trusted: bool,
     },

@@ -2,7 +2,9 @@
 
 use sinew_world::Replay;
 
-use crate::common::{CUBE, Connection, PANE, Page, applied, f64_at, settings, time, u32_at};
+use crate::common::{
+    CUBE, Connection, NUMBERS, PANE, Page, applied, f64_at, settings, time, u32_at,
+};
 
 /// The force and the place of a pull in a picture.
 fn pull(picture: &[u8]) -> ([f64; 3], [f64; 3]) {
@@ -101,4 +103,34 @@ fn a_grip_of_nothing_is_refused() {
     client.say(r#"{"id":2,"do":"pull","to":[0,0,1e9]}"#);
     let reason = client.event("refused")["reason"].to_string();
     assert!(reason.contains("at most 1e6"), "{reason}");
+}
+
+#[test]
+fn a_tool_grasps_what_it_touches_and_lets_it_go() {
+    let ball = "[[tool]]\nname = \"ball\"\nshape = { sphere = { radius = 0.04 } }\nstart = [0.05, 0.05, 0.145]\nhold = true\n";
+    let mut page = Page::of(settings(&format!("{CUBE}{ball}")));
+    let mut client = page.connect();
+    let height = |picture: &[u8]| f64_at(picture, PANE + NUMBERS + 16);
+    let pull = |picture: &[u8]| f64_at(picture, PANE + NUMBERS + 64);
+    let lead = |client: &mut Connection, id: u32, z: f64| {
+        client.say(&format!(
+            r#"{{"id":{id},"do":"pose","tool":0,"position":[0.05,0.05,{z}],"rotation":[0,0,0]}}"#
+        ));
+        client.picture(|picture| applied(picture) >= id && height(picture) == z)
+    };
+    lead(&mut client, 1, 0.135);
+    client.say(r#"{"id":2,"do":"grasp","tool":0,"on":true}"#);
+    let t = time(&client.picture(|picture| applied(picture) >= 2));
+    client.picture(|picture| time(picture) > t + 0.05);
+    lead(&mut client, 3, 0.15);
+    // Tissue that is held pulls the ball back down.
+    let held = client.picture(|picture| pull(picture) < -0.05);
+    let t = time(&held);
+    client.say(r#"{"id":4,"do":"grasp","tool":0,"on":false}"#);
+    client.picture(|picture| time(picture) > t + 0.1 && pull(picture) == 0.0);
+    client.say(r#"{"id":5,"do":"grasp","tool":7,"on":true}"#);
+    let reason = client.event("refused")["reason"].to_string();
+    assert!(reason.contains("there is no tool 7"), "{reason}");
+    let log = page.end().logs[0].to_text();
+    assert!(log.contains("grasp") && log.contains("release"), "{log}");
 }
