@@ -34,7 +34,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "S", default_value_t = 60, value_parser = clap::value_parser!(u64).range(30..))]
     seconds: u64,
     /// Random drags in ready scenes
-    #[arg(long, value_name = "N", default_value_t = 60)]
+    #[arg(long, value_name = "N", default_value_t = 30)]
     drags: u32,
     /// A sinew that is built already, instead of a release build of this one
     #[arg(long, value_name = "PROGRAM")]

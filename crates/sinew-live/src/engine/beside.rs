@@ -1,4 +1,6 @@
-//! The method of a second pane.
+//! The methods of panes.
+
+use sinew_world::CommandError;
 
 use super::pane::Pane;
 use crate::pane_choice::PaneChoice;
@@ -23,7 +25,7 @@ pub(super) fn choose_beside(
 ) -> Result<Option<String>, String> {
     let refused = match wished.integrator.as_deref() {
         Some(id) if id == first => format!("`{id}` runs in the first pane"),
-        _ => match super::choose(pane, wished) {
+        _ => match choose(pane, wished) {
             Ok(()) => return Ok(None),
             Err(refused) => refused.to_string(),
         },
@@ -37,4 +39,15 @@ pub(super) fn choose_beside(
         }
     }
     Err(refused)
+}
+
+/// Gives a pane its integrator and step.
+pub(super) fn choose(pane: &mut Pane, choice: &PaneChoice) -> Result<(), CommandError> {
+    if let Some(dt) = choice.dt {
+        pane.use_step(dt)?;
+    }
+    match &choice.integrator {
+        Some(name) => pane.use_integrator(name),
+        None => Ok(()),
+    }
 }

@@ -26,7 +26,7 @@ use std::time::{Duration, Instant};
 use sinew_core::Clock;
 use sinew_world::{Command, CommandError, Journal, JournalError, Log, World};
 
-use self::beside::choose_beside;
+use self::beside::{choose, choose_beside};
 use self::course::{Course, Limits};
 use self::moments::{Moment, Moments};
 use self::pace::Pace;
@@ -1006,16 +1006,5 @@ impl Engine {
             grasped: self.grasped.clone(),
             trusted: self.trusted.is_some(),
         }
-    }
-}
-
-/// Gives a pane its integrator and step.
-fn choose(pane: &mut Pane, choice: &PaneChoice) -> Result<(), CommandError> {
-    if let Some(dt) = choice.dt {
-        pane.use_step(dt)?;
-    }
-    match &choice.integrator {
-        Some(name) => pane.use_integrator(name),
-        None => Ok(()),
     }
 }
