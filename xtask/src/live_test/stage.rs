@@ -36,6 +36,18 @@ fn led(tab: &mut Tab) -> Result<[f64; 3], Failure> {
     Ok(place)
 }
 
+/// A picture and a film of a second are files of their kinds that are not empty.
+fn capture(tab: &mut Tab) -> Result<(), Failure> {
+    let files = tab.value("window.sinew.captured()")?;
+    for (file, kind) in [(0, "image/png"), (1, "video/webm")] {
+        let size = files[file][1].as_f64().unwrap_or(0.0);
+        require(files[file][0] == kind && size > 5000.0, || {
+            format!("a file of kind {kind}: {}", files[file])
+        })?;
+    }
+    Ok(())
+}
+
 /// Colours, their range, the camera, the section and the handle for depth do what they say, and nothing else.
 pub(super) fn is_set_up(bench: &Bench) -> Result<(), Failure> {
     let scene = bench.scene(6, "symplectic-euler", 0.001)?;
@@ -46,6 +58,7 @@ pub(super) fn is_set_up(bench: &Bench) -> Result<(), Failure> {
     depth(&mut tab)?;
     range(&mut tab)?;
     section(&mut tab)?;
+    capture(&mut tab)?;
     complaints(&tab)?;
 
     let scene = bench.folder.path().join("slab-of-one-height.toml");

@@ -9,6 +9,7 @@ import { Connection } from "./connection.js";
 import { CutPanel } from "./cuts.js";
 import { DepthHandle } from "./depth.js";
 import { NO_TWIN } from "./frames.js";
+import { Capture } from "./capture.js";
 import { Hand } from "./hand.js";
 import { showHint } from "./hints.js";
 import { History, SPAN } from "./history.js";
@@ -399,7 +400,10 @@ function frame(now) {
     show();
     blade.flush(picture.applied);
   }
-  if (view.draw()) stage.follow();
+  if (view.draw()) {
+    stage.follow();
+    capture.follow();
+  }
   screen.drew(now);
   if (next) connection.drawn(next, screen.next);
   else if (connection.owed > 0 && !connection.picture) connection.grant(screen.next);
@@ -431,6 +435,15 @@ get("field").addEventListener("change", () => {
 window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { view.dirty = true; });
 get("fine").addEventListener("change", () => view.setFine(get("fine").checked));
 get("grasp").addEventListener("click", () => connection.command("grasp", { tool: hand.selected, on: !settings.grasped[hand.selected] }));
+const capture = new Capture(view, () => scenery?.title ?? "");
+get("picture").addEventListener("click", async () => capture.save(await capture.picture()));
+get("film").disabled = !capture.canFilm;
+get("film").addEventListener("click", () => {
+  if (capture.films) capture.end();
+  else capture.begin((file) => capture.save(file));
+  get("film").setAttribute("aria-pressed", String(capture.films));
+  get("film").textContent = capture.films ? "End film" : "Film";
+});
 get("edges").addEventListener("change", () => view.setEdges(get("edges").checked));
 window.addEventListener("keydown", (event) => {
   if (event.ctrlKey || event.metaKey || event.altKey || ["INPUT", "SELECT"].includes(event.target.tagName)) return;
@@ -472,6 +485,15 @@ window.sinew = {
   /// Where the camera is, and whereto it looks (m).
   get camera() { return { place: view.camera.lens.position.toArray(), target: view.camera.target.toArray() }; },
   balance: (pane = 0) => histories[pane].balance.at(-1),
+  /// Kind and size of a picture, and of a film of a second.
+  async captured() {
+    const picture = await capture.picture();
+    const film = await new Promise((done) => {
+      capture.begin(done);
+      setTimeout(() => capture.end(), 1000);
+    });
+    return [picture, film].map(({ type, size }) => [type, size]);
+  },
   command: (what, order) => connection.command(what, order),
   colourCount: () => new Set(new Uint32Array(view.pixels().buffer)).size,
   /// Pixels of tissue, which is redder than all else.
