@@ -196,6 +196,10 @@ pub(super) fn ctrl_c_and_taken_port(bench: &Bench) -> Result<(), Failure> {
         || ended.said.clone(),
     )?;
     tab.wait_for("!window.sinew.connected", PATIENCE)?;
+    tab.wait_for(
+        "['pause', 'reset', 'save', 'panes'].every((id) => document.getElementById(id).disabled)",
+        PATIENCE,
+    )?;
     say(&format!(
         "a taken port is one sentence; Ctrl-C ends with 0 in {:.2} s, and the page says so",
         ended.after.as_secs_f64()

@@ -120,6 +120,8 @@ const connection = new Connection({
   },
   closed: () => {
     connected = false;
+    // What is left is the camera and the picture.
+    for (const control of document.querySelectorAll(".transport button, #panes, #grasp, #cut, .side button, .side input, .side select")) control.disabled = true;
     if (beginning.isLeaving) {
       beginning.go();
       return;
