@@ -8,7 +8,6 @@ use sinew_scene::BodyModel;
 use sinew_world::World;
 
 use super::course::{Course, Limits};
-use crate::picture::Surface;
 
 /// Simulated time (s) for which a force stays constant.
 pub(super) const HELD: f64 = 0.004;
@@ -27,6 +26,8 @@ const STABLE: f64 = 0.2;
 pub(crate) struct Grip {
     /// Number that no earlier grip had.
     number: u64,
+    /// The client that grips.
+    pub(super) client: u32,
     /// The node in the middle, by its number in the body with its copies, and in the uncut mesh.
     node: u32,
     origin: u32,
@@ -37,21 +38,22 @@ pub(crate) struct Grip {
 }
 
 impl Grip {
-    /// A grip at a node of a body, at its place (m) at a time (s).
-    pub(super) fn at(
-        number: u64,
-        body: &BodyModel,
-        node: u32,
-        (t, place): (f64, [f64; 3]),
-    ) -> Self {
-        let [x, y, z] = place;
+    /// A grip at a node of a body, with a number and its client.
+    pub(super) fn at((number, client): (u64, u32), body: &BodyModel, node: u32) -> Self {
         Self {
             number,
-            node: number_in_body(body, node),
+            client,
+            node: body.number_in_body(node),
             origin: origin(body, node),
             stiffness: f64::INFINITY,
-            course: Course::at_rest(t, [x, y, z, 0.0, 0.0, 0.0]),
+            course: Course::at_rest(0.0, [0.0; 6]),
         }
+    }
+
+    /// The same, at this place (m) at a time (s).
+    pub(super) fn placed_at(mut self, t: f64, [x, y, z]: [f64; 3]) -> Self {
+        self.course = Course::at_rest(t, [x, y, z, 0.0, 0.0, 0.0]);
+        self
     }
 
     /// Makes the spring no stiffer than this (N/m).
@@ -85,66 +87,19 @@ pub(super) struct Patch {
 }
 
 impl Patch {
-    /// The patch of a grip on a body; `None` where its middle is fixed, or was removed.
-    pub(super) fn of(grip: &Grip, body: &BodyModel) -> Option<Self> {
-        let mesh = &body.mesh;
-        let nodes = 0..mesh.points.len() as u32;
-        let mut same = nodes.filter(|node| origin(body, *node) == grip.origin);
-        let first = same.clone().next();
-        let middle = same
-            .find(|node| number_in_body(body, *node) == grip.node)
-            .or(first)?;
-        body.model.cell_of_node(middle)?;
-        let surface = Surface::of(mesh);
-        let corners = |triangle: &[u32; 3]| triangle.map(|point| surface.nodes[point as usize]);
-        let triangles: Vec<[u32; 3]> = surface.triangles.iter().map(corners).collect();
-        let away = |node: u32| {
-            length(sub(
-                mesh.points[node as usize],
-                mesh.points[middle as usize],
-            ))
-        };
-        let beside = triangles
-            .iter()
-            .filter(|triangle| triangle.contains(&middle))
-            .flatten();
-        let (sum, count) = beside
-            .filter(|node| **node != middle)
-            .fold((0.0, 0), |(sum, count), node| {
-                (sum + away(*node), count + 1)
-            });
-        let radius = RADIUS * sum / f64::from(count.max(1));
-        // Over the surface, so that it stays on one side of a cut.
-        let mut found = vec![middle];
-        let mut seen = 0;
-        while seen < found.len() {
-            let node = found[seen];
-            seen += 1;
-            for corner in triangles
-                .iter()
-                .filter(|triangle| triangle.contains(&node))
-                .flatten()
-            {
-                if away(*corner) < radius && !found.contains(corner) {
-                    found.push(*corner);
-                }
-            }
-        }
-        found.retain(|node| body.model.cell_of_node(*node).is_some());
-        found.sort_by(|a, b| away(*a).total_cmp(&away(*b)));
-        found.truncate(MOST_NODES);
-        let weight = |node: u32| 1.0 - 0.9 * (away(node) / radius).powi(2);
-        let all: f64 = found.iter().map(|node| weight(*node)).sum();
-        let shares: Vec<(u32, f64)> = found
-            .iter()
-            .map(|node| (*node, weight(*node) / all))
-            .collect();
-        Some(Self {
+    /// The patch of a grip on a body; it has no nodes where its middle is fixed, or was removed.
+    pub(super) fn of(grip: &Grip, body: &BodyModel) -> Self {
+        let (shares, radius) = shares_of(grip, body).unwrap_or_default();
+        Self {
             number: grip.number,
-            mesh: Arc::clone(mesh),
+            mesh: Arc::clone(&body.mesh),
             shares,
             radius,
-        })
+        }
+    }
+
+    pub(super) fn has_nodes(&self) -> bool {
+        !self.shares.is_empty()
     }
 
     /// True if it is that of a grip on a body.
@@ -187,10 +142,60 @@ impl Patch {
     }
 }
 
-/// Number of a node of a mesh in the body with all its copies.
-fn number_in_body(body: &BodyModel, node: u32) -> u32 {
-    let cut = body.cut.as_ref();
-    cut.map_or(node, |from| from.cut.nodes[node as usize])
+/// The nodes around the middle of a grip with their shares, and the radius (m) of the patch; `None` where the middle is
+/// fixed, or was removed.
+fn shares_of(grip: &Grip, body: &BodyModel) -> Option<(Vec<(u32, f64)>, f64)> {
+    let mesh = &body.mesh;
+    let nodes = 0..mesh.points.len() as u32;
+    let mut same = nodes.filter(|node| origin(body, *node) == grip.origin);
+    let first = same.clone().next();
+    let middle = same
+        .find(|node| body.number_in_body(*node) == grip.node)
+        .or(first)?;
+    body.model.cell_of_node(middle)?;
+    let triangles: Vec<[u32; 3]> = body.surface_triangles().collect();
+    let away = |node: u32| {
+        length(sub(
+            mesh.points[node as usize],
+            mesh.points[middle as usize],
+        ))
+    };
+    let beside = triangles
+        .iter()
+        .filter(|triangle| triangle.contains(&middle))
+        .flatten();
+    let (sum, count) = beside
+        .filter(|node| **node != middle)
+        .fold((0.0, 0), |(sum, count), node| {
+            (sum + away(*node), count + 1)
+        });
+    let radius = RADIUS * sum / f64::from(count.max(1));
+    // Over the surface, so that it stays on one side of a cut.
+    let mut found = vec![middle];
+    let mut seen = 0;
+    while seen < found.len() {
+        let node = found[seen];
+        seen += 1;
+        for corner in triangles
+            .iter()
+            .filter(|triangle| triangle.contains(&node))
+            .flatten()
+        {
+            if away(*corner) < radius && !found.contains(corner) {
+                found.push(*corner);
+            }
+        }
+    }
+    found.retain(|node| body.model.cell_of_node(*node).is_some());
+    found.sort_by(|a, b| away(*a).total_cmp(&away(*b)));
+    found.truncate(MOST_NODES);
+    let weight = |node: u32| 1.0 - 0.9 * (away(node) / radius).powi(2);
+    let all: f64 = found.iter().map(|node| weight(*node)).sum();
+    let shares: Vec<(u32, f64)> = found
+        .iter()
+        .map(|node| (*node, weight(*node) / all))
+        .collect();
+    Some((shares, radius))
 }
 
 /// Number of a node of a mesh, or of the node that it is a copy of, in the uncut mesh.

@@ -89,9 +89,8 @@ pub(crate) struct Engine {
     /// Choice of the second pane, if it is opened.
     second: PaneChoice,
     hands: Hands,
-    /// Number of grips so far, and the client of the present one.
+    /// Number of grips so far.
     grips: u64,
-    gripped_by: Option<u32>,
     /// Largest speed (m/s) of steered tools.
     hand_speed: f64,
     /// Simulated time (s) until which poses are ignored.
@@ -211,7 +210,6 @@ impl Engine {
             },
             grips: 0,
             grasped: vec![false; tools],
-            gripped_by: None,
             hand_speed,
             deaf_until: f64::NEG_INFINITY,
             moments: Moments::default(),
@@ -593,11 +591,9 @@ impl Engine {
     fn obey(&mut self, waiting: &mut Waiting, shared: &Shared) -> bool {
         let begun = Instant::now();
         waiting.forget(|client| !shared.clients.is_here(client));
-        if self
-            .gripped_by
-            .is_some_and(|client| !shared.clients.is_here(client))
-        {
-            self.let_go();
+        let grip = self.hands.grip.as_ref();
+        if grip.is_some_and(|grip| !shared.clients.is_here(grip.client)) {
+            self.hands.grip = None;
         }
         for client in waiting.entered.drain(..) {
             shared.clients.tell(client, &self.settings());
@@ -669,11 +665,7 @@ impl Engine {
             return Err(format!("there is no tool {tool}"));
         };
         let here = hand.is_none().then(|| first.tool_pose(tool));
-        let limits = Limits {
-            shortest: GLIDE.max(self.tick()),
-            speed: self.hand_speed,
-            reach: first.reach_of(tool),
-        };
+        let limits = self.limits(first.reach_of(tool));
         self.check(&Command::Pose {
             tool: name,
             position: [x, y, z],
@@ -689,6 +681,15 @@ impl Engine {
             .get_or_insert_with(|| Course::at_rest(t, here.unwrap_or_default()));
         course.go(t, pose, limits);
         Ok(())
+    }
+
+    /// Limits of the hand's motion, with a tool of this reach (m).
+    fn limits(&self, reach: f64) -> Limits {
+        Limits {
+            shortest: GLIDE.max(self.tick()),
+            speed: self.hand_speed,
+            reach,
+        }
     }
 
     fn tool_name(&self, tool: usize) -> Result<Arc<str>, String> {
@@ -718,35 +719,27 @@ impl Engine {
             return Err("the body was cut in this moment: grip it once more".to_owned());
         }
         self.grips += 1;
-        let number = self.grips;
-        let mut grip = self.pane(pane)?.grip(number, point)?;
+        let who = (self.grips, client);
+        let mut grip = self.pane(pane)?.grip(who, point)?;
         for pane in &self.panes {
             grip.soften(pane.stiffness_of(&grip)?);
         }
-        (self.hands.grip, self.gripped_by) = (Some(grip), Some(client));
+        self.hands.grip = Some(grip);
         Ok(())
-    }
-
-    /// Lets the tissue go that is gripped.
-    fn let_go(&mut self) {
-        (self.hands.grip, self.gripped_by) = (None, None);
     }
 
     /// Pulls the tissue that is gripped to a place (m).
     fn pull(&mut self, client: u32, id: u32, to: [f64; 3]) -> Result<(), String> {
-        if to
+        // What is not a number is not within the range either.
+        if !to
             .iter()
-            .any(|place| place.is_nan() || place.abs() > FARTHEST)
+            .all(|place| (-FARTHEST..=FARTHEST).contains(place))
         {
             return Err(format!(
                 "a pull to {to:?}: expected finite numbers, at most {FARTHEST:e} m in size"
             ));
         }
-        let limits = Limits {
-            shortest: GLIDE.max(self.tick()),
-            speed: self.hand_speed,
-            reach: 0.0,
-        };
+        let limits = self.limits(0.0);
         let t = self.now();
         self.is_under_way(client, id, t + self.tick());
         // One that is gone: the motion went back.
@@ -821,7 +814,7 @@ impl Engine {
             }
             Order::Grip { pane, point, epoch } => self.grip(client, pane, point, epoch)?,
             Order::Pull { to } => self.pull(client, id, to)?,
-            Order::LetGo => self.let_go(),
+            Order::LetGo => self.hands.grip = None,
             Order::Grasp { tool, on } => self.grasp(client, id, tool, on)?,
             Order::Load { load, factor } => {
                 let place = self.loads.iter().position(|name| *name == load);
@@ -976,7 +969,7 @@ impl Engine {
     /// Releases all tools, with panes at the beginning.
     fn begin_anew(&mut self) {
         self.hands.tools.fill(None);
-        self.let_go();
+        self.hands.grip = None;
         self.clock = Clock::at(self.panes.first().map_or(0.0, Pane::t));
         // What was under way comes to nothing, and nobody has to wait for it.
         for command in &mut self.under_way {

@@ -79,10 +79,7 @@ impl Moments {
             return None;
         }
         self.failed = Some(self.failed.map_or(t, |failed| failed.max(t)));
-        self.attempts = match is_due_to_command {
-            true => self.attempts.saturating_add(1).min(MOST_ATTEMPTS),
-            false => self.attempts + 1,
-        };
+        self.attempts = (self.attempts + 1).min(MOST_ATTEMPTS);
         let until = t - DOOMED * f64::from(self.attempts);
         while self.kept.len() > 1
             && self

@@ -424,13 +424,13 @@ impl Pane {
             .as_ref()
             .is_none_or(|held| !held.patch.is_of(grip, body))
         {
-            self.held = Patch::of(grip, body).map(|patch| Held {
-                patch,
+            self.held = Some(Held {
+                patch: Patch::of(grip, body),
                 force: [0.0; 3],
                 until: t,
             });
         }
-        let Some(held) = &mut self.held else {
+        let Some(held) = self.held.as_mut().filter(|held| held.patch.has_nodes()) else {
             return Ok(());
         };
         if t >= held.until - SLACK * dt {
@@ -448,21 +448,22 @@ impl Pane {
         Ok(())
     }
 
-    /// A grip at a point of its surface.
+    /// A grip at a point of its surface, with a number and its client.
     ///
     /// # Errors
     /// A sentence for a point that it does not have, and for tissue that does not move.
-    pub(crate) fn grip(&self, number: u64, point: usize) -> Result<Grip, String> {
+    pub(crate) fn grip(&self, who: (u64, u32), point: usize) -> Result<Grip, String> {
         let (body, surface) = self.seen_body().ok_or("nothing is shown yet")?;
         let node = *surface
             .nodes
             .get(point)
             .ok_or_else(|| format!("there is no point {point}"))?;
-        let mut grip = Grip::at(number, body, node, (self.t(), [0.0; 3]));
-        let patch = Patch::of(&grip, body).ok_or("this tissue is fixed: pull it elsewhere")?;
-        let place = patch.place(&self.session, body);
-        grip = Grip::at(number, body, node, (self.t(), place));
-        Ok(grip)
+        let grip = Grip::at(who, body, node);
+        let patch = Patch::of(&grip, body);
+        if !patch.has_nodes() {
+            return Err("this tissue is fixed: pull it elsewhere".to_owned());
+        }
+        Ok(grip.placed_at(self.t(), patch.place(&self.session, body)))
     }
 
     /// The largest stiffness (N/m) of the spring of a grip on its body.
@@ -470,10 +471,13 @@ impl Pane {
     /// # Errors
     /// A sentence if its method takes no forces that are not known in advance.
     pub(crate) fn stiffness_of(&self, grip: &Grip) -> Result<f64, String> {
-        let body = body(&self.session);
-        let Some((body, patch)) = body.and_then(|body| Some((body, Patch::of(grip, body)?))) else {
+        let Some(body) = body(&self.session) else {
             return Ok(f64::INFINITY);
         };
+        let patch = Patch::of(grip, body);
+        if !patch.has_nodes() {
+            return Ok(f64::INFINITY);
+        }
         let force = |(node, share): &(u32, f64)| (*node, [0.0, 0.0, f64::EPSILON * share]);
         let forces = Command::Forces(patch.shares.iter().map(force).collect());
         let checked = self.session.check(&forces);
@@ -606,6 +610,7 @@ impl Pane {
         let reports =
             (0..self.sums.impulses.len()).filter_map(|tool| Some(tools?.report(state, tool)));
         let contacts: usize = reports.map(|report| report.contacts).sum();
+        let held = self.held.as_ref().filter(|held| held.patch.has_nodes());
         let head = PaneHead {
             step: self.session.steps() as u64,
             t,
@@ -627,11 +632,11 @@ impl Pane {
             nodes: body.map_or(0, |body| body.mesh.points.len()) as u32,
             tets: body.map_or(0, |body| body.mesh.tets.len()) as u32,
             cuts,
-            pull: match (&self.held, self.sums.span > 0.0) {
+            pull: match (held, self.sums.span > 0.0) {
                 (Some(_), true) => self.sums.pulled.map(|impulse| impulse / self.sums.span),
                 _ => [0.0; 3],
             },
-            grip: match (&self.held, body) {
+            grip: match (held, body) {
                 (Some(held), Some(body)) => held.patch.place(&self.session, body),
                 _ => [f64::NAN; 3],
             },

@@ -214,29 +214,25 @@ impl Cutter {
     }
 
     /// True if [`Cutter::follow`] must be called before a step of `dt` (s) that ends at `end` (s).
-    fn is_due(&self, end: f64, dt: f64, body: &SceneBody, inputs: &Inputs) -> bool {
-        let Cutting { blade, remove, .. } = &self.plan.cutting;
-        if remove.is_some() {
+    #[must_use]
+    pub fn is_due(&self, end: f64, dt: f64, body: &SceneBody, inputs: &Inputs) -> bool {
+        if self.plan.cutting.remove.is_some() {
             return true;
         }
-        let strokes = self.plan.strokes.as_ref();
-        let mut acts = strokes.map(|strokes| {
-            let from = self.followed.unwrap_or(f64::NEG_INFINITY);
-            strokes.between(from, end).peekable()
-        });
-        let is_stroke = acts.as_mut().is_some_and(|acts| acts.peek().is_some());
-        let tool = match (blade, body.model().tools()) {
-            (Blade::Tool(blade), Some(tools)) => Some((tools, *blade)),
-            _ => None,
-        };
-        if tool.is_none() && !is_stroke {
+        let from = self.followed.unwrap_or(f64::NEG_INFINITY);
+        let strokes = self.plan.strokes.iter();
+        let mut acts = strokes
+            .flat_map(|strokes| strokes.between(from, end))
+            .peekable();
+        let tool = self.blade_of_tools(body);
+        if tool.is_none() && acts.peek().is_none() {
             return false;
         }
         let Some(followed) = self.followed else {
             return true;
         };
         let mut way = self.speed * (end - followed);
-        for act in acts.into_iter().flatten() {
+        for act in acts {
             match act {
                 BladeAct::Lift => return true,
                 BladeAct::Sweep(poses) => way += longest_way(poses),
@@ -250,6 +246,14 @@ impl Cutter {
         // The step itself is one of those that are followed at once.
         let steps = (end - followed) / dt + 0.5;
         way > self.short_way || steps >= MOST_STEPS_AT_ONCE as f64
+    }
+
+    /// The tool that is the scene's blade, by its index.
+    fn blade_of_tools<'a>(&self, body: &'a SceneBody) -> Option<(&'a Arc<Tools>, usize)> {
+        match (&self.plan.cutting.blade, body.model().tools()) {
+            (Blade::Tool(blade), Some(tools)) => Some((tools, *blade)),
+            _ => None,
+        }
     }
 
     /// Cuts along the path of the scene's blade up to `end` (s), and removes the tetrahedra that are inside the
@@ -279,9 +283,9 @@ impl Cutter {
             }
         }
         let tools = body.model().tools();
-        if let (Blade::Tool(blade), Some(tools)) = (&plan.cutting.blade, tools) {
+        if let Some((tools, blade)) = self.blade_of_tools(body) {
             let begin = followed.unwrap_or(t);
-            let parts = parts_of_turn(tools, *blade, [begin, end], inputs);
+            let parts = parts_of_turn(tools, blade, [begin, end], inputs);
             let at = |part: u32| {
                 let share = f64::from(part) / f64::from(parts);
                 let t = if part == parts {
@@ -289,7 +293,7 @@ impl Cutter {
                 } else {
                     begin + share * (end - begin)
                 };
-                edge(tools, *blade, t, inputs)
+                edge(tools, blade, t, inputs)
             };
             for part in 0..parts {
                 if let [Some(from), Some(to)] = [part, part + 1].map(at) {
@@ -630,13 +634,7 @@ fn touched(body: &SceneBody) -> impl Iterator<Item = [u32; 2]> + '_ {
     let both = body.and_then(|body| Some((body, body.tools.as_ref()?)));
     both.into_iter().flat_map(|(body, tools)| {
         let cells = tools.touched_cells().iter();
-        let nodes = cells.map(|cell| {
-            let node = body.model.nodes()[cell.cell as usize];
-            match &body.cut {
-                Some(from) => from.cut.nodes[node as usize],
-                None => node,
-            }
-        });
+        let nodes = cells.map(|cell| body.number_in_body(body.model.nodes()[cell.cell as usize]));
         nodes.zip(0..).map(|(node, place)| [node, place])
     })
 }

@@ -47,10 +47,17 @@ impl BodyModel {
     }
 
     /// The triangles of the surface, between nodes of the mesh.
-    pub(crate) fn surface_triangles(&self) -> impl Iterator<Item = [u32; 3]> + '_ {
+    pub fn surface_triangles(&self) -> impl Iterator<Item = [u32; 3]> + '_ {
         let surface = &**self.surface();
         let node = |point: u32| surface.nodes[point as usize];
         surface.triangles.iter().map(move |points| points.map(node))
+    }
+
+    /// Number of a node of the mesh among all nodes that the body ever had, copies included.
+    #[must_use]
+    pub fn number_in_body(&self, node: u32) -> u32 {
+        let cut = self.cut.as_ref();
+        cut.map_or(node, |from| from.cut.nodes[node as usize])
     }
 }
 

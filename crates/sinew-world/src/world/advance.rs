@@ -245,31 +245,24 @@ impl World {
         if self.tools.iter().any(|hand| hand.target.is_some()) {
             return Ok(1);
         }
-        let idle = self.cutter.as_ref().map(|cutter| self.idle_steps(cutter));
+        let idle = self.cutter.as_ref().map(|cutter| {
+            let clock = self.state.clock;
+            cutter.idle_steps(clock, dt, &self.undriven, &self.inputs)
+        });
         Ok(idle.unwrap_or(usize::MAX).max(1))
-    }
-
-    /// Steps of the present length before which the scene's blade cuts nothing.
-    fn idle_steps(&self, cutter: &Cutter) -> usize {
-        cutter.idle_steps(
-            self.state.clock,
-            self.method.dt,
-            &self.undriven,
-            &self.inputs,
-        )
     }
 
     /// Applies the cuts of users and of the scene at the beginning of a step that ends at `end` (s).
     fn cut_before(&mut self, end: f64) -> Result<(), WorldStepError> {
         self.change = None;
         let drives_loads = self.drives_loads();
-        let is_idle = |cutter: &Cutter| self.sheets.is_empty() && self.idle_steps(cutter) > 0;
-        if self.cutter.as_ref().is_none_or(is_idle) {
-            return Ok(());
-        }
         let Some(cutter) = &mut self.cutter else {
             return Ok(());
         };
+        let is_due = || cutter.is_due(end, self.method.dt, &self.undriven, &self.inputs);
+        if self.sheets.is_empty() && !is_due() {
+            return Ok(());
+        }
         let energy = cutter.totals().energy();
         let (state, inputs) = (&mut self.state, &self.inputs);
         let (trial, mut is_kept) = (&mut self.trial, false);

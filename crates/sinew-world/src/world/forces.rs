@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use sinew_core::{ForceInputError, Inputs, Ramp};
-use sinew_scene::{BodyModel, SceneBody};
+use sinew_scene::SceneBody;
 
 use super::World;
 use crate::command::CommandError;
@@ -43,11 +43,13 @@ pub(super) fn carry(
         return Ok(());
     };
     let nodes = 0..after.mesh.points.len() as u32;
-    let places: HashMap<u32, u32> = nodes.map(|node| (uncut_node(after, node), node)).collect();
+    let places: HashMap<u32, u32> = nodes
+        .map(|node| (after.number_in_body(node), node))
+        .collect();
     let dof = |(dof, force): &(u32, f64)| {
         let (cell, axis) = (dof / 3, dof % 3);
         let node = before.model.nodes().get(cell as usize)?;
-        let node = places.get(&uncut_node(before, *node))?;
+        let node = places.get(&before.number_in_body(*node))?;
         Some((3 * after.model.cell_of_node(*node)? + axis, *force))
     };
     let carried: Vec<_> = (inputs.forces())
@@ -69,10 +71,4 @@ pub(super) fn carry(
         }
     }
     Ok(())
-}
-
-/// The number of a node among all that the body ever had.
-fn uncut_node(body: &BodyModel, node: u32) -> u32 {
-    let cut = body.cut.as_ref();
-    cut.map_or(node, |from| from.cut.nodes[node as usize])
 }
