@@ -5,8 +5,7 @@ use std::sync::Arc;
 use std::thread;
 use std::time::{Duration, Instant};
 
-use sinew_fem::{Law, LoadKind};
-use sinew_scene::{BodyModel, Scene, Simulation};
+use sinew_scene::{Scene, Simulation};
 use sinew_world::{Journal, JournalError, World};
 use tokio::runtime::Runtime;
 
@@ -15,11 +14,10 @@ use crate::ended::Ended;
 use crate::engine::{Beginning, Engine, Survey};
 use crate::error::LiveError;
 use crate::pane_choice::PaneChoice;
-use crate::picture::{Colours, Surface};
-use crate::protocol::{Hertz, LoadFacts, Scenery};
+use crate::picture::Surface;
 use crate::scene_values::SceneValues;
+use crate::scenery::{Presented, scenery_of};
 use crate::server::{Shared, Token, router, runtime, serve};
-use crate::tool_facts::tools_of;
 
 /// Time between two checks for a request to end.
 const LOOK: Duration = Duration::from_millis(50);
@@ -75,45 +73,19 @@ impl Live {
         let simulation = Arc::clone(session.scene());
         let body = simulation.model().body().ok_or(LiveError::NoBody)?;
         let surface = Surface::of(&body.mesh);
-        let loads = loads_of(&simulation, body);
-        let laws: Vec<&Law> = body
-            .problem
-            .regions
-            .iter()
-            .map(|region| &region.law)
-            .collect();
-        let hand_speed = hand_speed.unwrap_or_else(|| crate::hand_speed::hand_speed(&body.model));
-        let fields = Colours::fields_of(&body.model, &laws, body.tools.is_some());
-        let title = scene.title().to_owned();
+        let presented = Presented {
+            title: scene.title().to_owned(),
+            hand_speed: hand_speed.unwrap_or_else(|| crate::hand_speed::hand_speed(&body.model)),
+            from_start,
+        };
+        let scenery = scenery_of(&simulation, &[], &presented)?;
+        let files = session.log().header().inputs.clone();
         let beginning = Beginning {
-            scene: SceneValues {
-                scene,
-                values,
-                files: session.log().header().inputs.clone(),
-            },
+            scene: SceneValues::new(scene, values, files),
             panes,
             second,
-            fields: fields.clone(),
-            hand_speed,
-            loads: loads.iter().map(|load| load.name.clone()).collect(),
-            from_start: from_start.is_some(),
-        };
-        let scenery = Scenery {
-            title,
-            version: env!("CARGO_PKG_VERSION"),
-            nodes: body.mesh.points.len(),
-            tets: body.mesh.tets.len(),
-            cuts: simulation.is_cut(),
-            fields,
-            youngs_modulus: laws
-                .iter()
-                .map(|law| law.youngs_modulus())
-                .fold(0.0, f64::max),
-            tools: tools_of(body, &simulation),
-            hand_speed,
-            loads,
-            hertz: hertz_of(&laws),
-            from_start,
+            scenery: scenery.clone(),
+            presented,
         };
         let engine = Engine::new(beginning, session, surface)?;
         let shared = Arc::new(Shared::new(scenery));
@@ -189,37 +161,4 @@ impl Live {
         outcome.map_err(LiveError::Serve)?;
         simulated.join().map_err(|_| LiveError::Simulation)
     }
-}
-
-fn loads_of(simulation: &Simulation, body: &BodyModel) -> Vec<LoadFacts> {
-    let names = simulation.body().load_names().into_iter().enumerate();
-    let facts = names.map(|(place, name)| {
-        let what = match body.problem.loads.get(place) {
-            Some(load) => format!("{}, {}", kind_of(&load.kind), load.on),
-            None => name.clone(),
-        };
-        LoadFacts { name, what }
-    });
-    facts.collect()
-}
-
-/// Description of a kind of load, with its size.
-fn kind_of(kind: &LoadKind) -> String {
-    let length = |vector: &[f64; 3]| vector.iter().map(|x| x * x).sum::<f64>().sqrt();
-    match kind {
-        LoadKind::Traction(traction) => format!("{} Pa", length(traction)),
-        LoadKind::Pressure(pressure) | LoadKind::FollowingPressure(pressure) => {
-            format!("pressure of {pressure} Pa")
-        }
-        LoadKind::Force(force) => format!("{} N", length(force)),
-    }
-}
-
-/// The constants of a body of one isotropic material.
-fn hertz_of(laws: &[&Law]) -> Option<Hertz> {
-    let [law] = laws else { return None };
-    Some(Hertz {
-        youngs_modulus: law.youngs_modulus(),
-        poissons_ratio: law.poissons_ratio()?,
-    })
 }

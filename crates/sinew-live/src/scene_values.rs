@@ -1,30 +1,67 @@
-//! A scene with the values that a command line and a page set in it.
+//! A scene with the values that a command line and pages set in it.
 
 use sinew_scene::{Scene, SceneError};
 use sinew_world::{InputFile, Log};
 
 use crate::error::LiveError;
 
-/// A scene with the values that a command line and a page set in its file, as `KEY=VALUE`.
+/// A key of a scene with its other value, or `None` if it is removed.
+pub(crate) type Change = (String, Option<String>);
+
+/// A scene with the values that a command line and pages set in its file.
 #[derive(Clone, Debug)]
 pub(crate) struct SceneValues {
+    /// The scene with the values of all of them.
     pub(crate) scene: Scene,
-    pub(crate) values: Vec<String>,
+    /// The scene with the values of the command line.
+    opened: Scene,
+    /// The values of the command line, as `KEY=VALUE`.
+    given: Vec<String>,
+    /// The values that pages set.
+    changes: Vec<Change>,
     /// The files of the scene at the time when the page was opened.
-    pub(crate) files: Vec<InputFile>,
+    files: Vec<InputFile>,
 }
 
 impl SceneValues {
-    /// The same scene with another value of a key.
-    pub(crate) fn with(&self, key: &str, value: &str) -> Result<Self, SceneError> {
-        let assignment = format!("{key}={value}");
-        let scene = Scene::parse_with(self.scene.source(), &[&assignment])?;
-        let is_other = |text: &&String| text.split_once('=').is_none_or(|(own, _)| own != key);
-        let mut values: Vec<String> = self.values.iter().filter(is_other).cloned().collect();
-        values.push(assignment);
-        Ok(Self {
+    /// A scene with these values of a command line and these files.
+    pub(crate) fn new(scene: Scene, given: Vec<String>, files: Vec<InputFile>) -> Self {
+        Self {
+            opened: scene.clone(),
             scene,
-            values,
+            given,
+            changes: Vec::new(),
+            files,
+        }
+    }
+
+    /// All values as a command line has them: those of pages follow those that were given to it.
+    pub(crate) fn values(&self) -> Vec<String> {
+        let given = self.given.iter().cloned();
+        given.chain(assignments(&self.changes)).collect()
+    }
+
+    /// The same scene with other values of keys.
+    pub(crate) fn with(&self, changes: Vec<Change>) -> Result<Self, SceneError> {
+        let mut all = self.changes.clone();
+        all.retain(|(key, _)| changes.iter().all(|(other, _)| other != key));
+        all.extend(changes);
+        self.with_all(all)
+    }
+
+    /// The same scene with other values of the keys that pages set, each changed or left out.
+    pub(crate) fn with_changed(
+        &self,
+        change: impl FnMut(Change) -> Option<Change>,
+    ) -> Result<Self, SceneError> {
+        self.with_all(self.changes.iter().cloned().filter_map(change).collect())
+    }
+
+    fn with_all(&self, changes: Vec<Change>) -> Result<Self, SceneError> {
+        let values: Vec<String> = assignments(&changes).collect();
+        Ok(Self {
+            scene: Scene::parse_with(self.opened.source(), &values)?,
+            changes,
             ..self.clone()
         })
     }
@@ -41,4 +78,11 @@ impl SceneValues {
             None => Ok(()),
         }
     }
+}
+
+fn assignments(changes: &[Change]) -> impl Iterator<Item = String> {
+    changes.iter().map(|(key, value)| match value {
+        Some(value) => format!("{key}={value}"),
+        None => format!("~{key}"),
+    })
 }

@@ -4,15 +4,22 @@ use sinew_core::Inputs;
 use sinew_scene::{BodyModel, Simulation};
 use sinew_tools::{Convex, Part, Tool};
 
+use crate::new_tool::AddedTool;
 use crate::protocol::{PartFacts, ToolFacts};
 
-/// The tools of a scene at the beginning.
-pub(crate) fn tools_of(body: &BodyModel, simulation: &Simulation) -> Vec<ToolFacts> {
+/// The tools of a scene at the beginning, of which pages added the last ones.
+pub(crate) fn tools_of(
+    body: &BodyModel,
+    simulation: &Simulation,
+    added: &[AddedTool],
+) -> Vec<ToolFacts> {
     let Some(tools) = &body.tools else {
         return Vec::new();
     };
     let state = simulation.initial_state();
+    let own = tools.tools().len().saturating_sub(added.len());
     let facts = tools.tools().iter().enumerate().map(|(index, tool)| {
+        let kind = index.checked_sub(own).and_then(|index| added.get(index));
         let pose = tools.pose(state, Inputs::none(), index);
         let ([x, y, z], [a, b, c]) = (pose.position(), pose.rotation_vector());
         let Tool { name, shape, .. } = tool;
@@ -20,6 +27,7 @@ pub(crate) fn tools_of(body: &BodyModel, simulation: &Simulation) -> Vec<ToolFac
             name: name.clone(),
             parts: shape.parts().iter().map(part_facts).collect(),
             start: [x, y, z, a, b, c],
+            added: kind.map(|tool| tool.kind),
         }
     });
     facts.collect()

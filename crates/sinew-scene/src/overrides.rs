@@ -8,11 +8,14 @@ use crate::nearest::nearest;
 use crate::scene::DOCUMENT;
 use crate::source::SceneSource;
 
+/// Begins a text that removes a value.
+const REMOVES: char = '~';
+
 impl SceneSource {
     /// The scene with other values: `KEY=VALUE` each, the parts of a key separated by dots, tables of a list by their
     /// numbers from 1 on. A value is TOML; a text that is not TOML is a string. A key that its table does not have is
-    /// added to it, and so is a missing table, at the end of its list if it is one of a list; the rest of the text is
-    /// unchanged.
+    /// added to it, and so is a missing table, at the end of its list if it is one of a list; `~KEY` removes a value.
+    /// The rest of the text is unchanged.
     ///
     /// ```
     /// use sinew_scene::SceneSource;
@@ -46,6 +49,11 @@ impl SceneSource {
             let form = || OverrideError::Form {
                 text: text.to_owned(),
             };
+            if let Some(path) = text.strip_prefix(REMOVES) {
+                let parts: Vec<&str> = path.trim().split('.').collect();
+                remove(document.as_table_mut(), path.trim(), &parts)?;
+                continue;
+            }
             let (path, value) = text.split_once('=').ok_or_else(form)?;
             let (path, value) = (path.trim(), value.trim());
             if path.split('.').any(str::is_empty) || value.is_empty() {
@@ -57,6 +65,50 @@ impl SceneSource {
             set((document.as_table_mut(), within), path, &parts, value)?;
         }
         Ok(self.with_text(document.to_string()))
+    }
+}
+
+/// Removes the value at the remaining parts of a path within this table.
+fn remove(table: &mut dyn TableLike, path: &str, parts: &[&str]) -> Result<(), OverrideError> {
+    let [part, rest @ ..] = parts else {
+        return Ok(());
+    };
+    let names: Vec<String> = table.iter().map(|(name, _)| name.to_owned()).collect();
+    let missing = || OverrideError::Missing {
+        path: path.to_owned(),
+        missing: (*part).to_owned(),
+        nearest: nearest(part, names.iter().map(String::as_str)).map(str::to_owned),
+    };
+    let item = table.get_mut(part).ok_or_else(missing)?;
+    let kind = |part: &str, item: &Item, expected| OverrideError::Kind {
+        path: path.to_owned(),
+        part: part.to_owned(),
+        found: kind_of(item),
+        expected,
+    };
+    match (item, rest) {
+        (Item::Value(_), []) => {
+            table.remove(part);
+            Ok(())
+        }
+        (other, []) => Err(kind(part, other, "a value")),
+        (Item::ArrayOfTables(tables), [number, rest @ ..]) => {
+            let place = number
+                .parse::<usize>()
+                .ok()
+                .and_then(|it| it.checked_sub(1));
+            let count = tables.len();
+            let found = place.and_then(|place| tables.get_mut(place));
+            let found = found.ok_or_else(|| OverrideError::Number {
+                path: path.to_owned(),
+                list: (*part).to_owned(),
+                count,
+            })?;
+            remove(found, path, rest)
+        }
+        (Item::Table(table), rest) => remove(table, path, rest),
+        (Item::Value(Value::InlineTable(table)), rest) => remove(table, path, rest),
+        (other, _) => Err(kind(part, other, "a table")),
     }
 }
 
@@ -227,6 +279,9 @@ mod tests {
                 "[mesh]",
                 "gravity = [0, 0, -9.81]\n[mesh]",
             ),
+            ("~run.dt", "dt = 0.1\n", ""),
+            ("~region.2.density", "density = 2 # kg/m3\n", ""),
+            ("~mesh.cube.edge", "cells = 4, edge = 0.1 ", "cells = 4 "),
         ];
         for (value, from, to) in cases {
             assert_eq!(with(&[value]).unwrap(), SCENE.replace(from, to), "{value}");
@@ -239,6 +294,10 @@ mod tests {
             ("dt", "expected KEY=VALUE"),
             ("run..dt=1", "expected KEY=VALUE"),
             ("run.dt=", "expected KEY=VALUE"),
+            ("~run.td", "did you mean `dt`?"),
+            ("~run", "`run` is a table, expected a value"),
+            ("~region.3.density", "the scene has 2 of `region`"),
+            ("~run.dt.x", "`dt` is a value, expected a table"),
             ("rum.dt=1", "the scene has no `rum`; did you mean `run`?"),
             (
                 "region.density=1",

@@ -22,6 +22,14 @@ export class Camera {
     this.reset();
   }
 
+  /// Leaves more or less room for tools, in the view of now.
+  makeRoom(room) {
+    this.target.z += 0.4 * (room - this.room) * this.extent;
+    this.distance *= (3.3 + 1.6 * room) / (3.3 + 1.6 * this.room);
+    this.room = room;
+    this.place();
+  }
+
   reset() {
     this.turnTo([-0.95, 0.42]);
     this.target.z += (0.06 + 0.4 * this.room) * this.extent;

@@ -17,7 +17,7 @@ export class DepthHandle {
 
   /// How far (m) the tool is behind the middle of the body.
   get depth() {
-    return this.hand.tools[this.hand.selected].position.clone().sub(this.view.centre).dot(this.view.camera.directions().away);
+    return this.hand.tool.position.clone().sub(this.view.centre).dot(this.view.camera.directions().away);
   }
 
   lead() {
@@ -34,7 +34,7 @@ export class DepthHandle {
 
   /// Follows the tool in the hand; there is none with a blade.
   show(isBlade) {
-    const hasTool = this.hand.tools.length > 0;
+    const hasTool = Boolean(this.hand.tool);
     get("reach-box").hidden = !hasTool;
     this.slider.disabled = isBlade;
     if (!hasTool || this.view.extent === undefined) return;

@@ -2,8 +2,12 @@
 
 import { Vector3 } from "three";
 import { Pull } from "./pull.js";
+import { turned } from "./turning.js";
 
 const CLOSE = 60;
+
+/// Angle (rad) by which a drag of one pixel, and an arrow key, turn a tool.
+const [PIXEL, ARROW] = [0.01, 0.1];
 
 /// Time (ms) after the last pointer or key from which on others may lead what this hand led: what was sent comes back within it.
 const OWN = 500;
@@ -13,7 +17,10 @@ export class Hand {
     this.view = view;
     this.actions = actions;
     this.tools = [];
-    this.selected = 0;
+    /// The tool in the hand; -1 for the bare hand, which pulls tissue.
+    this.selected = -1;
+    /// Whether drags and arrow keys turn the tool.
+    this.turns = false;
     this.pull = new Pull(view, actions);
     this.pointers = new Map();
     this.lifted = false;
@@ -34,11 +41,23 @@ export class Hand {
     window.addEventListener("blur", () => this.lift(false));
   }
 
-  /// Tools as the scenery has them; without one the hand pulls tissue.
-  begin(tools) {
+  /// Tools as the scenery has them, and which one is in the hand.
+  begin(tools, selected) {
     this.tools = tools.map(({ start }) => ({ position: new Vector3(...start.slice(0, 3)), rotation: start.slice(3), led: false }));
+    this.take(selected);
+  }
+
+  /// Takes a tool into the hand, or none (-1).
+  take(number) {
+    this.lift(false);
     this.pull.letGo();
-    this.selected = 0;
+    this.selected = number < this.tools.length ? number : -1;
+    if (!this.tool) this.turns = false;
+  }
+
+  /// The tool in the hand, if there is one.
+  get tool() {
+    return this.tools[this.selected];
   }
 
   /// Where tools are led now, as long as this hand does not lead them: another page may, or may have.
@@ -64,11 +83,11 @@ export class Hand {
   }
 
   get drags() {
-    return this.mode === "tool" && this.pointers.size > 0;
+    return this.mode === "tool" && Boolean(this.tool) && this.pointers.size > 0;
   }
 
   get canMove() {
-    return this.tools.length > 0 || this.pull.isOn;
+    return Boolean(this.tool) || this.pull.isOn;
   }
 
   down(event) {
@@ -81,8 +100,8 @@ export class Hand {
     if (this.mode !== "tool") this.pull.letGo();
     if (this.mode === "blade") blade.begin(event.clientX, event.clientY);
     else blade.end();
-    if (this.mode === "tool" && this.tools.length > 1) this.pick(event);
-    if (this.mode === "tool" && this.tools.length === 0 && !this.grip(event.clientX, event.clientY)) this.mode = "view";
+    if (this.mode === "tool" && this.tool) this.pick(event);
+    if (this.mode === "tool" && !this.tool && !this.grip(event.clientX, event.clientY)) this.mode = "view";
   }
 
   /// Grips tissue at a place of the page; false where there is none.
@@ -92,25 +111,27 @@ export class Hand {
   }
 
   /// What a press does: the first finger or the left button acts, where there is something to act with; others turn and move the view.
-  modeOf({ pointerType, button, shiftKey }) {
+  modeOf({ pointerType, button, shiftKey, altKey }) {
     const { blade } = this.actions;
-    const acts = blade.isOn || this.tools.length > 0;
+    const acts = blade.isOn || Boolean(this.tool);
     const isFirst = pointerType === "touch" ? this.pointers.size === 1 : button === 0;
     // Without a tool the tissue under the pointer is pulled.
+    if (isFirst && !blade.isOn && this.tool && (altKey || this.turns)) return "turn";
     if (isFirst && !shiftKey) return blade.isOn ? "blade" : "tool";
     if (pointerType === "touch") return isFirst || (acts && this.pointers.size === 2) ? "view" : "pan";
     return shiftKey || button === 1 || (button === 2 && !acts) ? "pan" : "view";
   }
 
-  /// Selects the tool that is nearest to the pointer.
+  /// Takes the tool into the hand at which the pointer is.
   pick(event) {
     const pane = this.actions.paneAt(event.clientX);
     const distance = ({ position }) => {
       const [x, y] = this.view.camera.project(position, pane);
       return Math.hypot(x - event.clientX, y - event.clientY);
     };
-    const nearest = this.tools.map(distance).reduce((best, away, index) => (away < best[0] ? [away, index] : best), [Infinity, 0]);
-    if (nearest[0] < 4 * CLOSE) this.selected = nearest[1];
+    // The one in the hand stays there unless another one is clearly meant.
+    const [away, number] = this.tools.map((tool, index) => [distance(tool), index]).reduce((best, one) => (one[0] < best[0] ? one : best));
+    if (number !== this.selected && away < CLOSE && away < 0.5 * distance(this.tool)) this.actions.take(number);
   }
 
   move(event) {
@@ -132,6 +153,8 @@ export class Hand {
       const { right, up } = camera.directions();
       const scale = camera.metresPerPixel(this.place());
       this.shift(right.multiplyScalar(dx * scale).addScaledVector(up, -dy * scale));
+    } else if (this.mode === "turn") {
+      this.turn(PIXEL * dx, PIXEL * dy);
     } else if (this.mode === "pan") {
       camera.pan(dx, dy);
     } else {
@@ -170,6 +193,11 @@ export class Hand {
     };
     // Shift makes letters large, and steps fine.
     const move = moves[event.key.length === 1 ? event.key.toLowerCase() : event.key];
+    if (arrow && this.turns && this.tool && !event.ctrlKey && !event.altKey) {
+      event.preventDefault();
+      this.turn(ARROW * fine * arrow[0], ARROW * fine * arrow[1]);
+      return;
+    }
     if (arrow && (event.ctrlKey || !this.canMove)) {
       event.preventDefault();
       if (event.ctrlKey) camera.pan(-30 * fine * arrow[0], -30 * fine * arrow[1]);
@@ -183,7 +211,7 @@ export class Hand {
       camera.orbit(event.key === "[" ? 12 : -12, 0);
     } else if (event.key === "Escape" && this.pull.isOn) {
       this.pull.letGo();
-    } else if (event.key === "g" && this.tools.length === 0) {
+    } else if (event.key === "g" && !this.tool) {
       if (this.pull.isOn) this.pull.letGo();
       else this.grip(...this.actions.middle());
     }
@@ -191,11 +219,11 @@ export class Hand {
 
   /// Where the hand is.
   place() {
-    return this.tools[this.selected]?.position ?? this.pull.target ?? this.view.centre;
+    return this.tool?.position ?? this.pull.target ?? this.view.centre;
   }
 
   shift(by) {
-    const tool = this.tools[this.selected];
+    const { tool } = this;
     if (tool) {
       this.movedAt = performance.now();
       tool.position.add(by);
@@ -207,8 +235,19 @@ export class Hand {
     }
   }
 
+  /// Turns the tool about the directions up and to the right of whoever looks (rad).
+  turn(aboutUp, aboutRight) {
+    const { tool } = this;
+    if (!tool) return;
+    const { right, up } = this.view.camera.directions();
+    this.movedAt = performance.now();
+    tool.rotation = turned(turned(tool.rotation, up, aboutUp), right, aboutRight);
+    tool.led = true;
+    this.actions.lead(this.selected, this.target(tool), tool.rotation);
+  }
+
   lift(on) {
-    const tool = this.tools[this.selected];
+    const { tool } = this;
     if (!tool || on === this.lifted || this.view.extent === undefined) return;
     this.lifted = on;
     this.movedAt = performance.now();

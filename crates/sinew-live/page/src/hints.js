@@ -7,34 +7,32 @@ const get = (id) => document.getElementById(id);
 const NAVIGATION = "wheel: zoom · Shift + drag: pan · 1 to 6: sides, V: as at first";
 
 function sentences({ tools, cuts, hand_speed: speed }) {
+  const most = ` · at most ${plain(speed, 2)} m/s (--hand-speed)`;
+  const toBlade = cuts ? " · C: a blade" : "";
   const all = {
-    blade: `Drag: cut along your line of sight · right button or two fingers: turn the view · ${NAVIGATION} · arrows move the blade, Enter lowers and lifts it · C: done`,
-    rest: `Drag on tissue: pull it · drag beside it, right button or two fingers: turn the view · ${NAVIGATION} · G: grip the tissue in the middle, arrows pull it, G again: let go`,
+    rest: `Drag on tissue: pull it · drag beside it, right button or two fingers: turn the view · ${NAVIGATION} · G: grip the tissue in the middle, arrows pull it, G again: let go${most}${toBlade}`,
   };
+  if (cuts) all.blade = `Drag: cut along your line of sight · right button or two fingers: turn the view · ${NAVIGATION} · arrows move the blade, Enter lowers and lifts it · C: done`;
   if (tools.length > 0) {
-    all.rest = `Drag: move the tool · E and Q, or the handle at the left: deeper and nearer · Shift in a drag: lift it off · G: grasp what it touches, and let go · right button or two fingers: turn the view · ${NAVIGATION} · arrows and Page keys move it, too`;
+    all.tool = `Drag: move the tool · Alt + drag, or T and drag: turn it · E and Q, or the handle at the left: deeper and nearer · Shift in a drag: lift it off · G: grasp what it touches, and let go · right button or two fingers: turn the view · ${NAVIGATION} · arrows and Page keys move it, too${most}${toBlade}`;
   }
-  all.rest += ` · at most ${plain(speed, 2)} m/s (--hand-speed)`;
-  if (cuts) all.rest += " · C: a blade";
-  else delete all.blade;
   return all;
 }
 
 /// What keys do on the canvas, for those who do not see it.
-function keysInWords({ tools }, isBlade) {
-  if (isBlade) return "Arrow keys move the blade, Enter lowers and lifts it, Escape puts it away;";
-  if (tools.length > 0) return "Arrow keys move the tool, E and Q press it away from you and back, Page Up and Page Down lift and press it;";
-  return "Arrow keys turn the view, G grips the tissue in the middle, then arrow keys, Page Up and Page Down pull it, and G or Escape lets go;";
-}
+const KEYS = {
+  blade: "Arrow keys move the blade, Enter lowers and lifts it, Escape puts it away;",
+  tool: "Arrow keys move the tool, or turn it after T; E and Q press it away from you and back, Page Up and Page Down lift and press it;",
+  rest: "Arrow keys turn the view, G grips the tissue in the middle, then arrow keys, Page Up and Page Down pull it, and G or Escape lets go;",
+};
 
-/// Tells what can be done in a scene, with or without a blade in the hand.
-export function showHint(scenery, isBlade) {
-  const now = isBlade ? "blade" : "rest";
+/// Tells what can be done in a scene with what is in the hand: `blade`, `tool`, or nothing (`rest`).
+export function showHint(scenery, now) {
   get("hint").replaceChildren(...Object.entries(sentences(scenery)).map(([name, words]) => {
     const sentence = document.createElement("span");
     sentence.textContent = words;
     sentence.classList.toggle("waits", name !== now);
     return sentence;
   }));
-  get("canvas").setAttribute("aria-label", `Tissue. ${keysInWords(scenery, isBlade)} the keys [ and ] turn the view, plus and minus zoom, Control with arrows pans, 1 to 6 show the sides.`);
+  get("canvas").setAttribute("aria-label", `Tissue. ${KEYS[now]} the keys [ and ] turn the view, plus and minus zoom, Control with arrows pans, 1 to 6 show the sides.`);
 }

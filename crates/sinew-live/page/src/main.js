@@ -24,6 +24,7 @@ import { Screen } from "./screen.js";
 import { SectionPanel } from "./section-panel.js";
 import { ShapeRow } from "./shape.js";
 import { Stage } from "./stage.js";
+import { ToolMenu } from "./tool-menu.js";
 import { View } from "./view.js";
 
 const get = (id) => document.getElementById(id);
@@ -36,9 +37,10 @@ const SIDE_KEYS = Object.fromEntries(Object.keys(SIDES).map((side, index) => [St
 
 let notice = 0;
 
-function say(text, time = 6000) {
+function say(text, time = 6000, more = "") {
   const message = get("message");
   message.textContent = text;
+  message.title = more;
   message.hidden = false;
   notice = performance.now() + time;
 }
@@ -89,6 +91,7 @@ const connection = new Connection({
   },
   refused: ({ reason }) => {
     keep(last.refused, reason);
+    adding = null;
     say(reason);
   },
   stopped: (event) => keep(last.stopped, event),
@@ -103,11 +106,9 @@ const connection = new Connection({
     hand.release();
     blade.drop();
   },
-  tools: ({ tools }) => {
-    scenery.tools = tools;
-    hand.begin(tools);
-    view.setTools(tools);
-    showShape();
+  other_method: ({ pane, integrator, reason }) => {
+    const before = settings?.panes[pane]?.integrator ?? "The method";
+    say(`${before} feels no tools: ${integrator} runs in its place. The list of methods names others.`, 12000, reason);
   },
   scenes: () => {
     beginning.isLeaving = true;
@@ -121,7 +122,7 @@ const connection = new Connection({
   closed: () => {
     connected = false;
     // What is left is the camera and the picture.
-    for (const control of document.querySelectorAll(".transport button, #panes, #grasp, #cut, .side button, .side input, .side select")) control.disabled = true;
+    for (const control of document.querySelectorAll(".transport button, #panes, #grasp, #turn, .tools button, #cut, .side button, .side input, .side select")) control.disabled = true;
     if (beginning.isLeaving) {
       beginning.go();
       return;
@@ -146,7 +147,11 @@ const blade = new Blade(view, {
   cut: (from, to) => connection.command("cut", { from, to }),
   path: (path) => cutPanel.showPath(path),
 });
-cutPanel.begin(blade, () => scenery && showHint(scenery, blade.isOn));
+const hint = () => {
+  const held = hand.tool ? "tool" : "rest";
+  if (scenery) showHint(scenery, blade.isOn ? "blade" : held);
+};
+cutPanel.begin(blade, hint);
 
 const hand = new Hand(canvas, view, {
   blade,
@@ -160,6 +165,55 @@ const hand = new Hand(canvas, view, {
   grip: (pane, point) => connection.command("grip", { pane, point, epoch: view.topology.epoch }),
   pull: (to) => connection.command("pull", { to: to.toArray() }),
   letGo: () => connection.command("let_go"),
+  take,
+});
+
+/// Time (ms) for which scissors are seen closed.
+const SNIP = 260;
+let snippedAt = -Infinity;
+
+/// Takes a tool into the hand, or none (-1).
+function take(number) {
+  hand.take(number);
+  const tool = scenery.tools[hand.selected];
+  toolMenu.show(scenery.tools, hand.selected);
+  get("turn").hidden = !tool;
+  get("turn").setAttribute("aria-pressed", "false");
+  get("grasp").hidden = !tool || ["blade", "burner"].includes(tool.added);
+  get("grasp").textContent = tool?.added === "scissors" ? "Snip" : "Grasp";
+  get("grasp").title = tool?.added === "scissors" ? "The blades close, and cut what is between them (G)" : "The tool holds what it touches (G)";
+  get("force-title").textContent = tool ? "Force of the tool" : "Force of your pull";
+  hint();
+  showShape();
+}
+
+/// Closes the tool in the hand: jaws until they let go, scissors for a moment.
+function grasp() {
+  const number = hand.selected;
+  if (scenery.tools[number]?.added !== "scissors") {
+    connection.command("grasp", { tool: number, on: !settings.grasped[number] });
+    return;
+  }
+  snippedAt = performance.now();
+  connection.command("snip", { tool: number });
+}
+
+function showClosed(now) {
+  scenery.tools.forEach(({ added }, number) => {
+    const isSnipping = added === "scissors" && number === hand.selected && now - snippedAt < SNIP;
+    view.closeTool(number, isSnipping || settings.grasped[number] ? 1 : 0);
+  });
+}
+
+/// Kind of the tool that this page asked for, which its hand takes when it is there.
+let adding = null;
+const toolMenu = new ToolMenu({
+  take,
+  add: (kind) => {
+    adding = kind;
+    connection.command("add_tool", { kind });
+  },
+  remove: (tool) => connection.command("remove_tool", { tool }),
 });
 
 const depthHandle = new DepthHandle(view, hand);
@@ -167,18 +221,31 @@ const shapeRow = new ShapeRow(get("shape"), (tool, shape) => connection.command(
 const showShape = () => shapeRow.show(hand.selected, scenery.tools[hand.selected], view.extent);
 
 function begin(event) {
+  const before = scenery;
   scenery = event;
   document.title = `${event.title} · sinew live`;
   get("title").textContent = event.title;
   const fields = [...event.fields.map((name) => [FIELDS[name].title, name]), [FIELDS.difference.title, "difference"]];
+  const colours = get("field").value;
   get("field").replaceChildren(...[["Tissue", "tissue"], ...fields].map(([title, name]) => new Option(title, name)));
-  hand.begin(event.tools);
-  get("grasp").hidden = event.tools.length === 0;
-  get("force-title").textContent = event.tools.length > 0 ? "Force of the tool" : "Force of your pull";
+  if (before && (colours === "difference" || event.fields.includes(colours))) get("field").value = colours;
   get("footer").textContent = `sinew ${event.version} · ${event.nodes} nodes · ${event.tets} tetrahedra · this computer only`;
   beginning.offer(event.from_start);
   cutPanel.offer(event.cuts);
-  showHint(event, blade.isOn);
+  const { tools } = event;
+  const isAdded = adding !== null && tools.at(-1)?.added === adding;
+  const held = hand.selected;
+  hand.begin(tools, -1);
+  if (before) view.setTools(tools);
+  // The one that was added here, that of before where the tools are the same, or else the first.
+  const isSame = before?.tools.length === tools.length;
+  const first = Math.min(0, tools.length - 1);
+  if (isAdded) take(tools.length - 1);
+  else take(isSame ? held : first);
+  if (isAdded) {
+    say(`Begun anew with ${tools.at(-1).name}: drag it.`);
+    adding = null;
+  }
   get("loads-card").hidden = event.loads.length === 0;
   get("loads").replaceChildren(...event.loads.map(sliderOf));
 }
@@ -402,6 +469,7 @@ function frame(now) {
     show();
     blade.flush(picture.applied);
   }
+  if (scenery && settings) showClosed(now);
   if (view.draw()) {
     stage.follow();
     capture.follow();
@@ -436,7 +504,11 @@ get("field").addEventListener("change", () => {
 // A scheme that changes brings another ground.
 window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { view.dirty = true; });
 get("fine").addEventListener("change", () => view.setFine(get("fine").checked));
-get("grasp").addEventListener("click", () => connection.command("grasp", { tool: hand.selected, on: !settings.grasped[hand.selected] }));
+get("grasp").addEventListener("click", grasp);
+get("turn").addEventListener("click", () => {
+  hand.turns = !hand.turns;
+  get("turn").setAttribute("aria-pressed", String(hand.turns));
+});
 const capture = new Capture(view, () => scenery?.title ?? "");
 get("picture").addEventListener("click", async () => capture.save(await capture.picture()));
 get("film").disabled = !capture.canFilm;
@@ -449,7 +521,7 @@ get("film").addEventListener("click", () => {
 get("edges").addEventListener("change", () => view.setEdges(get("edges").checked));
 window.addEventListener("keydown", (event) => {
   if (event.ctrlKey || event.metaKey || event.altKey || ["INPUT", "SELECT"].includes(event.target.tagName)) return;
-  const press = { " ": "pause", ".": "step", r: "reset", v: "view", c: "cut", g: "grasp", ...SIDE_KEYS }[event.key];
+  const press = { " ": "pause", ".": "step", r: "reset", v: "view", c: "cut", g: "grasp", t: "turn", ...SIDE_KEYS }[event.key];
   if (!press || get(press).hidden || get(press).closest("[hidden]") || (event.key === " " && event.target.closest("button, summary"))) return;
   event.preventDefault();
   // A key that is held down presses once, but goes on step by step.

@@ -7,7 +7,7 @@ import {
 import { Body } from "./body.js";
 import { Camera } from "./camera.js";
 import { Floor } from "./floor.js";
-import { forget, instrument, setLook } from "./instruments.js";
+import { close, forget, instrument, setLook } from "./instruments.js";
 import { Lights, environmentOf } from "./light.js";
 import { mirror } from "./looks.js";
 import { turn } from "./poses.js";
@@ -15,6 +15,9 @@ import { Cap, Section } from "./section.js";
 
 /// A draw that takes longer (ms) in the fine look leaves too little time for others, and the plain one is shown.
 const SLOW = 7;
+
+/// Room above the body for tools, as a share of its size.
+const roomFor = (tools) => (tools.length > 0 ? 0.3 : 0);
 
 /// One pane: a scene with a body and tools.
 class Pane {
@@ -78,6 +81,7 @@ export class View {
   setTools(tools) {
     this.toolFacts = tools;
     this.panes.forEach((pane) => pane.setTools(tools));
+    if (this.topology) this.camera.makeRoom(roomFor(tools));
     this.dirty = true;
   }
 
@@ -92,7 +96,7 @@ export class View {
     this.box = { low, high };
     this.centre = new Vector3(...low.map((value, axis) => (value + high[axis]) / 2));
     this.extent = Math.max(...low.map((value, axis) => high[axis] - value));
-    this.camera.begin(this.centre, this.extent, this.toolFacts.length > 0 ? 0.3 : 0);
+    this.camera.begin(this.centre, this.extent, roomFor(this.toolFacts));
     this.setCount(this.count);
     this.setFine(this.timeOfDraws() < SLOW);
   }
@@ -139,6 +143,17 @@ export class View {
       if (own.tools[index]) turn(own.tools[index], tool.rotation);
     });
     this.dirty = true;
+  }
+
+  /// Shows a tool closed by a share, in all panes.
+  closeTool(number, share) {
+    for (const { tools } of this.panes) {
+      if (tools[number] && tools[number].userData.closed !== share) {
+        close(tools[number], share);
+        tools[number].userData.closed = share;
+        this.dirty = true;
+      }
+    }
   }
 
   /// Shows where tissue is gripped, if it is, and whereto it is pulled from this page.

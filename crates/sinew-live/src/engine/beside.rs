@@ -1,9 +1,11 @@
 //! The methods of panes.
 
+use sinew_scene::SceneError;
 use sinew_world::CommandError;
 
-use super::pane::Pane;
+use super::pane::{GUARD, Pane};
 use crate::pane_choice::PaneChoice;
+use crate::scene_values::SceneValues;
 
 /// Methods that are tried first: with any step, then with a stable one.
 const PREFERRED: [&str; 4] = [
@@ -30,15 +32,20 @@ pub(super) fn choose_beside(
             Err(refused) => refused.to_string(),
         },
     };
+    match take_other(pane, first) {
+        Some(id) => Ok(Some(format!("{refused}; `{id}` runs beside it"))),
+        None => Err(refused),
+    }
+}
+
+/// Gives a pane the first method but this one that can run in its scene and step.
+pub(super) fn take_other(pane: &mut Pane, but: &str) -> Option<&'static str> {
     let ids = sinew_integrators::ids();
     let rest = ids.iter().filter(|id| !PREFERRED.contains(id));
-    let all = PREFERRED.iter().filter(|id| ids.contains(id)).chain(rest);
-    for id in all.filter(|id| **id != first) {
-        if pane.use_integrator(id).is_ok() && pane.has_stable_step() {
-            return Ok(Some(format!("{refused}; `{id}` runs beside it")));
-        }
-    }
-    Err(refused)
+    let mut all = PREFERRED.iter().filter(|id| ids.contains(id)).chain(rest);
+    let found =
+        all.find(|id| **id != but && pane.use_integrator(id).is_ok() && pane.has_stable_step());
+    found.copied()
 }
 
 /// Gives a pane its integrator and step.
@@ -50,4 +57,16 @@ pub(super) fn choose(pane: &mut Pane, choice: &PaneChoice) -> Result<(), Command
         Some(name) => pane.use_integrator(name),
         None => Ok(()),
     }
+}
+
+/// The same scene with the explicit method in automatic steps, which takes tools, and without the options of its own
+/// method.
+pub(super) fn with_explicit_steps(scene: &SceneValues) -> Result<SceneValues, SceneError> {
+    let own = scene.scene.settings().options.iter();
+    let removed = own
+        .filter(|(key, _)| *key != GUARD)
+        .map(|(key, _)| (format!("run.{key}"), None));
+    let set = [("run.integrator", "central-difference"), ("run.dt", "auto")];
+    let set = set.map(|(key, value)| (key.to_owned(), Some(value.to_owned())));
+    scene.with(set.into_iter().chain(removed).collect())
 }

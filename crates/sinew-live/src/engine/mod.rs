@@ -17,6 +17,7 @@ mod shown;
 mod stability;
 mod sums;
 mod survey;
+mod tools;
 mod topology;
 mod trusted;
 
@@ -38,10 +39,12 @@ use crate::clients::Picture;
 use crate::ended::Ended;
 use crate::error::LiveError;
 use crate::inbox::{Place, Request, Waiting};
+use crate::new_tool::AddedTool;
 use crate::pane_choice::PaneChoice;
 use crate::picture::Surface;
-use crate::protocol::{Event, Field, FrameHead, FrameWriter, Order, Shape};
+use crate::protocol::{Event, Field, FrameHead, FrameWriter, Order, Scenery};
 use crate::scene_values::SceneValues;
+use crate::scenery::Presented;
 use crate::server::Shared;
 
 /// Shortest simulated time (s) in which a tool moves to the user's tool pose: a jump within one step would be an impact.
@@ -85,14 +88,15 @@ const MOST_PANES: usize = 2;
 /// The sessions and their control.
 pub(crate) struct Engine {
     scene: SceneValues,
+    presented: Presented,
+    /// The tools that pages added, which are the last ones of the scene.
+    added: Vec<AddedTool>,
     panes: Vec<Pane>,
     /// Choice of the second pane, if it is opened.
     second: PaneChoice,
     hands: Hands,
     /// Number of grips so far.
     grips: u64,
-    /// Largest speed (m/s) of steered tools.
-    hand_speed: f64,
     /// Simulated time (s) until which poses are ignored.
     deaf_until: f64,
     moments: Moments,
@@ -108,14 +112,14 @@ pub(crate) struct Engine {
     cut_at: Option<Instant>,
     /// True if the known stable steps belong to a cut body.
     knows_cut: bool,
+    /// False if the integrators have not been surveyed on the present scene.
+    surveyed: bool,
     /// The fields of the body, and the one shown as colours.
     fields: Vec<Field>,
     field: Field,
     repaint: bool,
     trusted: Option<Trusted>,
     paused: bool,
-    /// True if the scene was chosen on a start page.
-    from_start: bool,
     /// True if a page asked for the start page.
     goes_to_start: bool,
     /// Simulated time up to which all panes have stepped, with the same rounding.
@@ -164,12 +168,8 @@ pub(crate) struct Beginning {
     pub(crate) scene: SceneValues,
     pub(crate) panes: Vec<PaneChoice>,
     pub(crate) second: PaneChoice,
-    pub(crate) fields: Vec<Field>,
-    pub(crate) loads: Vec<String>,
-    /// Largest speed (m/s) of steered tools.
-    pub(crate) hand_speed: f64,
-    /// True if the scene was chosen on a start page: then it begins paused.
-    pub(crate) from_start: bool,
+    pub(crate) scenery: Scenery,
+    pub(crate) presented: Presented,
 }
 
 impl Engine {
@@ -183,11 +183,12 @@ impl Engine {
             scene,
             panes: choices,
             second,
-            fields,
-            loads,
-            hand_speed,
-            from_start,
+            scenery,
+            presented,
         } = beginning;
+        let Scenery { fields, loads, .. } = scenery;
+        let loads: Vec<String> = loads.into_iter().map(|load| load.name).collect();
+        let from_start = presented.from_start.is_some();
         let mut panes = vec![Pane::new(session)?];
         while panes.len() < choices.len() {
             panes.push(Pane::of(&scene)?);
@@ -202,6 +203,8 @@ impl Engine {
         let t = panes.first().map_or(0.0, Pane::t);
         let mut engine = Self {
             scene,
+            presented,
+            added: Vec::new(),
             panes,
             second,
             hands: Hands {
@@ -210,7 +213,6 @@ impl Engine {
             },
             grips: 0,
             grasped: vec![false; tools],
-            hand_speed,
             deaf_until: f64::NEG_INFINITY,
             moments: Moments::default(),
             factors: vec![1.0; loads.len()],
@@ -219,12 +221,12 @@ impl Engine {
             topology: Topology::default(),
             cut_at: None,
             knows_cut: false,
+            surveyed: true,
             field: fields.first().copied().unwrap_or(Field::Displacement),
             fields,
             repaint: true,
             trusted: None,
             paused: from_start,
-            from_start,
             goes_to_start: false,
             clock: Clock::at(t),
             ahead: None,
@@ -284,8 +286,8 @@ impl Engine {
         Ended {
             t: self.clock.time(),
             goes_to_start: self.goes_to_start,
+            values: self.scene.values(),
             scene: self.scene.scene,
-            values: self.scene.values,
             unkept: unkept.collect(),
             logs,
         }
@@ -568,7 +570,7 @@ impl Engine {
 
     /// Requests the stable steps on changed bodies, after cutting has ended.
     fn learn_after_cuts(&mut self, shared: &Arc<Shared>, survey: &mut Survey) {
-        let is_calm = self.cut_at.is_some_and(|last| last.elapsed() >= CALM);
+        let is_calm = self.cut_at.is_some_and(|last| last.elapsed() >= CALM) || !self.surveyed;
         let Some(first) = self
             .panes
             .first()
@@ -580,7 +582,7 @@ impl Engine {
         if let Ok(begun) = Survey::start(shared, first.scene(), first.body()) {
             *survey = begun;
         }
-        (self.cut_at, self.knows_cut) = (None, first.is_cut());
+        (self.cut_at, self.knows_cut, self.surveyed) = (None, first.is_cut(), true);
         for pane in &mut self.panes {
             pane.learn();
         }
@@ -605,7 +607,10 @@ impl Engine {
             let waits = is_pose
                 || matches!(
                     what,
-                    Order::Load { .. } | Order::Cut { .. } | Order::Grasp { .. }
+                    Order::Load { .. }
+                        | Order::Cut { .. }
+                        | Order::Grasp { .. }
+                        | Order::Snip { .. }
                 );
             // What colours show stays as it is under the others, and to paint may take longer than a step.
             let repaints = match &what {
@@ -687,7 +692,7 @@ impl Engine {
     fn limits(&self, reach: f64) -> Limits {
         Limits {
             shortest: GLIDE.max(self.tick()),
-            speed: self.hand_speed,
+            speed: self.presented.hand_speed,
             reach,
         }
     }
@@ -829,6 +834,9 @@ impl Engine {
             }
             Order::Cut { from, to } => self.give(client, id, Command::Cut { from, to })?,
             Order::Shape { tool, shape } => self.reshape(tool, shape, shared)?,
+            Order::AddTool { kind } => self.add_tool(kind, shared)?,
+            Order::RemoveTool { tool } => self.remove_tool(tool, shared)?,
+            Order::Snip { tool } => self.snip(client, id, tool)?,
             Order::Integrator { pane, name } => {
                 self.change_method(pane, |pane| pane.use_integrator(&name).map_err(words))?;
             }
@@ -892,7 +900,7 @@ impl Engine {
                     .clients
                     .tell_all(&saved.map_err(|error| error.to_string())?);
             }
-            Order::Scenes if self.from_start => self.goes_to_start = true,
+            Order::Scenes if self.presented.from_start.is_some() => self.goes_to_start = true,
             Order::Scenes => return Err("this scene was not chosen on a start page".to_owned()),
         }
         Ok(())
@@ -924,27 +932,6 @@ impl Engine {
         }
         shared.clients.tell_all(&Event::TrustedEnded { reason });
         self.news.settings = true;
-    }
-
-    /// Gives a tool another shape: another scene, whose motion starts from the beginning with the current methods.
-    fn reshape(&mut self, tool: usize, shape: Shape, shared: &Shared) -> Result<(), String> {
-        let key = format!("tool.{}.shape", tool.saturating_add(1));
-        let scene = self.scene.with(&key, &shape.to_toml());
-        let scene = scene.map_err(|error| error.to_string())?;
-        let mut panes = Vec::with_capacity(self.panes.len());
-        for pane in &self.panes {
-            panes.push(pane.on(&scene)?);
-        }
-        if self.trusted.is_some() {
-            let trusted = Trusted::begin(&scene, panes.len(), self.tick());
-            self.trusted = Some(trusted?);
-        }
-        (self.scene, self.panes) = (scene, panes);
-        let emptied = self.journals.iter_mut().try_for_each(Journal::begin_anew);
-        self.report_journals(emptied, shared);
-        shared.tell_of_tools(self.panes.first().map_or_else(Vec::new, Pane::tool_facts));
-        self.begin_anew();
-        Ok(())
     }
 
     /// Resets all panes and the trusted run to the beginning.

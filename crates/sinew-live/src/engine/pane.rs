@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use sinew_core::vectors::weighted_dot;
-use sinew_core::{BytesError, Energy, LoadTime, Options, StableStep, System};
+use sinew_core::{BytesError, Energy, Inputs, LoadTime, Options, StableStep, System};
 use sinew_scene::{BodyModel, CutTotals, SceneBody, Simulation};
 use sinew_tools::{Pose, Tools};
 use sinew_world::{Command, CommandError, Log, Moment, RestoreError, World};
@@ -19,16 +19,15 @@ use super::{options, stability};
 use crate::error::LiveError;
 use crate::picture::Surface;
 use crate::protocol::{
-    CutHead, Field, FrameWriter, OptionFacts, PaneFacts, PaneHead, StepFacts, ToolFacts, ToolHead,
+    CutHead, Field, FrameWriter, OptionFacts, PaneFacts, PaneHead, StepFacts, ToolHead,
 };
 use crate::scene_values::SceneValues;
-use crate::tool_facts::tools_of;
 
 /// Share of a step by which times may differ by rounding.
 const SLACK: f64 = 1e-6;
 
 /// The option of an integrator that limits velocities.
-const GUARD: &str = "saturation";
+pub(super) const GUARD: &str = "saturation";
 
 /// A session and the measurements of its motion.
 pub(crate) struct Pane {
@@ -85,7 +84,7 @@ pub(crate) struct PaneMoment {
 impl Pane {
     /// A pane with its own session of a scene.
     pub(crate) fn of(scene: &SceneValues) -> Result<Self, LiveError> {
-        let session = World::new(scene.scene.clone())?.with_values(&scene.values);
+        let session = World::new(scene.scene.clone())?.with_values(&scene.values());
         scene.check_files(session.log())?;
         Self::new(session)
     }
@@ -128,12 +127,6 @@ impl Pane {
         let switched = pane.switch(self.method.clone());
         switched.map_err(|error| error.to_string())?;
         Ok(pane)
-    }
-
-    /// Facts about its tools, for pages.
-    pub(crate) fn tool_facts(&self) -> Vec<ToolFacts> {
-        let scene = self.session.scene();
-        body(&self.session).map_or_else(Vec::new, |body| tools_of(body, scene))
     }
 
     /// The integrator and the options of the scene.
@@ -793,6 +786,16 @@ impl Pane {
         let pose = id.map_or(Pose::identity(), |id| self.session.tool_pose(id));
         let ([x, y, z], [a, b, c]) = (pose.position(), pose.rotation_vector());
         [x, y, z, a, b, c]
+    }
+
+    /// The place (m) of a tool at the beginning, along `x` and `y`.
+    pub(crate) fn first_tool_place(&self, tool: usize) -> [f64; 2] {
+        let state = self.session.scene().initial_state();
+        let pose = self
+            .tools()
+            .map(|tools| tools.pose(state, Inputs::none(), tool));
+        let [x, y, _] = pose.unwrap_or(Pose::identity()).position();
+        [x, y]
     }
 
     /// Distance (m) of the farthest point of a tool from its place; 0 without one.

@@ -5,7 +5,7 @@ use std::ops::Deref;
 
 use sinew_mesh::{BoundarySurface, TetMesh};
 use sinew_scene::BodyModel;
-use sinew_tools::vector::{add, cross, dot, scaled, sub};
+use sinew_tools::vector::{add, cross, dot, length, scaled, sub};
 use sinew_tools::{Convex, Pose, Shape, nearest_of_triangle};
 
 use crate::protocol::NONE;
@@ -42,6 +42,19 @@ impl Surface {
             outer,
             point_of,
         }
+    }
+
+    /// The mean length (m) of the edges of its triangles at rest.
+    pub(crate) fn mean_edge(&self) -> f64 {
+        let edges = self
+            .triangles
+            .iter()
+            .flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
+        let lengths = edges.map(|edge| {
+            let [from, to] = edge.map(|point| self.points[point as usize]);
+            length(sub(to, from))
+        });
+        lengths.sum::<f64>() / (3 * self.triangles.len()).max(1) as f64
     }
 
     /// The point of a node of the mesh, if it lies on the surface.

@@ -2,6 +2,8 @@
 
 use serde::Deserialize;
 
+use crate::new_tool::ToolKind;
+
 /// A command with the page's own number.
 #[derive(Clone, Debug, Deserialize, PartialEq)]
 pub(crate) struct Said {
@@ -69,6 +71,21 @@ pub(crate) enum Order {
         tool: usize,
         /// The shape.
         shape: Shape,
+    },
+    /// Another tool, clear of the body, with which everything starts from the beginning.
+    AddTool {
+        /// Its kind.
+        kind: ToolKind,
+    },
+    /// The end of a tool that was added, with which everything starts from the beginning.
+    RemoveTool {
+        /// Number of the tool.
+        tool: usize,
+    },
+    /// Closes the blades of scissors.
+    Snip {
+        /// Number of the tool.
+        tool: usize,
     },
     /// Another integrator in a pane.
     Integrator {

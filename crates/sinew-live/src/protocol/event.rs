@@ -3,12 +3,13 @@
 use serde::Serialize;
 
 use super::command::Field;
+use crate::new_tool::ToolKind;
 
 /// An event.
 #[derive(Debug, Serialize)]
 #[serde(tag = "event", rename_all = "snake_case")]
 pub(crate) enum Event {
-    /// The scenery; first of all events.
+    /// The scenery; first of all events, and after each change of the tools.
     Scenery(Box<Scenery>),
     /// The current settings.
     Settings {
@@ -51,10 +52,14 @@ pub(crate) enum Event {
         /// The reason of the failure.
         reason: String,
     },
-    /// The tools changed.
-    Tools {
-        /// All of them.
-        tools: Vec<ToolFacts>,
+    /// Another method in a pane, which cannot take tools.
+    OtherMethod {
+        /// The pane.
+        pane: usize,
+        /// The method now.
+        integrator: String,
+        /// The reason.
+        reason: String,
     },
     /// A reset of everything to the beginning.
     Reset,
@@ -118,6 +123,8 @@ pub(crate) struct ToolFacts {
     pub(crate) parts: Vec<PartFacts>,
     /// Position (m) and rotation vector (rad) at the beginning.
     pub(crate) start: [f64; 6],
+    /// Its kind, if a page added it.
+    pub(crate) added: Option<ToolKind>,
 }
 
 /// A part of a tool: its kind, its sizes, its pose in the tool.

@@ -4,7 +4,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::clients::Clients;
 use crate::inbox::Inbox;
-use crate::protocol::{Event, Scenery, ToolFacts};
+use crate::protocol::{Event, Scenery};
 
 /// Data that connections share with the simulation.
 #[derive(Debug)]
@@ -40,11 +40,11 @@ impl Shared {
         tool < scenery.unwrap_or_else(PoisonError::into_inner).tools.len()
     }
 
-    /// Sends the new tools to all pages, and to those that connect later.
-    pub(crate) fn tell_of_tools(&self, tools: Vec<ToolFacts>) {
-        let scenery = self.scenery.lock();
-        scenery.unwrap_or_else(PoisonError::into_inner).tools = tools.clone();
-        self.clients.tell_all(&Event::Tools { tools });
+    /// Sends a changed scenery to all pages, and to those that connect later.
+    pub(crate) fn tell_of_scenery(&self, scenery: Scenery) {
+        let own = self.scenery.lock();
+        *own.unwrap_or_else(PoisonError::into_inner) = scenery.clone();
+        self.clients.tell_all(&Event::Scenery(Box::new(scenery)));
     }
 
     /// The event about the integrators, if they are known.

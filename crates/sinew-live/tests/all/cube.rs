@@ -251,6 +251,7 @@ fn two_panes_follow_the_same_hand() {
 fn another_shape_of_the_tool_is_another_scene_that_begins_anew() {
     let mut page = open();
     let mut client = page.connect();
+    client.event("scenery");
     client.say(r#"{"id":1,"do":"integrator","pane":0,"name":"cnn-stabilised"}"#);
     client.say(r#"{"id":2,"do":"pose","tool":0,"position":[0.05,0.05,0.13],"rotation":[0,0,0]}"#);
     client.picture(|picture| applied(picture) >= 2);
@@ -269,7 +270,7 @@ fn another_shape_of_the_tool_is_another_scene_that_begins_anew() {
     client.say(r#"{"id":4,"do":"shape","tool":9,"shape":{"plane":{}}}"#);
     client.event("refused");
     client.say(r#"{"id":5,"do":"shape","tool":0,"shape":{"sphere":{"radius":0.03}}}"#);
-    let part = client.event("tools")["tools"][0]["parts"][0].take();
+    let part = client.event("scenery")["tools"][0]["parts"][0].take();
     assert_eq!(
         (&part["kind"], &part["sizes"][0]),
         (&"sphere".into(), &0.03.into())

@@ -9,6 +9,7 @@ mod cube;
 mod cuts;
 mod files;
 mod loads;
+mod new_tools;
 mod pauses;
 mod pulls;
 mod start;

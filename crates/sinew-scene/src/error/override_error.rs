@@ -5,7 +5,9 @@
 #[non_exhaustive]
 pub enum OverrideError {
     /// A text without a key and a value.
-    #[error("`{text}`: expected KEY=VALUE, such as run.dt=0.01 or region.1.youngs_modulus=4000")]
+    #[error(
+        "`{text}`: expected KEY=VALUE, such as run.dt=0.01 or region.1.youngs_modulus=4000, or ~KEY, which removes a value"
+    )]
     Form {
         /// The text.
         text: String,

@@ -196,7 +196,7 @@ fn named(
     tools: &[Tool],
     is_blade: bool,
 ) -> Result<usize, SceneError> {
-    let fits = |tool: &&Tool| tool.is_blade() == is_blade;
+    let fits = |tool: &&Tool| tool.is_blade() == is_blade && !tool.is_scissors();
     let place = tools.iter().position(|tool| tool.name == name);
     let found = place.filter(|place| fits(&&tools[*place]));
     found.ok_or_else(|| {
@@ -226,19 +226,22 @@ pub(super) fn check_tools(
     places: &[ToolPlace],
 ) -> Result<(), SceneError> {
     for (index, (tool, ToolPlace { table: place, .. })) in tools.iter().zip(places).enumerate() {
-        let is_by = cutting.is_some_and(|cutting| cutting.is_by(index));
+        let is_by = cutting.is_some_and(|cutting| cutting.is_by(index)) || tool.is_scissors();
         let misplaced = |key: &'static str, reason: &str| {
             let reason = reason.to_owned();
             Err(place.key_fault(key, Fault::Misplaced { key, reason }))
         };
         let several = tool.is_blade() && tool.parts.len() > 1;
-        if several {
-            return misplaced(SHAPES.name, "has a blade, which goes with no other shape");
+        if several && !tool.is_scissors() {
+            return misplaced(
+                SHAPES.name,
+                "has a blade, which goes alone, or with one other blade as scissors",
+            );
         }
         if !is_by {
             continue;
         }
-        let reason = "does not go with a tool of [cutting], which touches nothing";
+        let reason = "does not go with a tool that cuts, which touches nothing";
         for (key, is_given) in [
             (FRICTION.name, tool.friction > 0.0),
             (TOUCHES.name, tool.touches.is_some()),

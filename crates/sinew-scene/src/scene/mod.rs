@@ -431,8 +431,9 @@ impl Body {
     /// True if a tool (0-based) cuts the body or removes parts of it, so that it touches nothing.
     #[must_use]
     pub fn is_cut_by(&self, tool: usize) -> bool {
+        let is_scissors = self.tools.get(tool).is_some_and(Tool::is_scissors);
         let cutting = self.cutting.as_ref();
-        cutting.is_some_and(|cutting| cutting.is_by(tool))
+        cutting.is_some_and(|cutting| is_scissors || cutting.is_by(tool))
     }
 
     fn read(document: &Table<'_>, places: &mut Places) -> Result<Self, SceneError> {

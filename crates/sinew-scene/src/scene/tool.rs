@@ -8,7 +8,7 @@ pub use sinew_tools::{Grasp, ToolBody};
 use super::group_name::GroupName;
 use super::region::taken;
 use super::tool_body::{self, BODIES};
-use super::tool_shape::{self, PLACES, ROTATIONS, SHAPE, ToolPart, ToolShape};
+use super::tool_shape::{self, PLACES, ROTATIONS, SHAPE, ToolPart};
 use crate::decode::value::Misfit;
 use crate::decode::{
     Condition, Flag, Inner, Key, Kind, Needs, Number, Optional, Or, Place, Shape, Table,
@@ -70,8 +70,13 @@ impl Tool {
     /// True if its shape is a blade, which cuts and touches nothing.
     #[must_use]
     pub fn is_blade(&self) -> bool {
-        let is_blade = |part: &ToolPart| matches!(part.shape, ToolShape::Blade { .. });
-        self.parts.iter().any(is_blade)
+        self.parts.iter().any(ToolPart::is_blade)
+    }
+
+    /// True if its shapes are two blades, which touch nothing and cut what is between them by a command.
+    #[must_use]
+    pub fn is_scissors(&self) -> bool {
+        self.parts.len() == 2 && self.parts.iter().all(ToolPart::is_blade)
     }
 }
 
@@ -130,7 +135,7 @@ pub(super) const SHAPE_OF_TOOL: Key<Inner> = Key::required(
 
 pub(super) const SHAPES: Key<Inner, Optional> = Key::optional(
     "shapes",
-    "The shapes of a tool that is made of several.",
+    "The shapes of a tool that is made of several. Two blades are scissors: in a scene with `[cutting]` they cut what is between them by a command of a session.",
     Inner::several(
         "a list of tables such as [{ sphere = { radius = 0.006 } }]",
         &SHAPE,

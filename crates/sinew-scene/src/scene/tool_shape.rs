@@ -18,6 +18,12 @@ pub struct ToolPart {
     pub rotation: [f64; 3],
 }
 
+impl ToolPart {
+    pub(super) fn is_blade(&self) -> bool {
+        matches!(self.shape, ToolShape::Blade { .. })
+    }
+}
+
 /// The shape of a part of a tool.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum ToolShape {

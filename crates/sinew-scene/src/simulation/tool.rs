@@ -37,10 +37,16 @@ pub(super) fn added_to(
     for (index, tool) in body.tools.iter().enumerate() {
         let place = places.of_tool(index);
         if tool.is_blade() && !body.is_cut_by(index) {
-            let (key, reason) = (
-                "shape",
-                "is a blade, which cuts where [cutting] has tool = \"its name\" only",
-            );
+            let (key, reason) = match tool.is_scissors() {
+                true => (
+                    "shapes",
+                    "are two blades, scissors, which cut in scenes with [cutting] only",
+                ),
+                false => (
+                    "shape",
+                    "is a blade, which cuts where [cutting] has tool = \"its name\" only",
+                ),
+            };
             let reason = reason.to_owned();
             return Err(place.key_fault(key, Fault::Misplaced { key, reason }));
         }

@@ -612,7 +612,7 @@ fn each_mistake_has_its_line() {
             with(
                 "[[tool]]\nname = \"knife\"\nshape = { blade = { length = 0.02 } }\nstart = [0.0, 0.0, 0.0]\nhold = true\nfriction = 0.2\n[cutting]\ntool = \"knife\"\n",
             ),
-            "scene.toml:19: [[tool]] 1: `friction` does not go with a tool of [cutting], which touches nothing",
+            "scene.toml:19: [[tool]] 1: `friction` does not go with a tool that cuts, which touches nothing",
         ),
         (
             with(by_table),

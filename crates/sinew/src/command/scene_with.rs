@@ -22,7 +22,7 @@ pub(crate) struct Values {
     #[arg(long, value_name = "STEP", allow_negative_numbers = true)]
     dt: Option<String>,
     /// Another value of a key of the scene, such as region.1.youngs_modulus=4000: tables of a list by their
-    /// numbers from 1 on; may be given several times
+    /// numbers from 1 on; ~KEY removes a value; may be given several times
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
 }
