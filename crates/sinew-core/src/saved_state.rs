@@ -48,6 +48,22 @@ pub struct SavedState {
 }
 
 impl SavedState {
+    /// Number of bytes of its fields.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        let State {
+            u,
+            v,
+            a,
+            internal,
+            contact,
+            fastest,
+            ..
+        } = &self.state;
+        let fields = [u, v, a, internal, contact, fastest];
+        fields.map(|field| size_of_val(&field[..])).iter().sum()
+    }
+
     /// The state of a system.
     #[must_use]
     pub fn of(state: &State, system: &dyn System) -> Self {

@@ -281,7 +281,7 @@ mod tests {
             ),
             ("~run.dt", "dt = 0.1\n", ""),
             ("~region.2.density", "density = 2 # kg/m3\n", ""),
-            ("~mesh.cube.edge", "cells = 4, edge = 0.1 ", "cells = 4 "),
+            ("~mesh.cube.edge", "cells = 4, edge = 0.1 ", "cells = 4"),
         ];
         for (value, from, to) in cases {
             assert_eq!(with(&[value]).unwrap(), SCENE.replace(from, to), "{value}");
@@ -294,7 +294,7 @@ mod tests {
             ("dt", "expected KEY=VALUE"),
             ("run..dt=1", "expected KEY=VALUE"),
             ("run.dt=", "expected KEY=VALUE"),
-            ("~run.td", "did you mean `dt`?"),
+            ("~run.integratr", "did you mean `integrator`?"),
             ("~run", "`run` is a table, expected a value"),
             ("~region.3.density", "the scene has 2 of `region`"),
             ("~run.dt.x", "`dt` is a value, expected a table"),

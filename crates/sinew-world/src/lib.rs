@@ -20,7 +20,7 @@ pub use error::{
     AdvanceError, AdvanceToError, ReportError, RestoreError, WorldError, WorldStepError,
 };
 pub use input_file::{InputFile, InputFileError};
-pub use log::{Entry, Header, Journal, JournalError, Log, LogError, LogFault};
+pub use log::{Entry, Header, Journal, JournalError, Log, LogError, LogFault, WentBack};
 pub use recorder::{BodyChange, BodyCut, Recorder, Recorders, Shown};
 pub use replay::{FollowError, Replay, ReplayError};
 pub use world::{Advanced, Ended, Moment, Saved, World};

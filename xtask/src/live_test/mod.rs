@@ -7,6 +7,7 @@ mod chromium;
 mod drags;
 mod fingers;
 mod hand;
+mod new_tools;
 mod picture;
 mod served;
 mod speed;
@@ -75,6 +76,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     hand::press_hold_and_switch(&bench)?;
     hand::side_by_side(&bench)?;
     stage::is_set_up(&bench)?;
+    new_tools::are_added(&bench)?;
     fingers::press_pull_and_cut(&bench)?;
     blade::cuts(&bench)?;
     drags::end_no_session(&bench, arguments.drags)?;

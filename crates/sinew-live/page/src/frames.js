@@ -1,7 +1,7 @@
 // Binary messages, little-endian, as crates/sinew-live/src/protocol/frame.rs writes them.
 
 const HEAD = 32;
-const PANE = 224;
+const PANE = 240;
 const TOOL = 136;
 
 /// Fields in the order of their numbers.
@@ -38,7 +38,7 @@ export function readPicture(buffer) {
   const view = new DataView(buffer);
   const u32 = (at) => view.getUint32(at, true);
   const f64 = (at) => view.getFloat64(at, true);
-  const picture = { frame: u32(4), applied: u32(8), epoch: u32(12), field: FIELDS[u32(20)], pace: f64(24), panes: [] };
+  const picture = { bytes: buffer.byteLength, frame: u32(4), applied: u32(8), epoch: u32(12), field: FIELDS[u32(20)], pace: f64(24), panes: [] };
   let at = HEAD;
   for (let pane = 0; pane < u32(16); pane += 1) {
     const names = ["t", "dt", "kinetic", "elastic", "toolWork", "loadWork", "msPerStep", "error", "lag", "saturated", "settling"];
@@ -51,6 +51,8 @@ export function readPicture(buffer) {
     // Force of the pull and place of the tissue that is pulled, which is NaN without a grip.
     numbers.pull = new Float64Array(buffer, at + 176, 3);
     numbers.grip = new Float64Array(buffer, at + 200, 3);
+    // The axis of a section (3 without one), where it is, and its triangles.
+    numbers.section = { axis: u32(at + 224), triangles: u32(at + 228), at: f64(at + 232) };
     const points = numbers.points;
     const count = numbers.tools;
     at += PANE;
@@ -70,6 +72,10 @@ export function readPicture(buffer) {
     numbers.positions = new Float32Array(buffer, at, 3 * points);
     numbers.colours = new Float32Array(buffer, at + 12 * points, points);
     at += Math.ceil((16 * points) / 8) * 8;
+    const corners = 3 * numbers.section.triangles;
+    numbers.section.positions = new Float32Array(buffer, at, 3 * corners);
+    numbers.section.colours = new Float32Array(buffer, at + 12 * corners, corners);
+    at += Math.ceil((16 * corners) / 8) * 8;
     picture.panes.push(numbers);
   }
   return picture;

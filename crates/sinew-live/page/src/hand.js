@@ -113,9 +113,11 @@ export class Hand {
   /// What a press does: the first finger or the left button acts, where there is something to act with; others turn and move the view.
   modeOf({ pointerType, button, shiftKey, altKey }) {
     const { blade } = this.actions;
-    const acts = blade.isOn || Boolean(this.tool);
+    const isPast = this.actions.isPast();
+    const acts = !isPast && (blade.isOn || Boolean(this.tool));
     const isFirst = pointerType === "touch" ? this.pointers.size === 1 : button === 0;
     // Without a tool the tissue under the pointer is pulled.
+    if (isFirst && isPast) return shiftKey ? "pan" : "view";
     if (isFirst && !blade.isOn && this.tool && (altKey || this.turns)) return "turn";
     if (isFirst && !shiftKey) return blade.isOn ? "blade" : "tool";
     if (pointerType === "touch") return isFirst || (acts && this.pointers.size === 2) ? "view" : "pan";
@@ -179,7 +181,8 @@ export class Hand {
   }
 
   key(event) {
-    if (this.actions.blade.isOn && this.actions.bladeKey(event)) {
+    const isPast = this.actions.isPast();
+    if (!isPast && this.actions.blade.isOn && this.actions.bladeKey(event)) {
       event.preventDefault();
       return;
     }
@@ -193,16 +196,17 @@ export class Hand {
     };
     // Shift makes letters large, and steps fine.
     const move = moves[event.key.length === 1 ? event.key.toLowerCase() : event.key];
-    if (arrow && this.turns && this.tool && !event.ctrlKey && !event.altKey) {
+    if (arrow && !isPast && this.turns && this.tool && !event.ctrlKey && !event.altKey) {
       event.preventDefault();
       this.turn(ARROW * fine * arrow[0], ARROW * fine * arrow[1]);
       return;
     }
-    if (arrow && (event.ctrlKey || !this.canMove)) {
+    const canMove = this.canMove && !isPast;
+    if (arrow && (event.ctrlKey || !canMove)) {
       event.preventDefault();
       if (event.ctrlKey) camera.pan(-30 * fine * arrow[0], -30 * fine * arrow[1]);
       else camera.orbit(-12 * fine * arrow[0], -12 * fine * arrow[1]);
-    } else if (move && this.canMove && !event.ctrlKey && !event.metaKey && !event.altKey) {
+    } else if (move && canMove && !event.ctrlKey && !event.metaKey && !event.altKey) {
       event.preventDefault();
       this.shift(move.multiplyScalar(0.01 * fine * this.view.extent));
     } else if (event.key === "+" || event.key === "-") {
@@ -211,7 +215,7 @@ export class Hand {
       camera.orbit(event.key === "[" ? 12 : -12, 0);
     } else if (event.key === "Escape" && this.pull.isOn) {
       this.pull.letGo();
-    } else if (event.key === "g" && !this.tool) {
+    } else if (event.key === "g" && !this.tool && !isPast) {
       if (this.pull.isOn) this.pull.letGo();
       else this.grip(...this.actions.middle());
     }

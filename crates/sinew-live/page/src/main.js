@@ -18,6 +18,7 @@ import { colourOfLight, numberOfReason, reasonOf } from "./lights.js";
 import { startMenus } from "./menus.js";
 import { plain, withUnit } from "./numbers.js";
 import { PaneCard, stepInWords } from "./panes.js";
+import { Past } from "./past.js";
 import { Plot, around } from "./plots.js";
 import { Range } from "./range.js";
 import { Screen } from "./screen.js";
@@ -59,7 +60,7 @@ function viewOn(canvas) {
 const canvas = get("canvas");
 const view = viewOn(canvas);
 const stage = new Stage(view.camera);
-const section = new SectionPanel(view);
+const section = new SectionPanel(view, (axis, at) => connection.command("section", { axis, at }));
 const range = new Range({ changed: recolour, extremes });
 const histories = [new History(), new History()];
 const cards = [];
@@ -67,7 +68,9 @@ const plots = Object.fromEntries(["force-time", "force-depth", "energy"].map((id
 let scenery = null;
 let settings = null;
 let integrators = [];
+/// The picture that is shown, and the newest one, which differ while the page shows the past.
 let picture = null;
+let present = null;
 let pictures = 0;
 /// The largest 1/step (1/s) of an element at the surface.
 let largestRate = 1;
@@ -97,14 +100,23 @@ const connection = new Connection({
   stopped: (event) => keep(last.stopped, event),
   went_back: (event) => {
     keep(last.wentBack, event);
+    past.wentBackTo(event.to);
     hand.release();
     blade.drop();
     say(`Back by ${plain(event.by, 2)} s, to where all was well: ${event.reason}`);
   },
   reset: () => {
     histories.forEach((history) => history.clear());
+    past.clear();
     hand.release();
     blade.drop();
+  },
+  went_on_from: ({ t, back }) => {
+    past.wentBackTo(t);
+    histories.forEach((history) => history.clear());
+    hand.release();
+    blade.drop();
+    say(`Paused at t = ${plain(t, 3)} s: from here another motion goes on. The log says that ${plain(back, 3)} s were taken back.`, 10000);
   },
   other_method: ({ pane, integrator, reason }) => {
     const before = settings?.panes[pane]?.integrator ?? "The method";
@@ -122,7 +134,7 @@ const connection = new Connection({
   closed: () => {
     connected = false;
     // What is left is the camera and the picture.
-    for (const control of document.querySelectorAll(".transport button, #panes, #grasp, #turn, .tools button, #cut, .side button, .side input, .side select")) control.disabled = true;
+    for (const control of document.querySelectorAll(".transport button, #panes, #grasp, #turn, .tools button, #cut, .past-bar button, .past-bar input, .side button, .side input, .side select")) control.disabled = true;
     if (beginning.isLeaving) {
       beginning.go();
       return;
@@ -153,8 +165,19 @@ const hint = () => {
 };
 cutPanel.begin(blade, hint);
 
+const past = new Past({
+  pause: () => settings && !settings.paused && connection.command("pause", { on: true }),
+  goOn: (t) => connection.command("go_on_from", { t }),
+  left: () => {
+    if (!present) return;
+    picture = present;
+    show(false);
+  },
+});
+
 const hand = new Hand(canvas, view, {
   blade,
+  isPast: () => past.isOn,
   bladeKey: (event) => cutPanel.key(event),
   paneAt,
   lead: (tool, position, rotation) => connection.command("pose", { tool, position: position.toArray(), rotation }),
@@ -236,7 +259,10 @@ function begin(event) {
   const isAdded = adding !== null && tools.at(-1)?.added === adding;
   const held = hand.selected;
   hand.begin(tools, -1);
-  if (before) view.setTools(tools);
+  if (before) {
+    view.setTools(tools);
+    past.clear();
+  }
   // The one that was added here, that of before where the tools are the same, or else the first.
   const isSame = before?.tools.length === tools.length;
   const first = Math.min(0, tools.length - 1);
@@ -276,6 +302,7 @@ function configure(event) {
     card.setIntegrators(integrators);
     cards.push(card);
   }
+  if (picture && picture.panes.length !== panes.length) past.clear();
   if (cards.length > panes.length) {
     cards.length = panes.length;
     histories[1].clear();
@@ -343,7 +370,7 @@ function legend() {
 /// Shows the picture in other colours: while time stops no other one comes.
 function recolour() {
   legend();
-  if (picture) show();
+  if (picture) show(false);
 }
 
 /// The least and the largest value that is shown.
@@ -368,7 +395,8 @@ function colourValues(number) {
   return Float32Array.from(picture.topology.surfaces[number].twins, (twin, k) => (twin === NO_TWIN ? NOT_KNOWN : away(k, twin)));
 }
 
-function show() {
+/// Shows the picture; one of the past, or one that was shown before, changes nothing but the view.
+function show(isNew = true) {
   if (view.topology !== picture.topology) {
     view.setTopology(picture.topology, scenery.tools);
     get("fine").checked = view.isFine;
@@ -388,9 +416,9 @@ function show() {
     view.update(number, pane, colourValues(number), scale);
     const tool = pane.tools[hand.selected];
     const [pull, moved] = hand.pull.show(number, pane);
-    histories[number].take(pane, tool ? Math.hypot(...tool.force) : pull, tool ? tool.depth : moved);
+    if (isNew) histories[number].take(pane, tool ? Math.hypot(...tool.force) : pull, tool ? tool.depth : moved);
   });
-  hand.see(picture.panes[0].tools);
+  if (isNew) hand.see(picture.panes[0].tools);
   depthHandle.show(blade.isOn);
 }
 
@@ -463,11 +491,20 @@ function frame(now) {
   window.requestAnimationFrame(frame);
   const next = scenery && settings ? connection.latest() : null;
   if (next && next.panes.length === settings.panes.length) {
-    picture = next;
+    present = next;
     pictures += 1;
-    showBeginning();
-    show();
-    blade.flush(picture.applied);
+    past.take(next);
+    if (!past.isOn) {
+      picture = next;
+      showBeginning();
+      show();
+    }
+    blade.flush(next.applied);
+  }
+  const old = past.next(now);
+  if (old) {
+    picture = old;
+    show(false);
   }
   if (scenery && settings) showClosed(now);
   if (view.draw()) {
@@ -489,8 +526,15 @@ function frame(now) {
   if (connected && now > notice) get("message").hidden = true;
 }
 
-get("pause").addEventListener("click", () => settings && connection.command("pause", { on: !settings.paused }));
-get("step").addEventListener("click", () => connection.command("step"));
+get("pause").addEventListener("click", () => {
+  if (!settings) return;
+  past.leave();
+  connection.command("pause", { on: !settings.paused });
+});
+get("step").addEventListener("click", () => {
+  past.leave();
+  connection.command("step");
+});
 get("reset").addEventListener("click", () => connection.command("reset"));
 get("save").addEventListener("click", () => connection.command("save"));
 get("panes").addEventListener("click", () => settings && connection.command("panes", { count: settings.panes.length === 1 ? 2 : 1 }));
@@ -559,6 +603,9 @@ window.sinew = {
   /// Where the camera is, and whereto it looks (m).
   get camera() { return { place: view.camera.lens.position.toArray(), target: view.camera.target.toArray() }; },
   balance: (pane = 0) => histories[pane].balance.at(-1),
+  get past() { return { count: past.list.length, bytes: past.bytes, isOn: past.isOn, first: past.list[0]?.panes[0].t, last: past.list.at(-1)?.panes[0].t, shown: picture?.panes[0].t }; },
+  /// Triangles of the section with values that a pane draws.
+  sectionDrawn: (pane = 0) => (view.panes[pane].cap.field.visible ? view.panes[pane].cap.field.geometry.attributes.position.count / 3 : 0),
   /// Kind and size of a picture, and of a film of a second.
   async captured() {
     const picture = await capture.picture();

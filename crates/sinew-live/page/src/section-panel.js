@@ -7,8 +7,10 @@ const get = (id) => document.getElementById(id);
 const AXES = { x: 0, y: 1, z: 2 };
 
 export class SectionPanel {
-  constructor(view) {
+  /// `ask` asks the simulation for the values inside, at an axis and a place (m), or for none (null).
+  constructor(view, ask) {
     this.view = view;
+    this.ask = ask;
     this.isTurned = false;
     get("section").addEventListener("change", () => this.choose());
     get("section-at").addEventListener("input", () => this.apply());
@@ -35,6 +37,7 @@ export class SectionPanel {
     this.view.setSection(this.axis, share, this.isTurned);
     this.enable();
     const { axis } = this;
+    this.ask(axis, axis === null ? 0 : this.view.section.at);
     if (axis === null) return;
     const { low, high } = this.view.box;
     const words = `${get("section").value} = ${plain(1000 * (low[axis] + share * (high[axis] - low[axis])), 3)} mm`;

@@ -1,7 +1,7 @@
 // A plane that cuts the picture open, not the tissue: one side of it is not drawn, and a cap closes the other.
 
 import {
-  BackSide, DecrementWrapStencilOp, DoubleSide, FrontSide, IncrementWrapStencilOp, Mesh, MeshLambertMaterial, NotEqualStencilFunc, Plane, PlaneGeometry, Vector3,
+  BackSide, BufferAttribute, BufferGeometry, DecrementWrapStencilOp, DoubleSide, FrontSide, IncrementWrapStencilOp, Mesh, MeshLambertMaterial, NotEqualStencilFunc, Plane, PlaneGeometry, Vector3,
   ZeroStencilOp,
 } from "three";
 import { INNER, countingLook, wetLooks } from "./looks.js";
@@ -28,6 +28,7 @@ export class Section {
     Object.assign(this, { axis, isTurned });
     if (axis === null) return;
     const at = low[axis] + share * (high[axis] - low[axis]);
+    this.at = at;
     this.plane.normal.set(0, 0, 0).setComponent(axis, isTurned ? 1 : -1);
     this.plane.constant = isTurned ? -at : at;
   }
@@ -38,7 +39,7 @@ export class Section {
   }
 }
 
-/// What closes a body that is cut open: the inside in the colour of cut tissue, since values inside are not known to the page.
+/// What closes a body that is cut open: the inside in the colour of cut tissue, or values of the field that is shown, where the simulation sent them.
 export class Cap {
   constructor(scene, geometry, section, extent) {
     this.section = section;
@@ -55,7 +56,23 @@ export class Cap {
     this.cap = new Mesh(new PlaneGeometry(6 * extent, 6 * extent), this.looks.fine);
     this.cap.renderOrder = 2;
     this.cap.frustumCulled = false;
-    scene.add(...this.counting, this.cap);
+    this.field = new Mesh(new BufferGeometry(), new MeshLambertMaterial({ vertexColors: true, toneMapped: false, side: DoubleSide, flatShading: true }));
+    this.field.frustumCulled = false;
+    this.field.visible = false;
+    scene.add(...this.counting, this.cap, this.field);
+  }
+
+  /// Shows the values of a section that a picture brought, if it is the one that is shown here.
+  paint({ axis, at, positions, colours }, scale) {
+    const { section, field } = this;
+    this.hasValues = scale !== null && section.isOn && axis === section.axis && colours.length > 0 && Math.abs(at - section.at) < 1e-9;
+    if (!this.hasValues) return;
+    const painted = new Float32Array(positions.length);
+    colours.forEach((value, corner) => scale.paint(value, painted, 3 * corner));
+    field.geometry.dispose();
+    field.geometry = new BufferGeometry();
+    field.geometry.setAttribute("position", new BufferAttribute(positions, 3));
+    field.geometry.setAttribute("color", new BufferAttribute(painted, 3));
   }
 
   /// Follows the plane, in one of the looks of a body; `centre` is in its middle.
@@ -65,7 +82,9 @@ export class Cap {
       mesh.visible = section.isOn;
       mesh.material.clippingPlanes = section.planes;
     }
-    cap.visible = section.isOn;
+    const hasValues = section.isOn && look === "read" && Boolean(this.hasValues);
+    cap.visible = section.isOn && !hasValues;
+    this.field.visible = hasValues;
     if (!section.isOn) return;
     cap.material = this.looks[look];
     section.plane.projectPoint(centre, cap.position);

@@ -137,6 +137,7 @@ export class View {
     this.isTissue = scale === null;
     if (scale) own.body.paint(values, scale);
     else own.body.paintTissue(values);
+    own.cap.paint(pane.section, scale);
     own.floor.follow(pane.positions);
     pane.tools.forEach((tool, index) => {
       own.tools[index]?.position.set(...tool.position);

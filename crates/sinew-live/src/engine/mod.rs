@@ -41,7 +41,7 @@ use crate::error::LiveError;
 use crate::inbox::{Place, Request, Waiting};
 use crate::new_tool::AddedTool;
 use crate::pane_choice::PaneChoice;
-use crate::picture::Surface;
+use crate::picture::{Plane, Surface};
 use crate::protocol::{Event, Field, FrameHead, FrameWriter, Order, Scenery};
 use crate::scene_values::SceneValues;
 use crate::scenery::Presented;
@@ -117,6 +117,8 @@ pub(crate) struct Engine {
     /// The fields of the body, and the one shown as colours.
     fields: Vec<Field>,
     field: Field,
+    /// The section whose values pictures contain.
+    section: Option<Plane>,
     repaint: bool,
     trusted: Option<Trusted>,
     paused: bool,
@@ -224,6 +226,7 @@ impl Engine {
             surveyed: true,
             field: fields.first().copied().unwrap_or(Field::Displacement),
             fields,
+            section: None,
             repaint: true,
             trusted: None,
             paused: from_start,
@@ -389,8 +392,6 @@ impl Engine {
             }
             shared.clients.tell_all(&Event::Stopped { pane, reason });
             self.news.settings = true;
-            // The others go back without it from now on.
-            self.begin_moments();
         }
         if !self.panes.iter().all(|pane| pane.is_at(until)) {
             return;
@@ -440,8 +441,47 @@ impl Engine {
         let Some(moment) = self.moments.before_failure(failed_at) else {
             return false;
         };
-        let both = self.panes.iter_mut().zip(&moment.panes);
-        let mut both = both.filter_map(|(pane, to)| Some((pane, to.as_ref()?)));
+        let t = moment.clock.time();
+        if !self.go_back_to_last(Some(pane), shared) {
+            return false;
+        }
+        shared.clients.tell_all(&Event::WentBack {
+            pane,
+            by: failed_at - t,
+            to: t,
+            reason: reason.to_owned(),
+        });
+        true
+    }
+
+    /// Goes on from the last moment that is kept up to a simulated time (s): another branch of the motion.
+    fn go_on_from(&mut self, t: f64, shared: &Shared) -> Result<(), String> {
+        let was = self.t();
+        let moment = self.moments.up_to(t).map(|moment| moment.clock.time());
+        let from = moment.filter(|from| t.is_finite() && *from <= was);
+        let from = from.ok_or_else(|| format!("no moment up to t = {t} s is kept"))?;
+        if !self.go_back_to_last(None, shared) {
+            return Err("a pane cannot go back to that moment: reset".to_owned());
+        }
+        self.deaf_until = f64::NEG_INFINITY;
+        shared.clients.tell_all(&Event::WentOnFrom {
+            t: from,
+            back: was - from,
+        });
+        Ok(())
+    }
+
+    /// Takes the panes back to the last moment that is kept, with resting tools: all of them, or all but those that had
+    /// stopped before this one failed. False if one of them cannot.
+    fn go_back_to_last(&mut self, failed: Option<usize>, shared: &Shared) -> bool {
+        let Some(moment) = self.moments.last() else {
+            return false;
+        };
+        let both = self.panes.iter_mut().zip(&moment.panes).enumerate();
+        let mut both = both.filter_map(|(number, (pane, to))| {
+            let has_ended = pane.stopped.is_some() && failed.is_some_and(|it| it != number);
+            Some((pane, to.as_ref().filter(|_| !has_ended)?))
+        });
         if both.any(|(pane, to)| pane.go_back(to).is_err()) {
             return false;
         }
@@ -463,18 +503,13 @@ impl Engine {
             command.arrival = t;
         }
         self.tell_applied(shared);
+        self.news.settings = true;
         if self.trusted.is_some() {
             self.distrust(
                 "the panes went back to an earlier moment, which it cannot".to_owned(),
                 shared,
             );
         }
-        shared.clients.tell_all(&Event::WentBack {
-            pane,
-            by: failed_at - t,
-            reason: reason.to_owned(),
-        });
-        self.news.settings = true;
         true
     }
 
@@ -553,7 +588,7 @@ impl Engine {
             pane.write(
                 &mut frame,
                 (&self.uncut, &self.hands),
-                self.field,
+                (self.field, self.section),
                 self.repaint,
             );
         }
@@ -615,7 +650,7 @@ impl Engine {
             // What colours show stays as it is under the others, and to paint may take longer than a step.
             let repaints = match &what {
                 Order::Field { name } => *name != self.field,
-                Order::Save | Order::Grip { .. } | Order::LetGo => false,
+                Order::Save | Order::Grip { .. } | Order::LetGo | Order::Section { .. } => false,
                 _ => !waits,
             };
             let outcome = self.carry_out(client, id, what, shared);
@@ -862,6 +897,7 @@ impl Engine {
                 self.ahead.get_or_insert(next);
             }
             Order::Reset => self.restart()?,
+            Order::GoOnFrom { t } => self.go_on_from(t, shared)?,
             Order::Panes { count } => {
                 if count == 0 || count > MOST_PANES {
                     return Err(format!("{count} panes: expected 1 or {MOST_PANES}"));
@@ -886,6 +922,18 @@ impl Engine {
             }
             Order::Field { name } if self.fields.contains(&name) => self.field = name,
             Order::Field { .. } => return Err("this body has no such field".to_owned()),
+            Order::Section { axis: None, .. } => self.section = None,
+            Order::Section {
+                axis: Some(axis),
+                at,
+            } => {
+                if axis > 2 || !(-FARTHEST..=FARTHEST).contains(&at) {
+                    return Err(format!(
+                        "a section across axis {axis} at {at} m: expected axis 0, 1 or 2 and at most {FARTHEST:e} m"
+                    ));
+                }
+                self.section = Some(Plane { axis, at });
+            }
             Order::Trusted { on } => {
                 self.trusted = match on {
                     true => Some(self.begin_trusted()?),

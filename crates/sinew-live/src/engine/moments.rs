@@ -1,4 +1,5 @@
-//! Moments of the panes, to which they go back where the user's hand has led them into a state without a next step.
+//! Moments of the panes, to which they go back where the user's hand has led them into a state without a next step, or
+//! where a user wants to go on from an earlier time.
 
 use std::collections::VecDeque;
 
@@ -9,8 +10,11 @@ use super::pane::PaneMoment;
 /// Simulated time (s) between two moments.
 const EVERY: f64 = 0.1;
 
-/// Number of moments that are kept.
-const KEPT: usize = 16;
+/// Number of bytes that all moments may take.
+const MEMORY: usize = 64 << 20;
+
+/// Least number of moments that are kept.
+const LEAST: usize = 16;
 
 /// Simulated time (s) before a failure within which a state leads to it, for each attempt to go on.
 const DOOMED: f64 = 0.1;
@@ -35,6 +39,13 @@ pub(super) struct Moment {
     pub(super) grasped: Vec<bool>,
 }
 
+impl Moment {
+    /// Number of bytes of its fields.
+    fn bytes(&self) -> usize {
+        self.panes.iter().flatten().map(PaneMoment::bytes).sum()
+    }
+}
+
 /// The latest moments of all panes, and the failures since the last one that was survived.
 #[derive(Default)]
 pub(super) struct Moments {
@@ -53,12 +64,43 @@ impl Moments {
         last.is_none_or(|last| t - last.clock.time() >= EVERY * (1.0 - Clock::ROUNDING))
     }
 
-    /// Keeps a moment. The first one stays for good.
+    /// Keeps a moment. The first one stays for good; where the memory is full, every second one of the older half goes.
     pub(super) fn keep(&mut self, moment: Moment) {
-        if self.kept.len() >= KEPT {
-            self.kept.remove(1);
+        let most = (MEMORY / moment.bytes().max(1)).max(LEAST);
+        self.keep_at_most(moment, most);
+    }
+
+    fn keep_at_most(&mut self, moment: Moment, most: usize) {
+        if self.kept.len() >= most {
+            let older = self.kept.len() / 2;
+            let mut number = 0;
+            self.kept.retain(|_| {
+                number += 1;
+                number > older || number % 2 == 1
+            });
         }
         self.kept.push_back(moment);
+    }
+
+    /// The last one that is kept.
+    pub(super) fn last(&self) -> Option<&Moment> {
+        self.kept.back()
+    }
+
+    /// The last moment up to a simulated time (s). The later ones are dropped.
+    pub(super) fn up_to(&mut self, t: f64) -> Option<&Moment> {
+        let until = t * (1.0 + Clock::ROUNDING);
+        self.drop_after(until);
+        self.commanded = None;
+        self.kept.back()
+    }
+
+    /// Drops the moments after a simulated time (s), but the first one.
+    fn drop_after(&mut self, until: f64) {
+        let is_after = |moment: &Moment| moment.clock.time() > until;
+        while self.kept.len() > 1 && self.kept.back().is_some_and(is_after) {
+            self.kept.pop_back();
+        }
     }
 
     /// Notes a command at a simulated time (s).
@@ -80,15 +122,7 @@ impl Moments {
         }
         self.failed = Some(self.failed.map_or(t, |failed| failed.max(t)));
         self.attempts = (self.attempts + 1).min(MOST_ATTEMPTS);
-        let until = t - DOOMED * f64::from(self.attempts);
-        while self.kept.len() > 1
-            && self
-                .kept
-                .back()
-                .is_some_and(|last| last.clock.time() > until)
-        {
-            self.kept.pop_back();
-        }
+        self.drop_after(t - DOOMED * f64::from(self.attempts));
         self.kept.back()
     }
 }
@@ -97,18 +131,22 @@ impl Moments {
 mod tests {
     use super::*;
 
+    fn moment(clock: Clock) -> Moment {
+        Moment {
+            clock,
+            panes: Vec::new(),
+            hands: Vec::new(),
+            factors: Vec::new(),
+            grasped: Vec::new(),
+        }
+    }
+
     fn moments(until: f64) -> Moments {
         let mut moments = Moments::default();
         let mut clock = Clock::default();
         while clock.time() < until {
             if moments.is_due(clock.time()) {
-                moments.keep(Moment {
-                    clock,
-                    panes: Vec::new(),
-                    hands: Vec::new(),
-                    factors: Vec::new(),
-                    grasped: Vec::new(),
-                });
+                moments.keep(moment(clock));
             }
             clock.advance(0.01);
         }
@@ -140,6 +178,26 @@ mod tests {
         }
         moments.note_command(0.5);
         assert!(is_last_until(back(&mut moments, 0.5), 0.0));
+    }
+
+    #[test]
+    fn a_full_memory_keeps_the_new_ones_close_and_the_old_ones_apart() {
+        let mut moments = Moments::default();
+        let mut clock = Clock::default();
+        for _ in 0..100_000 {
+            moments.keep_at_most(moment(clock), 100);
+            clock.advance(0.1);
+        }
+        let times: Vec<f64> = moments.kept.iter().map(|kept| kept.clock.time()).collect();
+        assert!(times.len() <= 100 && times[0] == 0.0, "{times:?}");
+        let gaps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
+        assert!((gaps[times.len() - 2] - 0.1).abs() < 1e-6);
+        assert!(gaps[0] > 100.0, "{gaps:?}");
+        // The last half reaches back at least as many moments as there are of them.
+        assert!(times[times.len() / 2] > 9990.0, "{times:?}");
+        let middle = moments.up_to(9995.0).unwrap().clock.time();
+        assert!((9994.0..=9995.1).contains(&middle), "{middle}");
+        assert_eq!(moments.up_to(-1.0).unwrap().clock.time(), 0.0);
     }
 
     #[test]

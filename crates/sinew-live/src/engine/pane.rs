@@ -17,9 +17,9 @@ use super::shown::{Budget, Shown};
 use super::sums::Sums;
 use super::{options, stability};
 use crate::error::LiveError;
-use crate::picture::Surface;
+use crate::picture::{Plane, Section, Surface};
 use crate::protocol::{
-    CutHead, Field, FrameWriter, OptionFacts, PaneFacts, PaneHead, StepFacts, ToolHead,
+    CutHead, Field, FrameWriter, OptionFacts, PaneFacts, PaneHead, SectionHead, StepFacts, ToolHead,
 };
 use crate::scene_values::SceneValues;
 
@@ -79,6 +79,13 @@ struct Held {
 pub(crate) struct PaneMoment {
     session: Moment,
     sums: Sums,
+}
+
+impl PaneMoment {
+    /// Number of bytes of its fields.
+    pub(super) fn bytes(&self) -> usize {
+        self.session.bytes()
+    }
 }
 
 impl Pane {
@@ -578,7 +585,7 @@ impl Pane {
         &mut self,
         frame: &mut FrameWriter,
         (uncut, hands): (&Surface, &Hands),
-        field: Field,
+        (field, plane): (Field, Option<Plane>),
         anew: bool,
     ) {
         self.measure();
@@ -587,6 +594,7 @@ impl Pane {
         let limit = self.limit();
         if let Some(shown) = &mut self.shown {
             shown.paint(&self.session, (field, limit), anew);
+            shown.cut(plane);
         }
         let lights = self.lights();
         let (colours, reasons) = packed(lights);
@@ -633,6 +641,11 @@ impl Pane {
                 (Some(held), Some(body)) => held.patch.place(&self.session, body),
                 _ => [f64::NAN; 3],
             },
+            section: plane.map_or_else(SectionHead::default, |plane| SectionHead {
+                axis: plane.axis as u32,
+                triangles: (shown.section.values.len() / 3) as u32,
+                at: plane.at,
+            }),
         };
         frame.pane(&head, shown.surface.points.len(), self.sums.impulses.len());
         let all = self.session.tools().zip(&mut self.sums.impulses);
@@ -660,6 +673,8 @@ impl Pane {
         (self.sums.span, self.sums.saturated, self.sums.steps) = (0.0, 0, 0);
         self.sums.pulled = [0.0; 3];
         frame.points(shown.places(), shown.values());
+        let Section { places, values } = &shown.section;
+        frame.points(places.iter().copied(), values);
     }
 
     /// Totals of all cuts.

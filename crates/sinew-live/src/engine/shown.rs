@@ -8,7 +8,7 @@ use sinew_mesh::TetMesh;
 use sinew_scene::{BodyModel, Cutter};
 use sinew_world::World;
 
-use crate::picture::{Colours, Seen, Surface, twins};
+use crate::picture::{Colours, Plane, Section, Seen, Surface, twins};
 use crate::protocol::{Field, NONE};
 
 /// Divisor of time: colours and energies take at most one part in `SHARE` of the time.
@@ -58,6 +58,7 @@ pub(super) struct Shown {
     colours: Colours,
     coloured: Budget,
     displacement: Vec<[f64; 3]>,
+    pub(super) section: Section,
     /// Number of pieces of the body.
     pub(super) pieces: usize,
 }
@@ -72,6 +73,7 @@ impl Shown {
             surface,
             coloured: Budget::default(),
             displacement: vec![[0.0; 3]; body.mesh.points.len()],
+            section: Section::default(),
             pieces: session.cutter().map_or(1, Cutter::pieces),
         }
     }
@@ -127,6 +129,18 @@ impl Shown {
             let u = self.displacement[*node as usize];
             std::array::from_fn(|axis| (point[axis] + u[axis]) as f32)
         })
+    }
+
+    /// Makes the section by a plane; an empty one without a plane.
+    pub(super) fn cut(&mut self, plane: Option<Plane>) {
+        let tets = plane.map_or(&[][..], |_| &self.mesh.tets);
+        let plane = plane.unwrap_or(Plane { axis: 0, at: 0.0 });
+        let (points, moved) = (&self.mesh.points, &self.displacement);
+        let place = |node: u32| -> [f64; 3] {
+            let (point, u) = (points[node as usize], moved[node as usize]);
+            std::array::from_fn(|axis| point[axis] + u[axis])
+        };
+        self.section.cut(tets, place, &self.colours.at_nodes, plane);
     }
 
     /// The colours of the points.

@@ -1,4 +1,4 @@
-//! Fields shown as colours at the points of the surface.
+//! Fields shown as colours.
 
 use sinew_core::{Contact, State};
 use sinew_fem::stress::von_mises;
@@ -8,14 +8,19 @@ use sinew_tools::{SurfacePressures, Tools};
 use super::surface::Surface;
 use crate::protocol::Field;
 
-/// The value of a point at inverted tetrahedra: the page shows it in a separate colour.
+/// The value of a node at inverted tetrahedra: the page shows it in a separate colour.
 const INSIDE_OUT: f32 = f32::NAN;
 
-/// Values of a field at the points of a surface.
+/// The value of a node at which a field is not known, as the page has it.
+const NOT_KNOWN: f32 = f32::NEG_INFINITY;
+
+/// Values of a field at the nodes of a body and at the points of its surface.
 #[derive(Debug)]
 pub(crate) struct Colours {
     /// The value of each point; NaN at inverted tetrahedra.
     pub(crate) values: Vec<f32>,
+    /// The value of each node of the mesh.
+    pub(crate) at_nodes: Vec<f32>,
     /// Number of inverted tetrahedra.
     pub(crate) inverted: u32,
     sums: Vec<f64>,
@@ -24,6 +29,8 @@ pub(crate) struct Colours {
     /// Forces (N) of contact on the degrees of freedom, and on the points.
     forces: Vec<f64>,
     at_points: Vec<[f64; 3]>,
+    /// Pressures (Pa) at the points.
+    at_surface: Vec<f64>,
     pressures: SurfacePressures,
 }
 
@@ -54,12 +61,14 @@ impl Colours {
         let points = surface.points.len();
         Self {
             values: vec![0.0; points],
+            at_nodes: vec![0.0; mesh.points.len()],
             inverted: 0,
-            sums: vec![0.0; points],
-            weights: vec![0.0; points],
+            sums: vec![0.0; mesh.points.len()],
+            weights: vec![0.0; mesh.points.len()],
             volumes: volumes.collect(),
             forces: Vec::new(),
             at_points: vec![[0.0; 3]; points],
+            at_surface: vec![0.0; points],
             pressures: SurfacePressures::default(),
         }
     }
@@ -88,22 +97,26 @@ impl Colours {
     /// Recomputes a field.
     pub(crate) fn take(&mut self, field: Field, seen: &Seen<'_>) -> Result<(), FieldError> {
         match field {
-            Field::Stress | Field::Strain | Field::EnergyDensity => {
-                return self.of_tets(field, seen);
-            }
+            Field::Stress | Field::Strain | Field::EnergyDensity => self.of_tets(field, seen)?,
             Field::Displacement => {
-                for (value, node) in self.values.iter_mut().zip(&seen.surface.nodes) {
-                    *value = length(seen.displacement[*node as usize]) as f32;
+                for (value, u) in self.at_nodes.iter_mut().zip(seen.displacement) {
+                    *value = length(*u) as f32;
                 }
             }
             Field::Saturated => self.saturated(seen),
             Field::Pressure => self.pressure(seen),
             Field::StepLimit => self.step_limit(seen),
         }
-        self.mark_inverted(seen)
+        if !is_of_tets(field) {
+            self.mark_inverted(seen)?;
+        }
+        for (value, node) in self.values.iter_mut().zip(&seen.surface.nodes) {
+            *value = self.at_nodes[*node as usize];
+        }
+        Ok(())
     }
 
-    /// Means over the tetrahedra at each point, by volume.
+    /// Means over the tetrahedra at each node, by volume.
     fn of_tets(&mut self, field: Field, seen: &Seen<'_>) -> Result<(), FieldError> {
         self.sums.fill(0.0);
         self.weights.fill(0.0);
@@ -120,14 +133,12 @@ impl Colours {
             };
             let value = if tet.is_inverted { f64::NAN } else { value };
             for node in nodes {
-                if let Some(point) = seen.surface.point_of(*node) {
-                    self.sums[point] += volume * value;
-                    self.weights[point] += volume;
-                }
+                self.sums[*node as usize] += volume * value;
+                self.weights[*node as usize] += volume;
             }
         }
         let means = self.sums.iter().zip(&self.weights);
-        for (value, (sum, weight)) in self.values.iter_mut().zip(means) {
+        for (value, (sum, weight)) in self.at_nodes.iter_mut().zip(means) {
             *value = (sum / weight) as f32;
         }
         Ok(())
@@ -140,9 +151,7 @@ impl Colours {
             if tet.is_inverted {
                 self.inverted += 1;
                 for node in nodes {
-                    if let Some(point) = seen.surface.point_of(*node) {
-                        self.values[point] = INSIDE_OUT;
-                    }
+                    self.at_nodes[*node as usize] = INSIDE_OUT;
                 }
             }
         }
@@ -150,43 +159,36 @@ impl Colours {
     }
 
     fn saturated(&mut self, seen: &Seen<'_>) {
-        self.values.fill(0.0);
+        self.at_nodes.fill(0.0);
         let Some(limit) = seen.limit else { return };
-        for (v, node) in seen
-            .state
-            .v
-            .as_chunks::<3>()
-            .0
-            .iter()
-            .zip(seen.model.nodes())
-        {
+        let velocities = seen.state.v.as_chunks::<3>().0;
+        for (v, node) in velocities.iter().zip(seen.model.nodes()) {
             let is_at_limit = length(*v) >= AT_LIMIT * limit;
-            if let Some(point) = seen.surface.point_of(*node) {
-                self.values[point] = f32::from(u8::from(is_at_limit));
-            }
+            self.at_nodes[*node as usize] = f32::from(u8::from(is_at_limit));
         }
     }
 
-    /// The largest value over the tetrahedra at each point.
+    /// The largest value over the tetrahedra at each node.
     fn step_limit(&mut self, seen: &Seen<'_>) {
-        self.values.fill(0.0);
-        let (model, surface) = (seen.model, seen.surface);
-        let mesh = model.mesh();
+        self.at_nodes.fill(0.0);
+        let mesh = seen.model.mesh();
         for (tet, nodes) in mesh.tets.iter().enumerate() {
             let vertices = nodes.map(|node| mesh.points[node as usize]);
             // Central difference bears steps up to 2 / omega.
-            let inverse = (model.tet_frequency(tet, &vertices) / 2.0) as f32;
+            let inverse = (seen.model.tet_frequency(tet, &vertices) / 2.0) as f32;
             for node in nodes {
-                if let Some(point) = surface.point_of(*node) {
-                    self.values[point] = self.values[point].max(inverse);
-                }
+                let value = &mut self.at_nodes[*node as usize];
+                *value = value.max(inverse);
             }
         }
     }
 
-    /// The pressure of contact, the same as in the fields of a run.
+    /// The pressure of contact on the surface, the same as in the fields of a run.
     fn pressure(&mut self, seen: &Seen<'_>) {
-        self.values.fill(0.0);
+        self.at_nodes.fill(NOT_KNOWN);
+        for node in &seen.surface.nodes {
+            self.at_nodes[*node as usize] = 0.0;
+        }
         let Some(tools) = seen.tools else { return };
         self.forces.clear();
         self.forces.resize(seen.state.v.len(), 0.0);
@@ -206,13 +208,18 @@ impl Colours {
             );
             std::array::from_fn(|axis| rest[axis] + u[axis])
         };
-        let pressures = &mut self.sums;
+        let pressures = &mut self.at_surface;
         self.pressures
             .take(&surface.triangles, place, &self.at_points, pressures);
-        for (value, pressure) in self.values.iter_mut().zip(pressures) {
-            *value = *pressure as f32;
+        for (node, pressure) in surface.nodes.iter().zip(pressures) {
+            self.at_nodes[*node as usize] = *pressure as f32;
         }
     }
+}
+
+/// True for fields that are means over tetrahedra.
+fn is_of_tets(field: Field) -> bool {
+    matches!(field, Field::Stress | Field::Strain | Field::EnergyDensity)
 }
 
 fn length(vector: [f64; 3]) -> f64 {

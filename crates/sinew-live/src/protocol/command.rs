@@ -121,6 +121,11 @@ pub(crate) enum Order {
     Step,
     /// A reset to the beginning.
     Reset,
+    /// Another motion from an earlier moment on.
+    GoOnFrom {
+        /// Simulated time (s): the last moment up to it that is kept is the one.
+        t: f64,
+    },
     /// One pane or two.
     Panes {
         /// Number of panes.
@@ -130,6 +135,13 @@ pub(crate) enum Order {
     Field {
         /// The field.
         name: Field,
+    },
+    /// A section across an axis whose values pictures contain, or none.
+    Section {
+        /// The axis: 0, 1 or 2.
+        axis: Option<usize>,
+        /// The coordinate (m).
+        at: f64,
     },
     /// Starts or ends a trusted run, which gives the error.
     Trusted {

@@ -49,8 +49,17 @@ pub(crate) enum Event {
         pane: usize,
         /// Time (s) by which they went back.
         by: f64,
+        /// Simulated time (s) of the moment.
+        to: f64,
         /// The reason of the failure.
         reason: String,
+    },
+    /// A return of all panes to an earlier moment by a command.
+    WentOnFrom {
+        /// Simulated time (s) of the moment.
+        t: f64,
+        /// Time (s) by which they went back.
+        back: f64,
     },
     /// Another method in a pane, which cannot take tools.
     OtherMethod {

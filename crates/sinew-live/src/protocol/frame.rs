@@ -1,7 +1,7 @@
 //! Pictures in binary, little-endian, each part at a multiple of eight bytes.
 //!
 //! A topology is the surface of each pane's body at rest, and is sent before the first picture that belongs to it. A picture is a head of 32 bytes, then
-//! for each pane its numbers, its tools and its points. `page/src/frames.js` reads both.
+//! for each pane its numbers, its tools, its points, and the corners of the triangles of a section, three for each. `page/src/frames.js` reads both.
 
 /// Kind of a topology.
 const TOPOLOGY: u32 = 0;
@@ -21,7 +21,7 @@ pub(crate) const APPLIED_AT: usize = 8;
 const HEAD: usize = 32;
 
 /// Number of bytes of the numbers of a pane.
-const PANE: usize = 224;
+const PANE: usize = 240;
 
 /// Number of bytes of a tool.
 const TOOL: usize = 136;
@@ -135,6 +135,29 @@ pub(crate) struct PaneHead {
     pub(crate) pull: [f64; 3],
     /// The place (m) of that tissue; NaN if there is none.
     pub(crate) grip: [f64; 3],
+    /// The section with the values inside.
+    pub(crate) section: SectionHead,
+}
+
+/// A section by a plane across an axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct SectionHead {
+    /// The axis; 3 if there is no section.
+    pub(crate) axis: u32,
+    /// Number of its triangles.
+    pub(crate) triangles: u32,
+    /// Coordinate (m) of the plane.
+    pub(crate) at: f64,
+}
+
+impl Default for SectionHead {
+    fn default() -> Self {
+        Self {
+            axis: 3,
+            triangles: 0,
+            at: 0.0,
+        }
+    }
 }
 
 /// Totals of all cuts of a body since the beginning.
@@ -232,6 +255,15 @@ impl FrameWriter {
         }
         self.numbers(&head.pull);
         self.numbers(&head.grip);
+        let SectionHead {
+            axis,
+            triangles,
+            at,
+        } = head.section;
+        for number in [axis, triangles] {
+            self.0.extend(number.to_le_bytes());
+        }
+        self.numbers(&[at]);
         debug_assert_eq!(self.0.len(), begins + PANE);
     }
 
@@ -243,7 +275,7 @@ impl FrameWriter {
         self.numbers(&tool.hand);
     }
 
-    /// Writes the positions of the points (m), and their colours.
+    /// Writes the positions (m) of the points, or of corners of a section, and their colours.
     pub(crate) fn points(&mut self, places: impl Iterator<Item = [f32; 3]>, colours: &[f32]) {
         for coordinate in places.flatten() {
             self.0.extend(coordinate.to_le_bytes());
@@ -320,6 +352,7 @@ mod tests {
             assert_eq!([at + 120, at + 128].map(f64_at), [-0.5, 0.75]);
             assert_eq!(u32_at(at + 172), 4);
             assert_eq!(f64_at(at + 216), 2.5);
+            assert_eq!([at + 224, at + 228].map(u32_at), [3, 0]);
             assert_eq!(f64_at(at + PANE + 72), 0.25);
             assert_eq!(f32_at(at + PANE + TOOL), pane as f32);
             assert_eq!(f32_at(at + PANE + TOOL + 36), 4.0);

@@ -14,6 +14,6 @@ pub(crate) use event::{
     Scenery, Stability, StepFacts, ToolFacts,
 };
 pub(crate) use frame::{
-    APPLIED_AT, CutHead, FrameHead, FrameWriter, NONE, PaneHead, SurfaceShape, ToolHead, is_frame,
-    topology,
+    APPLIED_AT, CutHead, FrameHead, FrameWriter, NONE, PaneHead, SectionHead, SurfaceShape,
+    ToolHead, is_frame, topology,
 };

@@ -52,7 +52,7 @@ pub(crate) fn settings(text: &str) -> Settings {
 
 /// Offset of the first pane in a picture, and the size of its numbers and of a tool.
 pub(crate) const PANE: usize = 32;
-pub(crate) const NUMBERS: usize = 224;
+pub(crate) const NUMBERS: usize = 240;
 pub(crate) const TOOL: usize = 136;
 
 /// A served page, which ends with this value.

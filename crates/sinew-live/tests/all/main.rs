@@ -10,6 +10,7 @@ mod cuts;
 mod files;
 mod loads;
 mod new_tools;
+mod past;
 mod pauses;
 mod pulls;
 mod start;

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use sinew_core::Revision;
 
 use super::Log;
-use super::text::{end, head, push_entry};
+use super::text::{end, head, push_entries};
 
 /// A file that is updated with the log of a session, so that the log of a killed session is not lost: [`Log::read`]
 /// reads it up to its last command.
@@ -150,9 +150,7 @@ impl Journal {
             self.text.push_str(&head(log.header()));
         }
         let first = self.entries.unwrap_or(0);
-        for entry in log.entries().get(first..until).unwrap_or_default() {
-            push_entry(&mut self.text, entry);
-        }
+        push_entries(&mut self.text, log, first..until);
         let written = self.append();
         self.has_rest = written.is_err();
         written.map_err(|source| self.error(source))?;

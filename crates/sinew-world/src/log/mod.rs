@@ -68,11 +68,28 @@ pub struct Entry {
     pub command: Command,
 }
 
+/// A return of a session to an earlier moment, after which another motion follows. A replay ignores it, as the log has
+/// the commands of the motion that was kept.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct WentBack {
+    /// Number of commands before the moment.
+    pub before: usize,
+    /// Steps taken before the moment.
+    pub step: usize,
+    /// Time (s) of the moment.
+    pub t: f64,
+    /// Number of commands after the moment that left the log.
+    pub commands: usize,
+    /// Number of steps after the moment that were taken back.
+    pub steps: usize,
+}
+
 /// All commands of a session, each with the number of steps before it, and the number of steps at its end.
 #[derive(Clone, Debug, Serialize)]
 pub struct Log {
     header: Header,
     entries: Vec<Entry>,
+    went_back: Vec<WentBack>,
     steps: usize,
     #[serde(skip)]
     is_cut_off: bool,
@@ -97,12 +114,13 @@ impl PartialEq for Log {
         let Self {
             header,
             entries,
+            went_back,
             steps,
             is_cut_off,
             beginning: _,
             shortened: _,
         } = self;
-        (header, entries) == (&other.header, &other.entries)
+        (header, entries, went_back) == (&other.header, &other.entries, &other.went_back)
             && (steps, is_cut_off) == (&other.steps, &other.is_cut_off)
     }
 }
@@ -112,6 +130,7 @@ impl Log {
         Self {
             header,
             entries: Vec::new(),
+            went_back: Vec::new(),
             steps: 0,
             is_cut_off: false,
             beginning: Revision::new(),
@@ -166,6 +185,7 @@ impl Log {
     /// Replaces its commands by these, of a session with this number of steps.
     pub(crate) fn restore(&mut self, entries: &[Entry], steps: usize) {
         self.entries = entries.to_vec();
+        self.went_back.clear();
         self.steps = steps;
         self.beginning = Revision::new();
         self.shortened.clear();
@@ -192,8 +212,17 @@ impl Log {
         kept.is_some_and(|kept| kept.iter().all(|(_, kept)| mark.entries <= *kept))
     }
 
-    /// Discards the commands after a mark, which it must have.
-    pub(crate) fn shorten(&mut self, mark: &Mark) {
+    /// Discards the commands after a mark at a time (s), which it must have, and notes how many they were.
+    pub(crate) fn shorten(&mut self, mark: &Mark, t: f64) {
+        let is_kept = |back: &WentBack| (back.before, back.step) <= (mark.entries, mark.steps);
+        self.went_back.retain(is_kept);
+        self.went_back.push(WentBack {
+            before: mark.entries,
+            step: mark.steps,
+            t,
+            commands: self.entries.len() - mark.entries,
+            steps: self.steps.saturating_sub(mark.steps),
+        });
         self.entries.truncate(mark.entries);
         self.steps = mark.steps;
         self.shortened.push((self.beginning, mark.entries));
@@ -208,6 +237,12 @@ impl Log {
     #[must_use]
     pub fn is_cut_off(&self) -> bool {
         self.is_cut_off
+    }
+
+    /// Returns to earlier moments, in the order of the commands.
+    #[must_use]
+    pub fn went_back(&self) -> &[WentBack] {
+        &self.went_back
     }
 
     /// Identity of the program and the scene that it belongs to.

@@ -8,12 +8,16 @@ use sinew_core::Revision;
 use super::error::{LogError, LogFault};
 use super::text::{KIND, VERSION};
 use super::words::Words;
-use super::{Entry, Header, Log};
+use super::{Entry, Header, Log, WentBack};
 use crate::command::Command;
 use crate::input_file::InputFile;
 
 /// Names of the commands.
-const COMMANDS: &str = "pose, grasp, release, factor, forces, integrator, dt, reset, cut or end";
+const COMMANDS: &str =
+    "pose, grasp, release, factor, forces, integrator, dt, reset, cut, went-back or end";
+
+/// Begins the line of a return to an earlier moment.
+const WENT_BACK: &str = "went-back";
 
 impl Log {
     /// Reads a file with the text of [`Log::to_text`].
@@ -64,6 +68,7 @@ struct Reading {
     inputs: Vec<InputFile>,
     values: Vec<String>,
     entries: Vec<Entry>,
+    went_back: Vec<WentBack>,
     end: Option<usize>,
 }
 
@@ -124,6 +129,16 @@ impl Reading {
             return Err(LogFault::Time { found: t, last });
         }
         let word = words.word();
+        if word == WENT_BACK {
+            self.went_back.push(WentBack {
+                before: self.entries.len(),
+                step,
+                t,
+                commands: words.count("the number of commands that were taken back")?,
+                steps: words.count("the number of steps that were taken back")?,
+            });
+            return words.end();
+        }
         let command = match word {
             "pose" => Command::Pose {
                 tool: words.quoted("the name of a tool in quotes")?.into(),
@@ -194,6 +209,7 @@ impl Reading {
                 inputs: self.inputs,
                 values: self.values,
             },
+            went_back: self.went_back,
             steps: self.end.unwrap_or(least),
             is_cut_off: self.end.is_none(),
             beginning: Revision::new(),

@@ -1,9 +1,10 @@
 //! A log as text.
 
 use std::fmt::Write;
+use std::ops::Range;
 
 use super::words::{push_number, push_options, push_quoted};
-use super::{Entry, Header, Log};
+use super::{Entry, Header, Log, WentBack};
 use crate::command::Command;
 
 /// First line of a log, before its version.
@@ -30,13 +31,33 @@ pub(super) fn head(header: &Header) -> String {
     text
 }
 
-/// The last line.
+/// The last lines.
 pub(super) fn end(log: &Log) -> String {
-    format!("{} end\n", log.steps)
+    let mut text = String::new();
+    push_entries(&mut text, log, log.entries.len()..log.entries.len() + 1);
+    let _ = writeln!(text, "{} end", log.steps);
+    text
+}
+
+/// Adds the lines of commands with these numbers, and of the returns to moments before them.
+pub(super) fn push_entries(out: &mut String, log: &Log, numbers: Range<usize>) {
+    for number in numbers {
+        let before = log.went_back.iter().filter(|back| back.before == number);
+        before.for_each(|back| push_went_back(out, back));
+        if let Some(entry) = log.entries.get(number) {
+            push_entry(out, entry);
+        }
+    }
+}
+
+fn push_went_back(out: &mut String, back: &WentBack) {
+    let _ = write!(out, "{} ", back.step);
+    push_number(out, back.t);
+    let _ = writeln!(out, " went-back {} {}", back.commands, back.steps);
 }
 
 /// Adds the line of a command.
-pub(super) fn push_entry(out: &mut String, entry: &Entry) {
+fn push_entry(out: &mut String, entry: &Entry) {
     let _ = write!(out, "{} ", entry.step);
     push_number(out, entry.t);
     match &entry.command {
@@ -99,13 +120,12 @@ impl Log {
     /// The log as text, from which [`Log::parse`] reads all commands back without loss.
     ///
     /// The first lines identify program and scene; then there is a line for each command: the steps taken before it,
-    /// the time (s) of the state at that step, and the command; the last line has the number of all steps.
+    /// the time (s) of the state at that step, and the command; a return to an earlier moment has a line as well, with
+    /// the numbers of the commands and steps that were taken back; the last line has the number of all steps.
     #[must_use]
     pub fn to_text(&self) -> String {
         let mut text = head(&self.header);
-        for entry in &self.entries {
-            push_entry(&mut text, entry);
-        }
+        push_entries(&mut text, self, 0..self.entries.len());
         text.push_str(&end(self));
         text
     }

@@ -2,6 +2,8 @@
 
 use super::{Saved, World};
 use crate::error::RestoreError;
+#[cfg(doc)]
+use crate::log::Log;
 use crate::log::Mark;
 
 /// A moment of the motion of one world.
@@ -10,6 +12,14 @@ pub struct Moment {
     /// The motion without its log.
     saved: Saved,
     mark: Mark,
+}
+
+impl Moment {
+    /// Number of bytes of its fields over the body, which are most of what it takes.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        self.saved.bytes()
+    }
 }
 
 impl World {
@@ -23,8 +33,8 @@ impl World {
         }
     }
 
-    /// Goes back to a moment. The commands after it leave the log, so that a replay gives the motion that was kept. A
-    /// motion that has failed since then continues.
+    /// Goes back to a moment. The commands after it leave the log, so that a replay gives the motion that was kept;
+    /// [`Log::went_back`] says so. A motion that has failed since then continues.
     ///
     /// # Errors
     /// [`RestoreError`]: [`RestoreError::OtherPast`] for a moment of another world, and for one that this world left by
@@ -34,7 +44,7 @@ impl World {
             return Err(RestoreError::OtherPast);
         }
         self.restore_without_log(&to.saved)?;
-        self.log.shorten(&to.mark);
+        self.log.shorten(&to.mark, self.state.t());
         Ok(())
     }
 }

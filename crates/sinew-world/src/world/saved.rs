@@ -32,6 +32,13 @@ pub struct Saved {
     commanded: Option<Commanded>,
 }
 
+impl Saved {
+    /// Number of bytes of its fields over the body.
+    pub(super) fn bytes(&self) -> usize {
+        self.state.bytes()
+    }
+}
+
 /// The effects of commands to a world.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct Commanded {

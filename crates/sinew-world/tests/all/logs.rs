@@ -130,7 +130,7 @@ fn bad_lines_are_refused_by_file_line_and_what_to_do() {
         ),
         (
             said("factor", "faktor"),
-            "s.log:5: \"faktor\": expected pose, grasp, release, factor, forces, integrator, dt, reset, cut or end",
+            "s.log:5: \"faktor\": expected pose, grasp, release, factor, forces, integrator, dt, reset, cut, went-back or end",
         ),
         (
             said("10 end", "10 end\n11 end"),

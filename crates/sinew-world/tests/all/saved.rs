@@ -1,12 +1,13 @@
 //! A motion that is saved and continued: undone, and transferred to another world.
 
 use std::fmt::Debug;
+use std::path::Path;
 
 use serde::{Serialize, de::DeserializeOwned};
 use serde_json::json;
 use sinew_core::Options;
 use sinew_scene::{Scene, SceneSource};
-use sinew_world::{Command, CommandError, Replay, RestoreError, Saved, World};
+use sinew_world::{Command, CommandError, Journal, Log, Replay, RestoreError, Saved, World};
 
 use crate::common::{CUBE, build, following, scene, session};
 
@@ -305,8 +306,22 @@ fn a_world_goes_back_to_its_moments_and_a_replay_gives_what_it_kept() {
         assert!(matches!(left, Err(RestoreError::OtherPast)), "{back}");
         assert_eq!(world.state(), &states[back]);
     }
+    // The first return was left with what came after the second one.
+    let [back] = world.log().went_back() else {
+        panic!("{:?}", world.log().went_back());
+    };
+    assert_eq!((back.step, back.steps, back.t), (15, 49, states[1].t()));
     drive(&mut world, 15..90);
     assert!(world.save() == end);
+    let text = world.log().to_text();
+    assert_eq!(text.matches(" went-back ").count(), 1);
+    assert_eq!(&Log::parse(Path::new("s.log"), &text).unwrap(), world.log());
+    let path = std::env::temp_dir().join(format!("sinew-went-back-{}.log", std::process::id()));
+    let mut journal = Journal::create(path.clone()).unwrap();
+    journal.keep_up(world.log()).unwrap();
+    journal.finish(world.log()).unwrap();
+    assert_eq!(std::fs::read_to_string(&path).unwrap(), text);
+    std::fs::remove_file(path).unwrap();
     // It has other commands now, though as many.
     let left = world.go_back(&moments[2]);
     assert!(matches!(left, Err(RestoreError::OtherPast)));
