@@ -59,7 +59,7 @@ fn tip(tab: &mut Tab) -> Result<[f64; 2], Failure> {
 }
 
 /// Every kind of tool is added, pressed down and removed; the method gives way; tools turn; scissors cut; the bare hand
-/// pulls beside a tool; what happened is looked back at, and another motion goes on from there.
+/// pulls beside a tool; what happened is looked back at, and another motion continues from there.
 pub(super) fn are_added(bench: &Bench) -> Result<(), Failure> {
     let scene = bench.folder.path().join("block.toml");
     std::fs::write(&scene, BLOCK).map_err(Failure::chore)?;
@@ -87,7 +87,12 @@ pub(super) fn are_added(bench: &Bench) -> Result<(), Failure> {
                 tab.wait_for("window.sinew.picture.panes[0].contacts > 0", PATIENCE)?;
             }
             "burner" => tab.wait_for("window.sinew.picture.panes[0].removed > 0", PATIENCE)?,
-            "blade" => tab.wait_for("window.sinew.picture.panes[0].newNodes > 0", PATIENCE)?,
+            "blade" => {
+                // Along its edge it cuts nothing.
+                let down = tip(&mut tab)?;
+                drag(&mut tab, down, [160.0, 0.0], 30)?;
+                tab.wait_for("window.sinew.picture.panes[0].newNodes > 0", PATIENCE)?;
+            }
             _ => {
                 std::thread::sleep(Duration::from_millis(600));
                 let before = tab.number("window.sinew.picture.panes[0].newNodes")?;
@@ -111,7 +116,7 @@ pub(super) fn are_added(bench: &Bench) -> Result<(), Failure> {
     looks_back(&mut tab)?;
     section_has_values(&mut tab)?;
     complaints(&tab)?;
-    say("each kind of tool is added, used and removed; the hand turns them and pulls beside them; another motion goes on from an earlier moment; \
+    say("each kind of tool is added, used and removed; the hand turns them and pulls beside them; another motion continues from an earlier moment; \
          a section shows values inside")
     .map_err(Failure::from)
 }

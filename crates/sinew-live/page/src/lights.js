@@ -26,7 +26,7 @@ export function reasonOf(light, reason, pane) {
       "not measured: loads or tools still move",
       "came to rest",
       "still swings",
-      "does not come to rest",
+      "does not come to rest: a load keeps it moving, or too little damps it; add damping to the scene, or choose a method that damps",
     ],
     [
       "not measured",

@@ -97,13 +97,18 @@ const connection = new Connection({
     adding = null;
     say(reason);
   },
-  stopped: (event) => keep(last.stopped, event),
+  stopped: (event) => {
+    keep(last.stopped, event);
+    view.mark(event.place);
+  },
   went_back: (event) => {
     keep(last.wentBack, event);
     past.wentBackTo(event.to);
     hand.release();
     blade.drop();
-    say(`Back by ${plain(event.by, 2)} s, to where all was well: ${event.reason}`);
+    view.mark(event.place);
+    const where = event.place ? "the tissue at the mark was deformed" : "the tissue was moved";
+    say(`Back by ${plain(event.by, 2)} s, to where all was well: ${where} beyond what a step can follow. Move more slowly, or take a shorter step. In detail: ${event.reason}`, 12000);
   },
   reset: () => {
     histories.forEach((history) => history.clear());
@@ -316,7 +321,7 @@ function configure(event) {
     name.textContent = facts.integrator;
     step.textContent = stepInWords(facts);
     stopped.className = "stopped";
-    stopped.textContent = facts.stopped ? `Stopped: ${facts.stopped}. Reset, or choose another method or a shorter step.` : "";
+    stopped.textContent = facts.stopped ? `Stopped: no next step is possible from here. Reset, look back and go on from before, or choose another method or a shorter step. In detail: ${facts.stopped}.` : "";
     caption.append(name, step, stopped);
     return caption;
   }));
@@ -463,11 +468,21 @@ function panels() {
   if (tool) get("force-now").textContent = `${withUnit(Math.hypot(...tool.force), "N")} · ${plain(1000 * Math.max(0, tool.depth), 3)} mm deep`;
   else get("force-now").textContent = `${withUnit(histories[0].force.at(-1) ?? 0, "N")} · ${plain(1000 * (histories[0].depth.at(-1) ?? 0), 3)} mm moved`;
   get("pace").textContent = settings.paused ? "paused" : `${plain(picture.pace, 2)} ×`;
+  get("pace-note").textContent = paceInWords();
   get("pace").title = `${picture.panes.map((pane) => plain(pane.msPerStep, 3)).join(" and ")} ms a step`;
   const latency = connection.latency(0.5);
   get("latency").textContent = Number.isNaN(latency) ? "–" : `${plain(latency, 2)} ms`;
   const ms = picture.panes.map((pane) => `${plain(pane.msPerStep, 2)} ms a step`).join(" · ");
   get("footer").textContent = `sinew ${scenery.version} · ${first.nodes} nodes, ${first.tets} tetrahedra · ${ms} · t = ${first.t.toFixed(2)} s · seen by this computer alone`;
+}
+
+/// Pace and error in a sentence: one is worth nothing without the other.
+function paceInWords() {
+  const errors = picture.panes.map(({ error }, pane) => (Number.isFinite(error) ? `${plain(100 * error, 2)} %${picture.panes.length > 1 ? ` (${settings.panes[pane]?.integrator})` : ""}` : null));
+  const known = errors.filter((error) => error !== null);
+  const error = known.length > 0 ? `error ${known.join(", ")} of the largest displacement, beside a trusted run` : "error not measured: Measure the error begins a trusted run";
+  if (settings.paused) return `Paused; ${error}.`;
+  return picture.pace < 0.95 ? `Slower than real time, in slow motion; ${error}.` : `In real time; ${error}.`;
 }
 
 function drawDepth(live, named) {
@@ -523,7 +538,10 @@ function frame(now) {
     get("rate").textContent = `${plain(last.rate, 2)} /s`;
     since = { at: now, pictures };
   }
-  if (connected && now > notice) get("message").hidden = true;
+  if (connected && now > notice && !get("message").hidden) {
+    get("message").hidden = true;
+    if (!settings?.panes.some(({ stopped }) => stopped)) view.mark(null);
+  }
 }
 
 get("pause").addEventListener("click", () => {

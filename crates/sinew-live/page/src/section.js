@@ -6,6 +6,9 @@ import {
 } from "three";
 import { INNER, countingLook, wetLooks } from "./looks.js";
 
+/// The inside where values are not known, the grey of such values.
+const NO_VALUES = 0x8a949e;
+
 /// The plane, which all panes have in common.
 export class Section {
   constructor() {
@@ -52,7 +55,7 @@ export class Cap {
     const stencil = {
       side: DoubleSide, stencilWrite: true, stencilRef: 0, stencilFunc: NotEqualStencilFunc, stencilFail: ZeroStencilOp, stencilZFail: ZeroStencilOp, stencilZPass: ZeroStencilOp,
     };
-    this.looks = { ...wetLooks({ color: INNER, ...stencil }), read: new MeshLambertMaterial({ color: INNER, ...stencil }) };
+    this.looks = { ...wetLooks({ color: INNER, ...stencil }), read: new MeshLambertMaterial({ color: NO_VALUES, toneMapped: false, ...stencil }) };
     this.cap = new Mesh(new PlaneGeometry(6 * extent, 6 * extent), this.looks.fine);
     this.cap.renderOrder = 2;
     this.cap.frustumCulled = false;

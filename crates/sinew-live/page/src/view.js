@@ -1,7 +1,7 @@
 // The bodies and the tools of all panes, by one camera.
 
 import {
-  BufferAttribute, BufferGeometry, LineBasicMaterial, LineSegments, Mesh, MeshLambertMaterial, NeutralToneMapping, PCFShadowMap, Scene, SphereGeometry, Vector3,
+  BufferAttribute, BufferGeometry, LineBasicMaterial, LineSegments, Mesh, MeshBasicMaterial, MeshLambertMaterial, NeutralToneMapping, PCFShadowMap, Scene, SphereGeometry, Vector3,
   WebGLRenderer,
 } from "three";
 import { Body } from "./body.js";
@@ -35,7 +35,10 @@ class Pane {
     this.pull.frustumCulled = false;
     this.pull.visible = false;
     this.grip.visible = false;
-    this.scene.add(this.pull, this.grip);
+    this.markedPlace = new Mesh(new SphereGeometry(0.025 * extent, 20, 14), new MeshBasicMaterial({ color: 0xff00dc, transparent: true, opacity: 0.75, depthTest: false }));
+    this.markedPlace.renderOrder = 9;
+    this.markedPlace.visible = false;
+    this.scene.add(this.pull, this.grip, this.markedPlace);
   }
 
   setTools(tools) {
@@ -143,6 +146,15 @@ export class View {
       own.tools[index]?.position.set(...tool.position);
       if (own.tools[index]) turn(own.tools[index], tool.rotation);
     });
+    this.dirty = true;
+  }
+
+  /// Marks a place (m) in all panes, or none (null).
+  mark(place) {
+    for (const { markedPlace } of this.panes) {
+      markedPlace.visible = Boolean(place);
+      if (place) markedPlace.position.fromArray(place);
+    }
     this.dirty = true;
   }
 

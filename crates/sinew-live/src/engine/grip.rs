@@ -8,6 +8,7 @@ use sinew_scene::BodyModel;
 use sinew_world::World;
 
 use super::course::{Course, Limits};
+use super::places::place_of;
 
 /// Simulated time (s) for which a force stays constant.
 pub(super) const HELD: f64 = 0.004;
@@ -110,16 +111,14 @@ impl Patch {
     /// Its mean place (m).
     pub(super) fn place(&self, session: &World, body: &BodyModel) -> [f64; 3] {
         let u = &session.state().u;
-        let mut place = [0.0; 3];
+        let mut mean = [0.0; 3];
         for (node, share) in &self.shares {
-            let point = body.mesh.points[*node as usize];
-            let cell = body.model.cell_of_node(*node).map(|cell| 3 * cell as usize);
+            let place = place_of(body, u, *node);
             for axis in 0..3 {
-                let moved = cell.and_then(|cell| u.get(cell + axis)).copied();
-                place[axis] += share * (point[axis] + moved.unwrap_or(0.0));
+                mean[axis] += share * place[axis];
             }
         }
-        place
+        mean
     }
 
     /// The stiffness (N/m) of a spring for it: about that of the tissue under a stamp of its size, and stable if its

@@ -12,6 +12,7 @@ mod moments;
 mod options;
 mod pace;
 mod pane;
+mod places;
 mod saved;
 mod shown;
 mod stability;
@@ -387,10 +388,15 @@ impl Engine {
         }
         self.changes += 1;
         if let Some((pane, reason)) = failed {
-            if self.go_back_before_failure(pane, &reason, shared) {
+            let place = self.panes.get(pane).and_then(|pane| pane.place_in(&reason));
+            if self.go_back_before_failure(pane, &reason, place, shared) {
                 return;
             }
-            shared.clients.tell_all(&Event::Stopped { pane, reason });
+            shared.clients.tell_all(&Event::Stopped {
+                pane,
+                reason,
+                place,
+            });
             self.news.settings = true;
         }
         if !self.panes.iter().all(|pane| pane.is_at(until)) {
@@ -436,7 +442,13 @@ impl Engine {
 
     /// Takes all panes back to a moment before one of them failed, with resting tools. False if the motion fails
     /// without a command, or cannot go back.
-    fn go_back_before_failure(&mut self, pane: usize, reason: &str, shared: &Shared) -> bool {
+    fn go_back_before_failure(
+        &mut self,
+        pane: usize,
+        reason: &str,
+        place: Option<[f64; 3]>,
+        shared: &Shared,
+    ) -> bool {
         let failed_at = self.panes.get(pane).map_or(self.t(), Pane::t);
         let Some(moment) = self.moments.before_failure(failed_at) else {
             return false;
@@ -450,11 +462,12 @@ impl Engine {
             by: failed_at - t,
             to: t,
             reason: reason.to_owned(),
+            place,
         });
         true
     }
 
-    /// Goes on from the last moment that is kept up to a simulated time (s): another branch of the motion.
+    /// Continues from the last moment that is kept up to a simulated time (s): another branch of the motion.
     fn go_on_from(&mut self, t: f64, shared: &Shared) -> Result<(), String> {
         let was = self.t();
         let moment = self.moments.up_to(t).map(|moment| moment.clock.time());

@@ -13,6 +13,7 @@ use super::course::Course;
 use super::due::Due;
 use super::grip::{Grip, HELD, Patch};
 use super::lights::{Bounds, Light, error_light, packed};
+use super::places::place_of;
 use super::shown::{Budget, Shown};
 use super::sums::Sums;
 use super::{options, stability};
@@ -801,6 +802,25 @@ impl Pane {
         let pose = id.map_or(Pose::identity(), |id| self.session.tool_pose(id));
         let ([x, y, z], [a, b, c]) = (pose.position(), pose.rotation_vector());
         [x, y, z, a, b, c]
+    }
+
+    /// The place (m) of the element that the message of a failed step names, in the last complete state.
+    pub(crate) fn place_in(&self, reason: &str) -> Option<[f64; 3]> {
+        let (_, after) = reason.split_once("element ")?;
+        let digits = after
+            .split(|letter: char| !letter.is_ascii_digit())
+            .next()?;
+        let element: usize = digits.parse().ok()?;
+        let body = body(&self.session)?;
+        let nodes = body.mesh.tets.get(element)?;
+        let u = &self.session.state().u;
+        let mut middle = [0.0; 3];
+        for place in nodes.map(|node| place_of(body, u, node)) {
+            for axis in 0..3 {
+                middle[axis] += 0.25 * place[axis];
+            }
+        }
+        middle.iter().all(|own| own.is_finite()).then_some(middle)
     }
 
     /// The place (m) of a tool at the beginning, along `x` and `y`.

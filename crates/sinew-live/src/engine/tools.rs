@@ -7,6 +7,7 @@ use sinew_world::{Command, Journal};
 use super::Engine;
 use super::beside::{take_other, with_explicit_steps};
 use super::pane::Pane;
+use super::places::place_of;
 use super::trusted::Trusted;
 use crate::new_tool::{AddedTool, ToolKind};
 use crate::protocol::{Event, Shape};
@@ -225,13 +226,11 @@ impl Engine {
 fn bounds(simulation: &Simulation, body: &BodyModel) -> ([f64; 3], [f64; 3]) {
     let u = &simulation.initial_state().u;
     let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-    for (node, point) in (0..).zip(&body.mesh.points) {
-        let cell = body.model.cell_of_node(node).map(|cell| 3 * cell as usize);
+    for node in 0..body.mesh.points.len() as u32 {
+        let place = place_of(body, u, node);
         for axis in 0..3 {
-            let moved = cell.and_then(|cell| u.get(cell + axis)).copied();
-            let place = point[axis] + moved.unwrap_or(0.0);
-            low[axis] = low[axis].min(place);
-            high[axis] = high[axis].max(place);
+            low[axis] = low[axis].min(place[axis]);
+            high[axis] = high[axis].max(place[axis]);
         }
     }
     (low, high)

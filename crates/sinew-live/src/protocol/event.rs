@@ -42,6 +42,8 @@ pub(crate) enum Event {
         pane: usize,
         /// The reason.
         reason: String,
+        /// Position (m) of the element that the reason names.
+        place: Option<[f64; 3]>,
     },
     /// A return of all panes to a moment before one of them failed.
     WentBack {
@@ -53,6 +55,8 @@ pub(crate) enum Event {
         to: f64,
         /// The reason of the failure.
         reason: String,
+        /// Position (m) of the element that the reason names.
+        place: Option<[f64; 3]>,
     },
     /// A return of all panes to an earlier moment by a command.
     WentOnFrom {
