@@ -7,6 +7,7 @@ import { FIELDS, NOT_KNOWN, roundUp } from "./colours.js";
 import { SIDES } from "./camera.js";
 import { Connection } from "./connection.js";
 import { CutPanel } from "./cuts.js";
+import { element } from "./element.js";
 import { DepthHandle } from "./depth.js";
 import { NO_TWIN } from "./frames.js";
 import { Capture } from "./capture.js";
@@ -38,10 +39,11 @@ const SIDE_KEYS = Object.fromEntries(Object.keys(SIDES).map((side, index) => [St
 
 let notice = 0;
 
+/// Shows a sentence for a time (ms); more about it unfolds.
 function say(text, time = 6000, more = "") {
   const message = get("message");
-  message.textContent = text;
-  message.title = more;
+  message.replaceChildren(text);
+  if (more) message.append(element("details", {}, element("summary", {}, "In detail"), more));
   message.hidden = false;
   notice = performance.now() + time;
 }
@@ -108,7 +110,7 @@ const connection = new Connection({
     blade.drop();
     view.mark(event.place);
     const where = event.place ? "the tissue at the mark was deformed" : "the tissue was moved";
-    say(`Back by ${plain(event.by, 2)} s, to where all was well: ${where} beyond what a step can follow. Move more slowly, or take a shorter step. In detail: ${event.reason}`, 12000);
+    say(`Back by ${plain(event.by, 2)} s, to where all was well: ${where} beyond what a step can follow. Move more slowly, or take a shorter step.`, 12000, event.reason);
   },
   reset: () => {
     histories.forEach((history) => history.clear());
@@ -538,7 +540,8 @@ function frame(now) {
     get("rate").textContent = `${plain(last.rate, 2)} /s`;
     since = { at: now, pictures };
   }
-  if (connected && now > notice && !get("message").hidden) {
+  const isRead = get("message").querySelector("details")?.open;
+  if (connected && now > notice && !get("message").hidden && !isRead) {
     get("message").hidden = true;
     if (!settings?.panes.some(({ stopped }) => stopped)) view.mark(null);
   }

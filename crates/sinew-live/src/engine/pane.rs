@@ -129,11 +129,16 @@ impl Pane {
         Ok(pane)
     }
 
-    /// A pane of another scene at its beginning, with the same method.
+    /// A pane of another scene at its beginning, with the same method, or with that of the other scene where it has that of
+    /// its own.
     pub(crate) fn on(&self, scene: &SceneValues) -> Result<Self, String> {
         let mut pane = Self::of(scene).map_err(|error| error.to_string())?;
-        let switched = pane.switch(self.method.clone());
-        switched.map_err(|error| error.to_string())?;
+        let (id, options, dt) = &self.method;
+        let (own, dt_of_scene) = (self.of_scene(), self.session.scene().dt());
+        if (id, options, *dt) != (&own.0, &own.1, dt_of_scene) {
+            let switched = pane.switch(self.method.clone());
+            switched.map_err(|error| error.to_string())?;
+        }
         Ok(pane)
     }
 
