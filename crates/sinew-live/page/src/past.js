@@ -7,6 +7,9 @@ const get = (id) => document.getElementById(id);
 /// Most bytes that pictures may take.
 const MEMORY = 96e6;
 
+/// Time (ms) between two updates of the slider while pictures come: each lays the page out anew.
+const TELL_EVERY = 200;
+
 export class Past {
   /// `pause` stops time, as a past that goes on could not be looked at; `goOn` asks for another motion from a time (s) on; `left` is called when the page
   /// shows the present again.
@@ -26,7 +29,7 @@ export class Past {
   }
 
   clear() {
-    Object.assign(this, { list: [], bytes: 0, at: null, playing: null, shown: null });
+    Object.assign(this, { list: [], bytes: 0, at: null, playing: null, shown: null, toldAt: -Infinity });
     this.tell();
   }
 
@@ -42,7 +45,10 @@ export class Past {
       this.list = this.list.filter((_, index) => index >= older || index % 2 === 0);
       this.bytes = this.list.reduce((sum, { bytes }) => sum + bytes, 0);
     }
-    if (!this.isOn) this.tell();
+    const now = performance.now();
+    if (this.isOn || now - this.toldAt < TELL_EVERY) return;
+    this.toldAt = now;
+    this.tell();
   }
 
   /// Forgets what came after a time (s), or at it, too.
