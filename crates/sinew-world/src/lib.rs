@@ -23,4 +23,4 @@ pub use input_file::{InputFile, InputFileError};
 pub use log::{Entry, Header, Journal, JournalError, Log, LogError, LogFault, WentBack};
 pub use recorder::{BodyChange, BodyCut, Recorder, Recorders, Shown};
 pub use replay::{FollowError, Replay, ReplayError};
-pub use world::{Advanced, Ended, Moment, Saved, World};
+pub use world::{Advanced, Ended, Moment, Saved, Trial, World};

@@ -6,6 +6,7 @@ mod forces;
 mod moment;
 mod report;
 mod saved;
+mod trial;
 
 use std::cell::OnceCell;
 use std::sync::Arc;
@@ -28,6 +29,7 @@ use crate::scene_identity::SceneIdentity;
 
 pub use moment::Moment;
 pub use saved::Saved;
+pub use trial::Trial;
 
 /// A scene in motion; only a world takes the steps of a scene.
 ///

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use sinew_mesh::TetMesh;
 use sinew_mesh::vector::{length, sub};
 use sinew_scene::BodyModel;
-use sinew_world::World;
+use sinew_world::{CommandError, Trial, World};
 
 use super::course::{Course, Limits};
 use super::places::place_of;
@@ -21,6 +21,9 @@ const RADIUS: f64 = 1.5;
 
 /// Share of the stiffness beyond which a spring that knows its length only every few milliseconds is unstable.
 const STABLE: f64 = 0.2;
+
+/// Force of a trial over that which strains the tissue by about 1.
+const TRIAL: f64 = 1e-3;
 
 /// A spring from the tissue to the user's hand.
 #[derive(Clone, Debug)]
@@ -71,10 +74,18 @@ impl Grip {
         self.course.forget_before(t);
     }
 
-    /// The force (N) on tissue at a place (m), at a time (s).
-    pub(super) fn force(&self, t: f64, place: [f64; 3]) -> [f64; 3] {
-        let hand = self.course.at(t);
-        [0, 1, 2].map(|axis| self.stiffness * (hand[axis] - place[axis]))
+    /// The force (N) that the spring has at the end of a step, at a time (s), if the tissue would be at a place (m) then
+    /// without it and moves by a way (m/N) along each axis for each newton: a spring by the backward Euler method, which
+    /// is stable with any stiffness.
+    pub(super) fn force_at_end(&self, t: f64, free: [f64; 3], compliance: [f64; 3]) -> [f64; 3] {
+        let force = self.force(t, free, f64::INFINITY);
+        [0, 1, 2].map(|axis| force[axis] / (1.0 + self.stiffness * compliance[axis]))
+    }
+
+    /// The force (N) on tissue at a place (m), at a time (s), of a spring that is no stiffer than this (N/m).
+    pub(super) fn force(&self, t: f64, place: [f64; 3], most: f64) -> [f64; 3] {
+        let (hand, stiffness) = (self.course.at(t), self.stiffness.min(most));
+        [0, 1, 2].map(|axis| stiffness * (hand[axis] - place[axis]))
     }
 }
 
@@ -108,9 +119,8 @@ impl Patch {
         self.number == grip.number && Arc::ptr_eq(&self.mesh, &body.mesh)
     }
 
-    /// Its mean place (m).
-    pub(super) fn place(&self, session: &World, body: &BodyModel) -> [f64; 3] {
-        let u = &session.state().u;
+    /// Its mean place (m) with these displacements (m) of the degrees of freedom.
+    pub(super) fn place(&self, body: &BodyModel, u: &[f64]) -> [f64; 3] {
         let mut mean = [0.0; 3];
         for (node, share) in &self.shares {
             let place = place_of(body, u, *node);
@@ -121,9 +131,47 @@ impl Patch {
         mean
     }
 
-    /// The stiffness (N/m) of a spring for it: about that of the tissue under a stamp of its size, and stable if its
-    /// force changes in steps of this time (s).
-    pub(super) fn stiffness(&self, body: &BodyModel, time: f64) -> f64 {
+    /// A force (N) on it as forces on its nodes.
+    pub(super) fn forces(&self, force: [f64; 3]) -> Vec<(u32, [f64; 3])> {
+        let shares = self.shares.iter();
+        let forces = shares.map(|(node, share)| (*node, force.map(|force| share * force)));
+        forces.collect()
+    }
+
+    /// The way (m) along each axis by which each newton moves it within the next step.
+    pub(super) fn compliance(
+        &self,
+        session: &World,
+        trial: &mut Trial,
+    ) -> Result<[f64; 3], CommandError> {
+        let Some(body) = session.body().model().body() else {
+            return Ok([0.0; 3]);
+        };
+        let force = TRIAL * self.modulus(body) * self.radius * self.radius;
+        let free = self.place(body, &trial.next(session, &[])?.u);
+        let mut compliance = [0.0; 3];
+        for axis in 0..3 {
+            let mut along = [0.0; 3];
+            along[axis] = force;
+            let moved = self.place(body, &trial.next(session, &self.forces(along))?.u);
+            compliance[axis] = ((moved[axis] - free[axis]) / force).max(0.0);
+        }
+        Ok(compliance)
+    }
+
+    /// The stiffness (N/m) of a spring for it: about that of the tissue under a stamp of its size and, if its force
+    /// follows the tissue late, by this time (s), one with which it is stable.
+    pub(super) fn stiffness(&self, body: &BodyModel, late: Option<f64>) -> f64 {
+        let masses = body.model.node_masses();
+        let inverse: f64 = (self.shares.iter())
+            .map(|(node, share)| share * share / masses[*node as usize])
+            .sum();
+        let most = late.map_or(f64::INFINITY, |time| STABLE * 4.0 / (inverse * time * time));
+        (2.0 * self.modulus(body) * self.radius).min(most)
+    }
+
+    /// The least of Young's moduli (Pa) of the tetrahedra at it.
+    fn modulus(&self, body: &BodyModel) -> f64 {
         let is_beside = |(_, nodes): &(usize, &[u32; 4])| {
             self.shares.iter().any(|(node, _)| nodes.contains(node))
         };
@@ -132,12 +180,7 @@ impl Patch {
             let region = body.model.region_of()[tet] as usize;
             body.problem.regions[region].law.youngs_modulus()
         });
-        let modulus = moduli.fold(f64::INFINITY, f64::min);
-        let masses = body.model.node_masses();
-        let inverse: f64 = (self.shares.iter())
-            .map(|(node, share)| share * share / masses[*node as usize])
-            .sum();
-        (2.0 * modulus * self.radius).min(STABLE * 4.0 / (inverse * time * time))
+        moduli.fold(f64::INFINITY, f64::min)
     }
 }
 

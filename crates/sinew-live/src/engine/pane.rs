@@ -7,7 +7,7 @@ use sinew_core::vectors::weighted_dot;
 use sinew_core::{BytesError, Energy, Inputs, LoadTime, Options, StableStep, System};
 use sinew_scene::{BodyModel, CutTotals, SceneBody, Simulation};
 use sinew_tools::{Pose, Tools};
-use sinew_world::{Command, CommandError, Log, Moment, RestoreError, World};
+use sinew_world::{Command, CommandError, Log, Moment, RestoreError, Trial, World};
 
 use super::course::Course;
 use super::due::Due;
@@ -71,6 +71,11 @@ pub(crate) struct Hands {
 /// Tissue that the user pulls.
 struct Held {
     patch: Patch,
+    /// Trials of the next step, and the way (m/N) along each axis by which a force moves the patch in it, where a step is
+    /// as long as a force stays constant.
+    trial: Option<(Trial, [f64; 3])>,
+    /// Largest stiffness (N/m) of the spring here.
+    most: f64,
     /// The force (N), and the time (s) at which it changes.
     force: [f64; 3],
     until: f64,
@@ -220,6 +225,8 @@ impl Pane {
             self.method = method;
             return self.reset();
         }
+        // Its trials are those of the method before.
+        self.held = None;
         // The method has to take them as well.
         while self.take_due()? {}
         self.apply(&method)?;
@@ -430,8 +437,20 @@ impl Pane {
             .as_ref()
             .is_none_or(|held| !held.patch.is_of(grip, body))
         {
+            let patch = Patch::of(grip, body);
+            let trial = match dt >= HELD && patch.has_nodes() {
+                true => {
+                    let mut trial = self.session.trial()?;
+                    let compliance = patch.compliance(&self.session, &mut trial)?;
+                    Some((trial, compliance))
+                }
+                false => None,
+            };
+            let late = trial.is_none().then_some(HELD);
             self.held = Some(Held {
-                patch: Patch::of(grip, body),
+                most: patch.stiffness(body, late),
+                patch,
+                trial,
                 force: [0.0; 3],
                 until: t,
             });
@@ -441,10 +460,17 @@ impl Pane {
         };
         if t >= held.until - SLACK * dt {
             held.until = t + HELD;
-            held.force = grip.force(t + dt, held.patch.place(&self.session, body));
-            let shares = held.patch.shares.iter();
-            let forces = shares.map(|(node, share)| (*node, held.force.map(|force| share * force)));
-            let forces = Command::Forces(forces.collect());
+            held.force = match &mut held.trial {
+                Some((trial, compliance)) => {
+                    let free = held.patch.place(body, &trial.next(&self.session, &[])?.u);
+                    grip.force_at_end(t + dt, free, *compliance)
+                }
+                None => {
+                    let place = held.patch.place(body, &self.session.state().u);
+                    grip.force(t + dt, place, held.most)
+                }
+            };
+            let forces = Command::Forces(held.patch.forces(held.force));
             self.is_pulled = true;
             self.session.command(forces)?;
         }
@@ -469,7 +495,7 @@ impl Pane {
         if !patch.has_nodes() {
             return Err("this tissue is fixed: pull it elsewhere".to_owned());
         }
-        Ok(grip.placed_at(self.t(), patch.place(&self.session, body)))
+        Ok(grip.placed_at(self.t(), patch.place(body, &self.session.state().u)))
     }
 
     /// The largest stiffness (N/m) of the spring of a grip on its body.
@@ -484,11 +510,11 @@ impl Pane {
         if !patch.has_nodes() {
             return Ok(f64::INFINITY);
         }
-        let force = |(node, share): &(u32, f64)| (*node, [0.0, 0.0, f64::EPSILON * share]);
-        let forces = Command::Forces(patch.shares.iter().map(force).collect());
+        let forces = Command::Forces(patch.forces([0.0, 0.0, f64::EPSILON]));
         let checked = self.session.check(&forces);
         checked.map_err(|error| error.to_string())?;
-        Ok(patch.stiffness(body, HELD.max(self.dt())))
+        let late = (self.dt() < HELD).then_some(HELD);
+        Ok(patch.stiffness(body, late))
     }
 
     /// Records the impulses that tools have received before a step.
@@ -644,7 +670,7 @@ impl Pane {
                 _ => [0.0; 3],
             },
             grip: match (held, body) {
-                (Some(held), Some(body)) => held.patch.place(&self.session, body),
+                (Some(held), Some(body)) => held.patch.place(body, &self.session.state().u),
                 _ => [f64::NAN; 3],
             },
             section: plane.map_or_else(SectionHead::default, |plane| SectionHead {

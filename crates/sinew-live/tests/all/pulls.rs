@@ -59,6 +59,37 @@ fn tissue_is_pulled_by_a_spring_and_comes_back_when_it_is_let_go() {
     assert!(forces.all(|force| force.ramp.value(t) == 0.0));
 }
 
+/// A force that followed the tissue a step late would have to be soft in long steps, or swing.
+#[test]
+fn in_long_implicit_steps_a_pull_is_as_firm_as_tissue_and_holds_still() {
+    let implicit = CUBE.replace(
+        "integrator = \"symplectic-euler\"\ndt = 0.002",
+        "integrator = \"newmark\"\ndt = 0.02",
+    );
+    let mut page = Page::of(settings(&implicit));
+    let mut client = page.connect();
+    client.picture(|_| true);
+    let (top, epoch) = point(&client, [0.033, 0.033, 0.1]);
+    client.say(&format!(
+        r#"{{"id":1,"do":"grip","pane":0,"point":{top},"epoch":{epoch}}}"#
+    ));
+    client.say(r#"{"id":2,"do":"pull","to":[0.033,0.033,0.13]}"#);
+    let t = time(&client.picture(|picture| applied(picture) >= 2));
+    let held = client.picture(|picture| time(picture) > t + 2.0);
+    let later = client.picture(|picture| time(picture) > t + 2.5);
+    let ((force, place), (again, still)) = (pull(&held), pull(&later));
+    assert!(place[2] > 0.11 && place[2] < 0.13, "{place:?}");
+    assert!(
+        (force[2] - again[2]).abs() < 0.02 * force[2],
+        "{force:?} {again:?}"
+    );
+    assert!((place[2] - still[2]).abs() < 2e-4, "{place:?} {still:?}");
+    // Its forces are commands of the log, and trials of steps leave no trace in it.
+    let log = page.end().logs.remove(0);
+    let mut replay = Replay::new(settings(&implicit).scene, log).unwrap();
+    while replay.step().unwrap().is_some() {}
+}
+
 #[test]
 fn a_pull_ends_with_the_page_that_pulls() {
     let page = Page::of(settings(CUBE));

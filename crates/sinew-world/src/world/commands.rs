@@ -116,21 +116,7 @@ impl World {
 
     /// Tries a step with forces (N) on nodes.
     fn try_forces(&self, forces: &[(u32, [f64; 3])]) -> Result<(), CommandError> {
-        let body = self.body.model().body().ok_or(CommandError::NoNodes)?;
-        let forces = body.model.forces(forces)?;
-        let mut inputs = self.inputs.clone();
-        inputs.set_forces(self.state.t(), &forces.entries)?;
-        let (id, options) = &self.method.asked;
-        let mut method = Method::new(&self.scene, id, options, self.method.dt)?;
-        let mut trial = self.state.clone();
-        try_step(
-            self.body.system(),
-            &inputs,
-            &self.state,
-            &mut trial,
-            &mut method,
-        )?;
-        Ok(())
+        self.trial()?.next(self, forces).map(drop)
     }
 
     /// Checks names and numbers of a command.
