@@ -138,12 +138,12 @@ impl AddedTool {
     }
 
     /// The tool at a place (m) above a body, with its lowest point at a height (m) and in the middle of `x` and `y`, as
-    /// values of the tool with this number (from 1) of a scene, which may be cut already or not.
+    /// values of the tool with this number (from 1) of a scene, which has a table `[cutting]` of its own or not.
     pub(crate) fn values(
         &self,
         number: usize,
         [x, y, height]: [f64; 3],
-        is_cut: bool,
+        has_cutting: bool,
     ) -> Vec<Change> {
         let (key, shape, low) = self.kind.shape(self.size);
         let start = [x, y, height + low];
@@ -169,7 +169,7 @@ impl AddedTool {
                 let tool = format!("{{ tool = {} }}", named());
                 values.push(("cutting.remove".to_owned(), Some(tool)));
             }
-            ToolKind::Scissors if !is_cut => {
+            ToolKind::Scissors if !has_cutting => {
                 values.push(("cutting.snap".to_owned(), Some("0.0".to_owned())));
             }
             ToolKind::Scissors => {}
@@ -182,6 +182,7 @@ impl AddedTool {
         match self.kind {
             ToolKind::Blade => key == "cutting.tool",
             ToolKind::Burner => key == "cutting.remove",
+            ToolKind::Scissors => key == "cutting.snap",
             _ => false,
         }
     }

@@ -35,10 +35,23 @@ impl SceneValues {
         }
     }
 
-    /// All values as a command line has them: those of pages follow those that were given to it.
+    /// All values as a command line has them: those that pages set replace those that were given to it, as a key may be set
+    /// once.
     pub(crate) fn values(&self) -> Vec<String> {
-        let given = self.given.iter().cloned();
-        given.chain(assignments(&self.changes)).collect()
+        let is_set = |key: &str| {
+            let mut set = self.changes.iter().filter(|(_, value)| value.is_some());
+            set.any(|(own, _)| own == key)
+        };
+        let given = self.given.iter().filter(|text| {
+            let key = text.split_once('=').map(|(key, _)| key.trim());
+            !key.is_some_and(is_set)
+        });
+        given.cloned().chain(assignments(&self.changes)).collect()
+    }
+
+    /// The scene as it was opened.
+    pub(crate) fn opened(&self) -> &Scene {
+        &self.opened
     }
 
     /// The same scene with other values of keys.
@@ -85,4 +98,44 @@ fn assignments(changes: &[Change]) -> impl Iterator<Item = String> {
         Some(value) => format!("{key}={value}"),
         None => format!("~{key}"),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use sinew_scene::SceneSource;
+
+    use super::*;
+
+    #[test]
+    fn the_values_of_a_page_give_its_scene_and_set_each_key_once() {
+        let text = "[mesh]\ncube = { cells = 2, edge = 0.1 }\n[[region]]\ndensity = 1000.0\nmodel = \"linear\"\n\
+                    youngs_modulus = 3000.0\npoissons_ratio = 0.3\n[[fixed]]\ngroup = \"bottom\"\n\
+                    [run]\nduration = 1.0\nintegrator = \"newmark\"\ndt = 0.01\n";
+        let source = SceneSource::new("cube.toml", text);
+        let given = ["run.dt=0.02", "run.beta=0.3", "run.gamma=0.6"].map(str::to_owned);
+        let opened = Scene::parse_with(&source, &given).unwrap();
+        let values = SceneValues::new(opened, given.to_vec(), Vec::new());
+        let change = |key: &str, value: Option<&str>| (key.to_owned(), value.map(str::to_owned));
+        let other = values.with(vec![
+            change("run.dt", Some("auto")),
+            change("run.integrator", Some("central-difference")),
+            change("run.beta", None),
+            change("run.gamma", None),
+        ]);
+        let other = other.unwrap();
+        assert_eq!(
+            other.values(),
+            [
+                "run.beta=0.3",
+                "run.gamma=0.6",
+                "run.dt=auto",
+                "run.integrator=central-difference",
+                "~run.beta",
+                "~run.gamma"
+            ]
+        );
+        let again = Scene::parse_with(&source, &other.values()).unwrap();
+        assert_eq!(again.source().text(), other.scene.source().text());
+        assert_eq!(other.with_changed(|_| None).unwrap().values(), given);
+    }
 }

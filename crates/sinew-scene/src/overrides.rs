@@ -14,7 +14,7 @@ const REMOVES: char = '~';
 impl SceneSource {
     /// The scene with other values: `KEY=VALUE` each, the parts of a key separated by dots, tables of a list by their
     /// numbers from 1 on. A value is TOML; a text that is not TOML is a string. A key that its table does not have is
-    /// added to it, and so is a missing table, at the end of its list if it is one of a list; `~KEY` removes a value.
+    /// added to it, and so is a missing table, at the end of its list if it is one of a list; `~KEY` removes a value, or a table of a list.
     /// The rest of the text is unchanged.
     ///
     /// ```
@@ -49,9 +49,12 @@ impl SceneSource {
             let form = || OverrideError::Form {
                 text: text.to_owned(),
             };
-            if let Some(path) = text.strip_prefix(REMOVES) {
-                let parts: Vec<&str> = path.trim().split('.').collect();
-                remove(document.as_table_mut(), path.trim(), &parts)?;
+            if let Some(path) = text.strip_prefix(REMOVES).map(str::trim) {
+                let parts: Vec<&str> = path.split('.').collect();
+                if parts.iter().any(|part| part.is_empty()) {
+                    return Err(form());
+                }
+                remove(document.as_table_mut(), path, &parts)?;
                 continue;
             }
             let (path, value) = text.split_once('=').ok_or_else(form)?;
@@ -71,7 +74,9 @@ impl SceneSource {
 /// Removes the value at the remaining parts of a path within this table.
 fn remove(table: &mut dyn TableLike, path: &str, parts: &[&str]) -> Result<(), OverrideError> {
     let [part, rest @ ..] = parts else {
-        return Ok(());
+        return Err(OverrideError::Form {
+            text: format!("{REMOVES}{path}"),
+        });
     };
     let names: Vec<String> = table.iter().map(|(name, _)| name.to_owned()).collect();
     let missing = || OverrideError::Missing {
@@ -98,13 +103,17 @@ fn remove(table: &mut dyn TableLike, path: &str, parts: &[&str]) -> Result<(), O
                 .ok()
                 .and_then(|it| it.checked_sub(1));
             let count = tables.len();
-            let found = place.and_then(|place| tables.get_mut(place));
-            let found = found.ok_or_else(|| OverrideError::Number {
+            let place = place.filter(|place| *place < count);
+            let place = place.ok_or_else(|| OverrideError::Number {
                 path: path.to_owned(),
                 list: (*part).to_owned(),
                 count,
             })?;
-            remove(found, path, rest)
+            if let Some(found) = tables.get_mut(place).filter(|_| !rest.is_empty()) {
+                return remove(found, path, rest);
+            }
+            tables.remove(place);
+            Ok(())
         }
         (Item::Table(table), rest) => remove(table, path, rest),
         (Item::Value(Value::InlineTable(table)), rest) => remove(table, path, rest),
@@ -280,6 +289,7 @@ mod tests {
                 "gravity = [0, 0, -9.81]\n[mesh]",
             ),
             ("~run.dt", "dt = 0.1\n", ""),
+            ("~region.2", "[[region]]\ndensity = 2 # kg/m3\n", ""),
             ("~region.2.density", "density = 2 # kg/m3\n", ""),
             ("~mesh.cube.edge", "cells = 4, edge = 0.1 ", "cells = 4"),
         ];
@@ -297,6 +307,8 @@ mod tests {
             ("~run.integratr", "did you mean `integrator`?"),
             ("~run", "`run` is a table, expected a value"),
             ("~region.3.density", "the scene has 2 of `region`"),
+            ("~", "expected KEY=VALUE"),
+            ("~run..dt", "expected KEY=VALUE"),
             ("~run.dt.x", "`dt` is a value, expected a table"),
             ("rum.dt=1", "the scene has no `rum`; did you mean `run`?"),
             (

@@ -125,7 +125,7 @@ pub enum CommandError {
     ForeignId,
     /// A pose that is not valid.
     #[error(
-        "pose of \"{tool}\": {value}: expected finite numbers, at most {most:e} m or rad in size"
+        "pose of \"{tool}\": {value:?}: expected finite numbers, at most {most:e} m or rad in size"
     )]
     Pose {
         /// The tool.
@@ -145,7 +145,7 @@ pub enum CommandError {
     #[error("an oscillator has no nodes: scale its load instead")]
     NoNodes,
     /// A factor that is not finite.
-    #[error("factor of \"{load}\": {factor}: expected a finite number, at most {most:e} in size")]
+    #[error("factor of \"{load}\": {factor:?}: expected a finite number, at most {most:e} in size")]
     Factor {
         /// The load.
         load: Arc<str>,
@@ -181,7 +181,7 @@ pub enum CommandError {
     #[error("the scene has no table [cutting], so its body cannot be cut: add one")]
     Whole,
     /// A position of a blade that is not valid.
-    #[error("cut: {value}: expected finite numbers, at most {most:e} m in size")]
+    #[error("cut: {value:?}: expected finite numbers, at most {most:e} m in size")]
     Cut {
         /// The number at fault.
         value: f64,

@@ -34,6 +34,10 @@ const KINDS: [&str; 7] = [
     "ball", "rod", "plate", "jaws", "blade", "scissors", "burner",
 ];
 
+/// Takes the slider of the past to its middle, as a user does.
+const TO_THE_MIDDLE: &str = "{ const slider = document.getElementById('past'); slider.value = Math.floor(slider.max / 2); \
+    slider.dispatchEvent(new Event('input', { bubbles: true })); }";
+
 fn click(tab: &mut Tab, selector: &str) -> Result<(), Failure> {
     tab.value(&format!("document.querySelector('{selector}').click()"))?;
     Ok(())
@@ -167,10 +171,7 @@ fn pulls_beside_a_tool(tab: &mut Tab) -> Result<(), Failure> {
 
 fn looks_back(tab: &mut Tab) -> Result<(), Failure> {
     tab.wait_for("window.sinew.past.last > 2", PATIENCE)?;
-    tab.value(
-        "{ const slider = document.getElementById('past'); slider.value = Math.floor(slider.max / 2); \
-         slider.dispatchEvent(new Event('input', { bubbles: true })); }",
-    )?;
+    tab.value(TO_THE_MIDDLE)?;
     tab.wait_for(
         "window.sinew.settings.paused && window.sinew.past.isOn && window.sinew.past.shown < 0.8 * window.sinew.past.last",
         PATIENCE,
@@ -181,10 +182,7 @@ fn looks_back(tab: &mut Tab) -> Result<(), Failure> {
         "window.sinew.past.shown === window.sinew.past.last",
         PATIENCE,
     )?;
-    tab.value(&format!(
-        "{{ const slider = document.getElementById('past'); slider.value = Math.floor(slider.max / 2); \
-         slider.dispatchEvent(new Event('input', {{ bubbles: true }})); }}"
-    ))?;
+    tab.value(TO_THE_MIDDLE)?;
     tab.wait_for("window.sinew.past.shown < window.sinew.past.last", PATIENCE)?;
     click(tab, "#past-go")?;
     tab.wait_for("!window.sinew.past.isOn", PATIENCE)?;

@@ -59,7 +59,7 @@ impl Course {
     /// Moves straight to a pose from `t` (s) on; this replaces the previous target. It arrives when the next target of
     /// a drag is expected, so that it does not rest between them, or later if it would be too fast.
     pub(crate) fn go(&mut self, t: f64, pose: [f64; 6], limits: Limits) {
-        let here = self.at(t);
+        let (here, pose) = nearest(self.at(t), pose);
         while self.corners.back().is_some_and(|(time, _)| *time >= t) {
             self.corners.pop_back();
         }
@@ -91,9 +91,67 @@ impl Course {
     }
 }
 
+/// Two poses with those of all rotation vectors of the same rotations that are nearest to each other: from one to the
+/// other a tool turns by the short way.
+fn nearest(from: [f64; 6], to: [f64; 6]) -> ([f64; 6], [f64; 6]) {
+    let vector = |[_, _, _, a, b, c]: [f64; 6]| [a, b, c];
+    let mut best = (f64::INFINITY, vector(from), vector(to));
+    for a in same_rotations(vector(from)) {
+        for b in same_rotations(vector(to)) {
+            let away = (0..3).map(|n| (a[n] - b[n]).powi(2)).sum::<f64>();
+            // Those that are given stay as they are unless others are clearly nearer.
+            if away < best.0 - 1e-9 {
+                best = (away, a, b);
+            }
+        }
+    }
+    let with = |pose: [f64; 6], [a, b, c]: [f64; 3]| [pose[0], pose[1], pose[2], a, b, c];
+    (with(from, best.1), with(to, best.2))
+}
+
+/// A rotation vector (rad), and others of the same rotation: within a turn and a half.
+fn same_rotations(vector: [f64; 3]) -> [[f64; 3]; 4] {
+    const TURN: f64 = std::f64::consts::TAU;
+    let angle = vector.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let with = |other: f64| match angle > 0.0 {
+        true => vector.map(|x| x * (other / angle)),
+        false => vector,
+    };
+    let least = angle - TURN * (angle / TURN).round();
+    [vector, with(least), with(least - TURN), with(least + TURN)]
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_tool_turns_by_the_short_way() {
+        let turned = |vector: [f64; 3]| {
+            let [a, b, c] = vector;
+            [0.0, 0.0, 0.0, a, b, c]
+        };
+        let whole = std::f64::consts::TAU;
+        for (from, to, most) in [
+            ([0.0, 0.0, 3.1], [0.0, 0.0, -3.1], 0.084),
+            ([0.0, 0.0, whole], [0.1, 0.0, 0.0], 0.101),
+            ([0.0, 3.0 * whole, 0.0], [0.0, 0.2, 0.0], 0.201),
+            ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0], 1.42),
+        ] {
+            let mut course = Course::at_rest(0.0, turned(from));
+            course.go(0.0, turned(to), LIMITS);
+            let [begun, end] = [0.0, 1e3].map(|t| course.at(t));
+            let way: f64 = (3..6).map(|n| (end[n] - begun[n]).powi(2)).sum();
+            assert!(way.sqrt() < most, "{from:?} to {to:?}: {begun:?} {end:?}");
+            // Both are the rotations that they were.
+            for (one, other) in [(begun, turned(from)), (end, turned(to))] {
+                let [one, other] = [one, other]
+                    .map(|[.., a, b, c]| sinew_tools::Pose::new([0.0; 3], [a, b, c]).rotation());
+                let off = one.as_flattened().iter().zip(other.as_flattened());
+                assert!(off.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) < 1e-9);
+            }
+        }
+    }
 
     fn x(course: &Course, t: f64) -> f64 {
         course.at(t)[0]

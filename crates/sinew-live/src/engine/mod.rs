@@ -471,8 +471,11 @@ impl Engine {
     fn go_on_from(&mut self, t: f64, shared: &Shared) -> Result<(), String> {
         let was = self.t();
         let moment = self.moments.up_to(t).map(|moment| moment.clock.time());
-        let from = moment.filter(|from| t.is_finite() && *from <= was);
-        let from = from.ok_or_else(|| format!("no moment up to t = {t} s is kept"))?;
+        let from = moment.ok_or_else(|| {
+            format!(
+                "no moment up to t = {t:?} s is kept: it is before the last reset or change of a method"
+            )
+        })?;
         if !self.go_back_to_last(None, shared) {
             return Err("a pane cannot go back to that moment: reset".to_owned());
         }
@@ -768,6 +771,7 @@ impl Engine {
 
     /// Grips the tissue around a point of the surface of a pane.
     fn grip(&mut self, client: u32, pane: usize, point: usize, epoch: u32) -> Result<(), String> {
+        self.pane(pane)?;
         if epoch != self.topology.epoch {
             return Err("the body was cut in this moment: grip it once more".to_owned());
         }

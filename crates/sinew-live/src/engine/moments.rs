@@ -87,9 +87,11 @@ impl Moments {
         self.kept.back()
     }
 
-    /// The last moment up to a simulated time (s). The later ones are dropped.
+    /// The last moment up to a simulated time (s). The later ones are dropped; if all are later, none is.
     pub(super) fn up_to(&mut self, t: f64) -> Option<&Moment> {
         let until = t * (1.0 + Clock::ROUNDING);
+        let first = self.kept.front().map(|first| first.clock.time());
+        first.filter(|first| *first <= until)?;
         self.drop_after(until);
         self.commanded = None;
         self.kept.back()
@@ -197,7 +199,8 @@ mod tests {
         assert!(times[times.len() / 2] > 9990.0, "{times:?}");
         let middle = moments.up_to(9995.0).unwrap().clock.time();
         assert!((9994.0..=9995.1).contains(&middle), "{middle}");
-        assert_eq!(moments.up_to(-1.0).unwrap().clock.time(), 0.0);
+        assert!(moments.up_to(-1.0).is_none() && moments.up_to(f64::NAN).is_none());
+        assert_eq!(moments.up_to(0.0).unwrap().clock.time(), 0.0);
     }
 
     #[test]

@@ -36,6 +36,8 @@ pub(crate) struct Pane {
     due: Due,
     /// The requested integrator and step, which a reset keeps.
     method: (String, Options, f64),
+    /// The method that was chosen, if another one runs in its place.
+    replaced: Option<Chosen>,
     /// Reason for which it cannot continue.
     pub(crate) stopped: Option<String>,
     /// Error relative to the trusted run, and time (s) by which the trusted run is behind.
@@ -57,6 +59,15 @@ pub(crate) struct Pane {
     held: Option<Held>,
     /// True if forces of the user act.
     is_pulled: bool,
+}
+
+/// A method that was chosen for a pane.
+#[derive(Clone, Debug)]
+enum Chosen {
+    /// That of its scene.
+    OfScene,
+    /// An integrator with its options and a step (s).
+    Method((String, Options, f64)),
 }
 
 /// The tools and the tissue that the user moves.
@@ -112,6 +123,7 @@ impl Pane {
             session,
             due: Due::default(),
             method: (String::new(), Options::new(), 0.0),
+            replaced: None,
             stopped: None,
             error: f64::NAN,
             lag: 0.0,
@@ -134,17 +146,32 @@ impl Pane {
         Ok(pane)
     }
 
-    /// A pane of another scene at its beginning, with the same method, or with that of the other scene where it has that of
-    /// its own.
+    /// A pane of another scene at its beginning, with the method that was chosen.
     pub(crate) fn on(&self, scene: &SceneValues) -> Result<Self, String> {
         let mut pane = Self::of(scene).map_err(|error| error.to_string())?;
-        let (id, options, dt) = &self.method;
-        let (own, dt_of_scene) = (self.of_scene(), self.session.scene().dt());
-        if (id, options, *dt) != (&own.0, &own.1, dt_of_scene) {
-            let switched = pane.switch(self.method.clone());
+        if let Chosen::Method(method) = self.chosen() {
+            let switched = pane.switch(method);
             switched.map_err(|error| error.to_string())?;
         }
         Ok(pane)
+    }
+
+    /// The method that was chosen for it, which another one may have replaced.
+    fn chosen(&self) -> Chosen {
+        if let Some(replaced) = &self.replaced {
+            return replaced.clone();
+        }
+        let (id, options, dt) = &self.method;
+        let (own, dt_of_scene) = (self.of_scene(), self.session.scene().dt());
+        match (id, options, *dt) == (&own.0, &own.1, dt_of_scene) {
+            true => Chosen::OfScene,
+            false => Chosen::Method(self.method.clone()),
+        }
+    }
+
+    /// Notes that its method replaces the one that was chosen for another pane, which it returns to with [`Self::on`].
+    pub(crate) fn is_in_place_of(&mut self, other: &Self) {
+        self.replaced = Some(other.chosen());
     }
 
     /// The integrator and the options of the scene.
@@ -225,6 +252,7 @@ impl Pane {
             self.method = method;
             return self.reset();
         }
+        self.replaced = None;
         // Its trials are those of the method before.
         self.held = None;
         // The method has to take them as well.

@@ -1,6 +1,6 @@
 //! Other tools during a session: each makes another scene, whose motion starts from the beginning.
 
-use sinew_scene::{Blade, BodyModel, Simulation, Subject};
+use sinew_scene::{Blade, BodyModel, Cutting, Scene, Simulation, Subject};
 use sinew_tools::Pose;
 use sinew_world::{Command, Journal};
 
@@ -45,6 +45,7 @@ impl Engine {
         shape: Shape,
         shared: &Shared,
     ) -> Result<(), String> {
+        self.tool_name(tool)?;
         let key = format!("tool.{}.shape", tool.saturating_add(1));
         let scene = self.scene.with(vec![(key, Some(shape.to_toml()))]);
         let scene = scene.map_err(|error| error.to_string())?;
@@ -86,7 +87,8 @@ impl Engine {
         let names = tools.iter().map(|tool| tool.name.as_str());
         let tool = AddedTool::new(kind, (extent, self.uncut.mean_edge()), names);
         let place = [x, y, high[2] + CLEAR * extent];
-        let values = tool.values(tools.len() + 1, place, simulation.is_cut());
+        let has_cutting = cutting_of(self.scene.opened()).is_some();
+        let values = tool.values(tools.len() + 1, place, has_cutting);
         let scene = self.scene.with(values);
         let scene = scene.map_err(|error| format!("no {}: {error}", kind.name()))?;
         let mut added = self.added.clone();
@@ -96,10 +98,7 @@ impl Engine {
 
     /// Refuses a second tool of those of which `[cutting]` takes one.
     fn check_is_free(&self, kind: ToolKind) -> Result<(), String> {
-        let Subject::Body(body) = self.scene.scene.subject() else {
-            return Ok(());
-        };
-        let cutting = body.cutting.as_ref();
+        let cutting = cutting_of(&self.scene.scene);
         let is_taken = cutting.is_some_and(|cutting| match kind {
             ToolKind::Blade => cutting.blade != Blade::None,
             ToolKind::Burner => cutting.remove.is_some(),
@@ -121,6 +120,7 @@ impl Engine {
             .ok_or("only tools that were added here can be removed")?;
         let gone = added.remove(index);
         let is_last = added.is_empty();
+        let is_needed = |key: &str| added.iter().any(|other| other.needs(key));
         let scene = self.scene.with_changed(|(key, value)| {
             let of_tool = key.strip_prefix("tool.").and_then(|rest| {
                 let (number, rest) = rest.split_once('.')?;
@@ -130,7 +130,7 @@ impl Engine {
                 Some((number, _)) if number == tool + 1 => return None,
                 Some((number, rest)) if number > tool + 1 => format!("tool.{}.{rest}", number - 1),
                 // Those that were set for tools alone.
-                None if gone.needs(&key) || is_last => return None,
+                None if is_last || (gone.needs(&key) && !is_needed(&key)) => return None,
                 _ => key,
             };
             Some((key, value))
@@ -186,6 +186,7 @@ impl Engine {
             if let Some(taken) = taken.filter(|taken| *taken == other.facts().integrator) {
                 take_other(&mut other, &taken).ok_or(refused.clone())?;
             }
+            other.is_in_place_of(pane);
             others.push(Event::OtherMethod {
                 pane: number,
                 integrator: other.facts().integrator,
@@ -219,6 +220,14 @@ impl Engine {
         self.surveyed = false;
         self.begin_anew();
         Ok(())
+    }
+}
+
+/// The table `[cutting]` of a scene.
+fn cutting_of(scene: &Scene) -> Option<&Cutting> {
+    match scene.subject() {
+        Subject::Body(body) => body.cutting.as_ref(),
+        Subject::Oscillator(_) => None,
     }
 }
 

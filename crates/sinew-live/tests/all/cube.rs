@@ -480,7 +480,7 @@ fn numbers_beyond_any_body_are_refused_to_their_sender_and_the_session_goes_on()
         client.say(text);
         let number: f64 = named.parse().unwrap();
         let reason = client.event("refused")["reason"].to_string();
-        assert!(reason.contains(&format!("{number}")), "{reason}");
+        assert!(reason.contains(&format!("{number:?}")), "{reason}");
         assert!(reason.contains("at most 1e6"), "{reason}");
     }
     // As far as a pose may be.

@@ -175,3 +175,50 @@ fn scissors_cut_what_is_between_them_where_they_are() {
     client.picture(|picture| nodes(picture) > 343);
     assert!(page.end().logs[0].to_text().contains("cut"));
 }
+
+#[test]
+fn the_methods_of_panes_come_back_when_the_last_tool_goes() {
+    let page = Page::of(settings(CUBE));
+    let mut client = page.connect();
+    client.event("scenery");
+    client.say(r#"{"id":1,"do":"integrator","pane":0,"name":"newmark"}"#);
+    client.say(r#"{"id":2,"do":"dt","pane":0,"dt":0.02}"#);
+    client.say(r#"{"id":3,"do":"panes","count":2}"#);
+    let methods = |settings: &Value| {
+        let panes = settings["panes"].as_array().unwrap();
+        let method = |pane: &Value| format!("{} {}", pane["integrator"], pane["dt"]);
+        panes.iter().map(method).collect::<Vec<String>>()
+    };
+    let two = |client: &mut Connection| loop {
+        let settings = client.event("settings");
+        if settings["panes"].as_array().unwrap().len() == 2 {
+            break methods(&settings);
+        }
+    };
+    let before = two(&mut client);
+    assert_eq!(before[0], "\"newmark\" 0.02");
+    add(&mut client, "ball");
+    client.event("other_method");
+    let with = two(&mut client);
+    assert!(with[0].contains("symplectic-euler"), "{with:?}");
+    client.say(r#"{"id":5,"do":"remove_tool","tool":0}"#);
+    client.event("scenery");
+    assert_eq!(two(&mut client), before);
+}
+
+#[test]
+fn scissors_do_not_need_the_burner_beside_them() {
+    let page = Page::of(settings(CUBE));
+    let mut client = page.connect();
+    client.event("scenery");
+    for other in ["burner", "blade"] {
+        assert_eq!(add(&mut client, other).len(), 1);
+        assert_eq!(add(&mut client, "scissors").len(), 2);
+        client.say(r#"{"id":2,"do":"remove_tool","tool":0}"#);
+        let scenery = client.event("scenery");
+        assert_eq!(scenery["tools"][0]["name"], "scissors");
+        assert_eq!(scenery["cuts"], true);
+        client.say(r#"{"id":3,"do":"remove_tool","tool":0}"#);
+        assert_eq!(client.event("scenery")["cuts"], false);
+    }
+}

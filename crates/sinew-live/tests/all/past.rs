@@ -22,6 +22,9 @@ fn a_motion_goes_on_from_an_earlier_moment_and_its_log_says_so() {
     let late = client.picture(|picture| height(picture) == 0.2);
     let late = time(&client.picture(|picture| time(picture) > time(&late) + 0.3));
     client.say(r#"{"id":3,"do":"pause","on":true}"#);
+    client.say(r#"{"id":4,"do":"go_on_from","t":-0.1}"#);
+    let reason = client.event("refused")["reason"].to_string();
+    assert!(reason.contains("no moment up to t = -0.1 s"), "{reason}");
     client.say(r#"{"id":4,"do":"go_on_from","t":0.45}"#);
     let event = client.event("went_on_from");
     let [t, back] = ["t", "back"].map(|key| event[key].as_f64().unwrap());
@@ -49,7 +52,7 @@ fn a_pane_that_has_stopped_goes_on_from_a_moment_before() {
     let mut client = page.connect();
     client.say(r#"{"id":1,"do":"dt","pane":0,"dt":0.09}"#);
     client.event("stopped");
-    client.say(r#"{"id":2,"do":"go_on_from","t":0.0}"#);
+    client.say(r#"{"id":2,"do":"go_on_from","t":1e9}"#);
     client.event("went_on_from");
     let revived = client.event("settings");
     assert!(revived["panes"][0]["stopped"].is_null(), "{revived}");

@@ -17,6 +17,8 @@ pub struct Journal {
     file: File,
     /// Number of commands in the file; `None` while it is empty.
     entries: Option<usize>,
+    /// Number of returns to earlier moments in the file.
+    returns: usize,
     /// The revision of the log that begins with these commands.
     beginning: Option<Revision>,
     /// Number of bytes of the file that are whole lines.
@@ -72,6 +74,7 @@ impl Journal {
                 path,
                 file,
                 entries: None,
+                returns: 0,
                 beginning: None,
                 length: 0,
                 has_failed: false,
@@ -94,7 +97,7 @@ impl Journal {
     /// # Errors
     /// [`JournalError`].
     pub fn begin_anew(&mut self) -> Result<(), JournalError> {
-        (self.entries, self.beginning) = (None, None);
+        (self.entries, self.returns, self.beginning) = (None, 0, None);
         (self.length, self.has_failed, self.has_rest) = (0, false, true);
         self.cut().map_err(|source| self.error(source))
     }
@@ -113,7 +116,7 @@ impl Journal {
         let is_known = self.has_failed;
         let kept = match settled {
             // Without a command a file is taken over.
-            0 => self.cut().map_err(|source| self.error(source)),
+            0 if log.went_back().is_empty() => self.cut().map_err(|source| self.error(source)),
             _ => self.add(log, settled),
         };
         self.has_failed = kept.is_err();
@@ -140,7 +143,7 @@ impl Journal {
             return;
         }
         self.has_rest |= self.length > 0;
-        (self.entries, self.length) = (None, 0);
+        (self.entries, self.returns, self.length) = (None, 0, 0);
     }
 
     /// Adds the commands up to an index in a log.
@@ -150,11 +153,12 @@ impl Journal {
             self.text.push_str(&head(log.header()));
         }
         let first = self.entries.unwrap_or(0);
-        push_entries(&mut self.text, log, first..until);
+        let mut returns = self.returns;
+        push_entries(&mut self.text, log, first..first.max(until), &mut returns);
         let written = self.append();
         self.has_rest = written.is_err();
         written.map_err(|source| self.error(source))?;
-        self.entries = Some(first.max(until));
+        (self.entries, self.returns) = (Some(first.max(until)), returns);
         self.length += self.text.len() as u64;
         Ok(())
     }

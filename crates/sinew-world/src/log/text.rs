@@ -31,23 +31,35 @@ pub(super) fn head(header: &Header) -> String {
     text
 }
 
-/// The last lines.
+/// The last line.
 pub(super) fn end(log: &Log) -> String {
-    let mut text = String::new();
-    push_entries(&mut text, log, log.entries.len()..log.entries.len() + 1);
-    let _ = writeln!(text, "{} end", log.steps);
-    text
+    format!("{} end\n", log.steps)
 }
 
-/// Adds the lines of commands with these numbers, and of the returns to moments before them.
-pub(super) fn push_entries(out: &mut String, log: &Log, numbers: Range<usize>) {
+/// Adds the lines of commands with these numbers, and of those returns to earlier moments, from one on, that come before
+/// the end of them; the number of returns that are there then is left in `returns`.
+pub(super) fn push_entries(
+    out: &mut String,
+    log: &Log,
+    numbers: Range<usize>,
+    returns: &mut usize,
+) {
+    let end = numbers.end;
+    let mut push_returns = |out: &mut String, until: usize| {
+        while let Some(back) = log.went_back.get(*returns)
+            && back.before <= until
+        {
+            push_went_back(out, back);
+            *returns += 1;
+        }
+    };
     for number in numbers {
-        let before = log.went_back.iter().filter(|back| back.before == number);
-        before.for_each(|back| push_went_back(out, back));
+        push_returns(out, number);
         if let Some(entry) = log.entries.get(number) {
             push_entry(out, entry);
         }
     }
+    push_returns(out, end);
 }
 
 fn push_went_back(out: &mut String, back: &WentBack) {
@@ -125,7 +137,7 @@ impl Log {
     #[must_use]
     pub fn to_text(&self) -> String {
         let mut text = head(&self.header);
-        push_entries(&mut text, self, 0..self.entries.len());
+        push_entries(&mut text, self, 0..self.entries.len(), &mut 0);
         text.push_str(&end(self));
         text
     }

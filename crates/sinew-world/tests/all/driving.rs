@@ -331,7 +331,7 @@ fn commands_that_make_no_sense_are_refused_by_what_is_wrong() {
         ),
         (
             pose("ball", [0.0, 0.0, 1e7]),
-            "pose of \"ball\": 10000000: expected finite numbers, at most 1e6 m or rad in size",
+            "pose of \"ball\": 10000000.0: expected finite numbers, at most 1e6 m or rad in size",
         ),
         (
             factor("push", 1.0),

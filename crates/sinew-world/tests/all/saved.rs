@@ -316,18 +316,29 @@ fn a_world_goes_back_to_its_moments_and_a_replay_gives_what_it_kept() {
     let text = world.log().to_text();
     assert_eq!(text.matches(" went-back ").count(), 1);
     assert_eq!(&Log::parse(Path::new("s.log"), &text).unwrap(), world.log());
-    let path = std::env::temp_dir().join(format!("sinew-went-back-{}.log", std::process::id()));
-    let mut journal = Journal::create(path.clone()).unwrap();
-    journal.keep_up(world.log()).unwrap();
-    journal.finish(world.log()).unwrap();
-    assert_eq!(std::fs::read_to_string(&path).unwrap(), text);
-    std::fs::remove_file(path).unwrap();
     // It has other commands now, though as many.
     let left = world.go_back(&moments[2]);
     assert!(matches!(left, Err(RestoreError::OtherPast)));
     let mut replay = Replay::new(scene(&cube()), world.log().clone()).unwrap();
     while replay.step().unwrap().is_some() {}
     assert_eq!(replay.world().state(), world.state());
+    let path = std::env::temp_dir().join(format!("sinew-went-back-{}.log", std::process::id()));
+    let mut journal = Journal::create(path.clone()).unwrap();
+    journal.keep_up(world.log()).unwrap();
+    world.go_back(&moments[0]).unwrap();
+    // Without a command the file says so at once.
+    journal.keep_up(world.log()).unwrap();
+    journal.keep_up(world.log()).unwrap();
+    let kept = Log::read(&path).unwrap();
+    assert_eq!(kept.went_back(), world.log().went_back());
+    drive(&mut world, 0..20);
+    journal.keep_up(world.log()).unwrap();
+    journal.finish(world.log()).unwrap();
+    assert_eq!(
+        std::fs::read_to_string(&path).unwrap(),
+        world.log().to_text()
+    );
+    std::fs::remove_file(path).unwrap();
 }
 
 #[test]
