@@ -29,7 +29,7 @@ integrator = "newmark"
 dt = 0.01
 "#;
 
-/// Each kind with a sentence about what it does at its place.
+/// The kinds of tools.
 const KINDS: [&str; 7] = [
     "ball", "rod", "plate", "jaws", "blade", "scissors", "burner",
 ];

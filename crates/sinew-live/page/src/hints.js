@@ -6,18 +6,32 @@ const get = (id) => document.getElementById(id);
 
 const NAVIGATION = "wheel: zoom · Shift + drag: pan · 1 to 6: sides, V: as at first";
 
-function sentences({ tools, cuts, hand_speed: speed }) {
-  const most = ` · at most ${plain(speed, 2)} m/s (--hand-speed)`;
+/// Whether fingers are what this device is mainly used with.
+const FINGERS = window.matchMedia("(pointer: coarse)");
+
+/// What two and three fingers do in every case.
+const TWO = "two fingers: turn and zoom · three: move the view · Views: sides";
+
+function ofFingers({ tools, cuts }, most) {
+  const all = { rest: `One finger on tissue: pull it · beside it: turn the view · ${TWO}${most}${cuts ? " · Cut: a blade" : ""}` };
+  if (cuts) all.blade = `One finger: cut along your line of sight · ${TWO} · Cut again: done`;
+  if (tools.length > 0) all.tool = `One finger: move the tool · Turn: it turns instead · the handle at the left: deeper and nearer · Grasp: hold what it touches, and let go · ${TWO}${most}`;
+  return all;
+}
+
+function ofMouse({ tools, cuts }, most) {
   const toBlade = cuts ? " · C: a blade" : "";
   const all = {
-    rest: `Drag on tissue: pull it · drag beside it, right button or two fingers: turn the view · ${NAVIGATION} · G: grip the tissue in the middle, arrows pull it, G again: let go${most}${toBlade}`,
+    rest: `Drag on tissue: pull it · drag beside it or right button: turn the view · ${NAVIGATION} · G: grip the tissue in the middle, arrows pull it, G again: let go${most}${toBlade}`,
   };
-  if (cuts) all.blade = `Drag: cut along your line of sight · right button or two fingers: turn the view · ${NAVIGATION} · arrows move the blade, Enter lowers and lifts it · C: done`;
+  if (cuts) all.blade = `Drag: cut along your line of sight · right button: turn the view · ${NAVIGATION} · arrows move the blade, Enter lowers and lifts it · C: done`;
   if (tools.length > 0) {
-    all.tool = `Drag: move the tool · Alt + drag, or T and drag: turn it · E and Q, or the handle at the left: deeper and nearer · Shift in a drag: lift it off · G: grasp what it touches, and let go · right button or two fingers: turn the view · ${NAVIGATION} · arrows and Page keys move it, too${most}${toBlade}`;
+    all.tool = `Drag: move the tool · Alt + drag, or T and drag: turn it · E and Q, or the handle at the left: deeper and nearer · Shift in a drag: lift it off · G: grasp what it touches, and let go · right button: turn the view · ${NAVIGATION} · arrows and Page keys move it, too${most}${toBlade}`;
   }
   return all;
 }
+
+const sentences = (scenery) => (FINGERS.matches ? ofFingers : ofMouse)(scenery, ` · at most ${plain(scenery.hand_speed, 2)} m/s (--hand-speed)`);
 
 /// What keys do on the canvas, for those who do not see it.
 const KEYS = {

@@ -21,6 +21,8 @@ export class ToolMenu {
     const menu = get("tool-list").closest("details");
     const closing = (act) => (what) => {
       menu.open = false;
+      // Keys act on the stage from now on.
+      get("canvas").focus({ preventScroll: true });
       act(what);
     };
     this.actions = { take: closing(take), remove: closing(remove), add: closing(add) };

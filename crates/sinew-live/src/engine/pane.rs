@@ -64,7 +64,7 @@ pub(crate) struct Pane {
 /// A method that was chosen for a pane.
 #[derive(Clone, Debug)]
 enum Chosen {
-    /// That of its scene.
+    /// The method of its scene.
     OfScene,
     /// An integrator with its options and a step (s).
     Method((String, Options, f64)),

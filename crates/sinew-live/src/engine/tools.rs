@@ -173,25 +173,30 @@ impl Engine {
                 }
                 Err(refused) => refused,
             };
-            let mut other = match Pane::of(&scene) {
-                Ok(other) => other,
-                // The scene's own method does not take them either.
-                Err(_) => {
-                    scene = with_explicit_steps(&scene).map_err(|_| refused.clone())?;
-                    Pane::of(&scene).map_err(|_| refused.clone())?
-                }
+            let instead = |integrator: String| Event::OtherMethod {
+                pane: number,
+                integrator,
+                reason: refused.clone(),
             };
+            let own = pane.facts().integrator;
+            // The scene's own method may not take them either.
+            if Pane::of(&scene).is_err() {
+                scene = with_explicit_steps(&scene).map_err(|_| refused.clone())?;
+                if let Ok(pane) = pane.on(&scene) {
+                    let integrator = pane.facts().integrator;
+                    others.extend((integrator != own).then(|| instead(integrator)));
+                    panes.push(pane);
+                    continue;
+                }
+            }
+            let mut other = Pane::of(&scene).map_err(|_| refused.clone())?;
             // Two panes with one method would show nothing.
             let taken = panes.first().map(|first: &Pane| first.facts().integrator);
             if let Some(taken) = taken.filter(|taken| *taken == other.facts().integrator) {
                 take_other(&mut other, &taken).ok_or(refused.clone())?;
             }
             other.is_in_place_of(pane);
-            others.push(Event::OtherMethod {
-                pane: number,
-                integrator: other.facts().integrator,
-                reason: refused,
-            });
+            others.push(instead(other.facts().integrator));
             panes.push(other);
         }
         let simulation = panes[0].scene();

@@ -118,6 +118,21 @@ fn tools_of_the_scene_stay_and_what_was_set_for_added_ones_goes_with_them() {
     assert_eq!(page.end().values, Vec::<String>::new());
 }
 
+/// A pane that takes tools keeps its method where that of the scene does not.
+#[test]
+fn an_explicit_method_in_an_implicit_scene_stays() {
+    let implicit = CUBE.replace("\"symplectic-euler\"", "\"newmark\"");
+    let page = Page::of(settings(&implicit));
+    let mut client = page.connect();
+    client.event("scenery");
+    client.say(r#"{"id":1,"do":"integrator","pane":0,"name":"symplectic-euler"}"#);
+    client.event("settings");
+    assert_eq!(add(&mut client, "ball").len(), 1);
+    let settings = client.event("settings");
+    assert_eq!(settings["panes"][0]["integrator"], "symplectic-euler");
+    assert_eq!(settings["panes"][0]["dt"], 0.002);
+}
+
 /// An implicit method feels no tools; the options of the scene's method go with it.
 #[test]
 fn a_method_that_feels_no_tools_is_replaced_and_pages_are_told() {

@@ -184,7 +184,9 @@ fn a_chosen_scene_opens_paused_at_the_same_address_and_leads_back() {
     let said = place.order(r#"{"id":1,"do":"scenes"}"#);
     assert!(said[0].contains(r#""from_start":"Wait.""#), "{}", said[0]);
     assert!(said.iter().any(|said| said.contains(r#""paused":true"#)));
-    assert_eq!(said.last().unwrap(), r#"{"event":"scenes"}"#);
+    // A survey of the integrators may end after it.
+    let leads_back = |said: &String| said == r#"{"event":"scenes"}"#;
+    assert!(said.iter().any(leads_back), "{said:?}");
     place.wait_for("start");
     // Measured paces stay known.
     assert_eq!(place.state()["offers"][0]["factor"], 2.5);
