@@ -29,8 +29,8 @@ export class Past {
   }
 
   clear() {
-    Object.assign(this, { list: [], bytes: 0, at: null, playing: null, shown: null, toldAt: -Infinity });
-    this.tell();
+    Object.assign(this, { list: [], bytes: 0, toldAt: -Infinity });
+    this.end();
   }
 
   /// Keeps a picture that came. Where the memory is full, every second one of the older half goes.
@@ -42,7 +42,9 @@ export class Past {
     this.bytes += picture.bytes;
     if (this.bytes > MEMORY && this.list.length > 16) {
       const older = Math.floor(this.list.length / 2);
-      this.list = this.list.filter((_, index) => index >= older || index % 2 === 0);
+      this.list = this.list.filter((kept, index) => index >= older || index % 2 === 0 || kept === this.shown);
+      // What is looked at stays where it is, also where another page lets time go on.
+      if (this.isOn) this.at = Math.max(0, this.list.indexOf(this.shown));
       this.bytes = this.list.reduce((sum, { bytes }) => sum + bytes, 0);
     }
     const now = performance.now();
@@ -59,6 +61,11 @@ export class Past {
   /// The motion went back to a time (s): what came after it did not happen.
   wentBackTo(t) {
     this.drop(t, false);
+    this.end();
+  }
+
+  /// Ends the look back.
+  end() {
     Object.assign(this, { at: null, playing: null, shown: null });
     this.tell();
   }
@@ -88,8 +95,7 @@ export class Past {
   /// Back to the present.
   leave() {
     if (!this.isOn) return;
-    Object.assign(this, { at: null, playing: null, shown: null });
-    this.tell();
+    this.end();
     this.actions.left();
   }
 

@@ -1,22 +1,14 @@
 // Rotation vectors of tools that a hand turns.
 
-import { Quaternion, Vector3 } from "three";
+import { Group, Quaternion, Vector3 } from "three";
+import { turn } from "./poses.js";
 
-const quaternionOf = ([x, y, z]) => {
-  const angle = Math.hypot(x, y, z);
-  return angle === 0 ? new Quaternion() : new Quaternion().setFromAxisAngle(new Vector3(x, y, z).divideScalar(angle), angle);
-};
-
-/// A rotation vector (rad) turned on about an axis by an angle (rad). Of all vectors of the same rotation it is the one
-/// nearest to the former: a tool that is led straight between them does not turn back by a whole turn.
+/// A rotation vector (rad) turned on about an axis by an angle (rad). The simulation turns a tool by the short way.
 export function turned(vector, axis, angle) {
-  const rotation = new Quaternion().setFromAxisAngle(axis, angle).multiply(quaternionOf(vector));
-  const half = new Vector3(rotation.x, rotation.y, rotation.z);
+  const posed = new Group();
+  turn(posed, vector);
+  const { x, y, z, w } = new Quaternion().setFromAxisAngle(axis, angle).multiply(posed.quaternion);
+  const half = new Vector3(x, y, z);
   const sine = half.length();
-  const before = new Vector3(...vector);
-  // No rotation has every axis: that of before, or none.
-  const unit = sine > 1e-12 ? half.divideScalar(sine) : before.clone().normalize();
-  const least = 2 * Math.atan2(sine, rotation.w);
-  const turns = Math.round((before.dot(unit) - least) / (2 * Math.PI));
-  return unit.multiplyScalar(least + 2 * Math.PI * turns).toArray();
+  return half.multiplyScalar(sine > 0 ? (2 * Math.atan2(sine, w)) / sine : 0).toArray();
 }

@@ -25,6 +25,12 @@ const STABLE: f64 = 0.2;
 /// Force of a trial over that which strains the tissue by about 1.
 const TRIAL: f64 = 1e-3;
 
+/// The time (s) by which a force follows the tissue late; `None` in steps (s) that are as long as a force stays constant,
+/// where a trial tells the place at their end.
+pub(super) fn late_in(dt: f64) -> Option<f64> {
+    (dt < HELD).then_some(HELD)
+}
+
 /// A spring from the tissue to the user's hand.
 #[derive(Clone, Debug)]
 pub(crate) struct Grip {

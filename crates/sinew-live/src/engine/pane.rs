@@ -11,7 +11,7 @@ use sinew_world::{Command, CommandError, Log, Moment, RestoreError, Trial, World
 
 use super::course::Course;
 use super::due::Due;
-use super::grip::{Grip, HELD, Patch};
+use super::grip::{Grip, HELD, Patch, late_in};
 use super::lights::{Bounds, Light, error_light, packed};
 use super::places::place_of;
 use super::shown::{Budget, Shown};
@@ -466,17 +466,16 @@ impl Pane {
             .is_none_or(|held| !held.patch.is_of(grip, body))
         {
             let patch = Patch::of(grip, body);
-            let trial = match dt >= HELD && patch.has_nodes() {
-                true => {
+            let trial = match late_in(dt) {
+                None if patch.has_nodes() => {
                     let mut trial = self.session.trial()?;
                     let compliance = patch.compliance(&self.session, &mut trial)?;
                     Some((trial, compliance))
                 }
-                false => None,
+                _ => None,
             };
-            let late = trial.is_none().then_some(HELD);
             self.held = Some(Held {
-                most: patch.stiffness(body, late),
+                most: patch.stiffness(body, late_in(dt)),
                 patch,
                 trial,
                 force: [0.0; 3],
@@ -541,8 +540,7 @@ impl Pane {
         let forces = Command::Forces(patch.forces([0.0, 0.0, f64::EPSILON]));
         let checked = self.session.check(&forces);
         checked.map_err(|error| error.to_string())?;
-        let late = (self.dt() < HELD).then_some(HELD);
-        Ok(patch.stiffness(body, late))
+        Ok(patch.stiffness(body, late_in(self.dt())))
     }
 
     /// Records the impulses that tools have received before a step.

@@ -112,12 +112,9 @@ impl Engine {
 
     /// Removes a tool that a page added.
     pub(super) fn remove_tool(&mut self, tool: usize, shared: &Shared) -> Result<(), String> {
-        let own = self.hands.tools.len() - self.added.len();
+        let index = self.place_among_added(tool);
+        let index = index.ok_or("only tools that were added here can be removed")?;
         let mut added = self.added.clone();
-        let index = tool
-            .checked_sub(own)
-            .filter(|index| *index < added.len())
-            .ok_or("only tools that were added here can be removed")?;
         let gone = added.remove(index);
         let is_last = added.is_empty();
         let is_needed = |key: &str| added.iter().any(|other| other.needs(key));
@@ -139,13 +136,17 @@ impl Engine {
         self.begin_with(scene, added, shared)
     }
 
+    /// The place of a tool among those that pages added.
+    fn place_among_added(&self, tool: usize) -> Option<usize> {
+        let own = self.hands.tools.len() - self.added.len();
+        let place = tool.checked_sub(own)?;
+        (place < self.added.len()).then_some(place)
+    }
+
     /// Closes the blades of scissors: a cut between them.
     pub(super) fn snip(&mut self, client: u32, id: u32, tool: usize) -> Result<(), String> {
-        let own = self.hands.tools.len() - self.added.len();
-        let added = tool
-            .checked_sub(own)
-            .and_then(|index| self.added.get(index));
-        let bite = added.and_then(AddedTool::bite);
+        let added = self.place_among_added(tool);
+        let bite = added.and_then(|place| self.added[place].bite());
         let bite = bite.ok_or_else(|| format!("tool {tool} has no blades that close"))?;
         let [x, y, z, a, b, c] = self.panes[0].tool_pose(tool);
         let pose = Pose::new([x, y, z], [a, b, c]);

@@ -35,17 +35,16 @@ impl Section {
         for nodes in tets {
             let corners: [Corner; 4] = nodes.map(|node| (place(node), values[node as usize]));
             let above = corners.map(|(place, _)| place[plane.axis] >= plane.at);
-            let side = |is_above: bool| (0..4).filter(move |corner| above[*corner] == is_above);
             let cut = |[low, high]: [usize; 2]| crossing(corners[low], corners[high], plane);
-            let (up, down): (Vec<usize>, Vec<usize>) =
-                (side(true).collect(), side(false).collect());
-            match (&up[..], &down[..]) {
-                ([one], [a, b, c]) | ([a, b, c], [one]) => {
-                    self.push([a, b, c].map(|other| cut([*one, *other])));
-                }
-                ([a, b], [c, d]) => {
-                    let [ac, ad, bd, bc] =
-                        [[a, c], [a, d], [b, d], [b, c]].map(|[from, to]| cut([*from, *to]));
+            // The corners above the plane first.
+            let mut order = [0, 1, 2, 3];
+            order.sort_by_key(|corner| !above[*corner]);
+            let [a, b, c, d] = order;
+            match above.iter().filter(|is_above| **is_above).count() {
+                1 => self.push([b, c, d].map(|other| cut([a, other]))),
+                3 => self.push([a, b, c].map(|other| cut([d, other]))),
+                2 => {
+                    let [ac, ad, bd, bc] = [[a, c], [a, d], [b, d], [b, c]].map(cut);
                     self.push([ac, ad, bd]);
                     self.push([ac, bd, bc]);
                 }

@@ -25,18 +25,25 @@ fn point(client: &Connection, place: [f32; 3]) -> (usize, u32) {
     (nearest.unwrap(), u32_at(topology, 4))
 }
 
+/// Grips the top of a cube and pulls it to a height (m); returns the time (s) from which on it is pulled.
+fn pull_top(client: &mut Connection, height: f64) -> f64 {
+    let (top, epoch) = point(client, [0.033, 0.033, 0.1]);
+    client.say(&format!(
+        r#"{{"id":1,"do":"grip","pane":0,"point":{top},"epoch":{epoch}}}"#
+    ));
+    client.say(&format!(
+        r#"{{"id":2,"do":"pull","to":[0.033,0.033,{height}]}}"#
+    ));
+    time(&client.picture(|picture| applied(picture) >= 2))
+}
+
 #[test]
 fn tissue_is_pulled_by_a_spring_and_comes_back_when_it_is_let_go() {
     let mut page = Page::of(settings(CUBE));
     let mut client = page.connect();
     let first = client.picture(|_| true);
     assert!(pull(&first).1[0].is_nan());
-    let (top, epoch) = point(&client, [0.033, 0.033, 0.1]);
-    client.say(&format!(
-        r#"{{"id":1,"do":"grip","pane":0,"point":{top},"epoch":{epoch}}}"#
-    ));
-    client.say(r#"{"id":2,"do":"pull","to":[0.033,0.033,0.14]}"#);
-    let t = time(&client.picture(|picture| applied(picture) >= 2));
+    let t = pull_top(&mut client, 0.14);
     let held = client.picture(|picture| time(picture) > t + 1.5);
     let (force, place) = pull(&held);
     assert!(
@@ -69,12 +76,7 @@ fn in_long_implicit_steps_a_pull_is_as_firm_as_tissue_and_holds_still() {
     let mut page = Page::of(settings(&implicit));
     let mut client = page.connect();
     client.picture(|_| true);
-    let (top, epoch) = point(&client, [0.033, 0.033, 0.1]);
-    client.say(&format!(
-        r#"{{"id":1,"do":"grip","pane":0,"point":{top},"epoch":{epoch}}}"#
-    ));
-    client.say(r#"{"id":2,"do":"pull","to":[0.033,0.033,0.13]}"#);
-    let t = time(&client.picture(|picture| applied(picture) >= 2));
+    let t = pull_top(&mut client, 0.13);
     let held = client.picture(|picture| time(picture) > t + 2.0);
     let later = client.picture(|picture| time(picture) > t + 2.5);
     let ((force, place), (again, still)) = (pull(&held), pull(&later));
