@@ -70,6 +70,8 @@ pub(crate) struct LargeDeformation {
     /// Data of each region that force loops read.
     numbers: Vec<Numbers<f64>>,
     nodes: usize,
+    /// Number of tetrahedra.
+    elements: usize,
     /// Number of internal (history) variables.
     variables: usize,
     /// The instruction set of force loops.
@@ -121,6 +123,7 @@ impl LargeDeformation {
             numbers: made.iter().map(HyperelasticRegion::numbers).collect(),
             all: Arc::new(Regions::new((made, laws), gather)),
             nodes: mesh.points.len(),
+            elements: nodes.iter().flatten().count(),
             variables: kept.variables,
             set: InstructionSet::best(),
             place_of_tet,
@@ -223,8 +226,7 @@ impl LargeDeformation {
 
     /// Number of tetrahedra.
     pub(crate) fn elements(&self) -> usize {
-        let count = |region: &HyperelasticRegion| region.rest.tets().count();
-        self.all.regions.iter().map(count).sum()
+        self.elements
     }
 
     /// Computes the tangent, or the viscosity, at the displacement in the scratch times the change in it, as forces (N) at the nodes.

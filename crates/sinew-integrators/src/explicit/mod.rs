@@ -7,6 +7,7 @@ mod known_step;
 mod modified_leapfrog;
 #[cfg(feature = "implicit")]
 mod patches;
+mod relative_motion;
 mod rk4;
 mod substeps;
 mod symplectic_euler;

@@ -1,12 +1,13 @@
 //! `substeps`: division of a step into equal substeps.
 
 use super::known_step::{KEPT, Known, followed, wave_at_rest};
+use super::relative_motion::RelativeMotion;
 use sinew_cnn::Program;
 use sinew_core::spectrum::{PRODUCTS_OF_ESTIMATE, Spectrum, follow_largest_eigenvalue};
 use sinew_core::{
-    Batch, CostClock, Damping, ElasticLaw, Fact, Integrator, Layers, LoadTime, OptionError,
-    Options, Prepared, Properties, Revision, SetupError, StableStep, State, StepCut, StepError,
-    StepReport, System, Trial,
+    Batch, CostClock, Damping, ElasticLaw, Fact, Integrator, LoadTime, OptionError, Options,
+    Prepared, Properties, Revision, SetupError, StableStep, State, StepCut, StepError, StepReport,
+    System, Trial,
 };
 
 use crate::stiffening::stiffened_element;
@@ -114,6 +115,12 @@ const PARTS_BETWEEN_LOOKS: u32 = 40;
 /// Largest number of substeps between two checks, by the fastest motion, of a shrinking stable step.
 const PARTS_BETWEEN_GLANCES: u32 = 4;
 
+/// The same while the step stays stable although the wave's square grows by [`SPARE`].
+const PARTS_BETWEEN_GLANCES_WITH_SPARE: u32 = 8;
+
+/// Growth of the fastest wave's square, as a factor, that leaves time until the next check.
+const SPARE: f64 = 1.15;
+
 /// Growth of the fastest wave's square up to which the stable step is updated from it; beyond it a full check is made.
 const MOST_FOLLOWED: f64 = 1.5;
 
@@ -158,6 +165,7 @@ pub struct Substepped {
     room: Vec<f64>,
     /// The state before the step in progress.
     kept: State,
+    motion: RelativeMotion,
 }
 
 impl Substepped {
@@ -172,6 +180,7 @@ impl Substepped {
             rest: None,
             room: Vec::new(),
             kept: State::at_rest(0),
+            motion: RelativeMotion::default(),
         }
     }
 
@@ -401,6 +410,9 @@ impl Substepped {
                 return Ok(u32::MAX);
             }
             cut.taken = cut.taken.saturating_add(stretch);
+            if !self.is_glance_due(&cut, stretch, batch.dt()) {
+                continue;
+            }
             let needed = self.parts_needed(&mut cut, parts, (batch, state))?;
             if needed > parts {
                 return Ok(needed);
@@ -408,7 +420,9 @@ impl Substepped {
         }
         let fewest = self.fewest_parts(&cut, parts, batch.dt());
         let most = MOST_MOTION * f64::from(fewest);
-        let motion = self.motion(batch.system(), state, most);
+        let motion = self
+            .motion
+            .over_size(batch.system(), [&self.kept.u, &state.u], most);
         let needed = match motion > most {
             true => whole(motion / MOST_MOTION),
             false => fewest,
@@ -419,6 +433,15 @@ impl Substepped {
         note(&mut cut, parts, needed);
         state.cut = Some(cut);
         Ok(parts)
+    }
+
+    /// True if the fastest wave is to be looked at after `stretch` substeps of this length (s), over what they are divided
+    /// into: seldom while it may grow a good deal before it matters.
+    fn is_glance_due(&self, cut: &StepCut, stretch: u32, part: f64) -> bool {
+        let interval = |taken: u32| taken / PARTS_BETWEEN_GLANCES_WITH_SPARE;
+        let part = part * f64::from(self.finer);
+        let may_grow = Known::of(cut).allows(SPARE * cut.seen, part);
+        !may_grow || interval(cut.taken) != interval(cut.taken.saturating_sub(stretch))
     }
 
     /// The fewest substeps of a step, up to `parts` substeps of this length (s), that are stable by current knowledge.
@@ -499,50 +522,6 @@ impl Substepped {
         wave <= MOST_FOLLOWED * cut.wave
             && Known::of(cut).allows(wave, part)
             && (cut.taken < until_doubt || by_rest())
-    }
-
-    /// The largest motion of a cell relative to a neighbour since the step began, over its size; 0 if it is surely
-    /// `within` that limit, as in most steps.
-    fn motion(&self, system: &dyn System, state: &State, within: f64) -> f64 {
-        let (Some(scales), Some(elastic)) = (system.scales(), system.as_elastic()) else {
-            return 0.0;
-        };
-        let layers = system.layers().count();
-        let sizes = scales.cell_size;
-        let pattern = elastic.pattern();
-        let moved = |dof: usize| state.u[dof] - self.kept.u[dof];
-        let mut of_all = [[f64::INFINITY, f64::NEG_INFINITY]; Layers::Three.count()];
-        for (now, before) in state
-            .u
-            .chunks_exact(layers)
-            .zip(self.kept.u.chunks_exact(layers))
-        {
-            for ((now, before), [least, most]) in now.iter().zip(before).zip(&mut of_all) {
-                let moved = now - before;
-                *least = if moved < *least { moved } else { *least };
-                *most = if moved > *most { moved } else { *most };
-            }
-        }
-        let mut largest = 0.0_f64;
-        for (cell, size) in sizes.iter().enumerate() {
-            let own = (layers * cell..).zip(&of_all[..layers]);
-            // No neighbour is farther away than the farthest corner of the box around all motions.
-            let farthest = own.map(|(dof, [least, most])| {
-                let moved = moved(dof);
-                (moved - least).max(most - moved).powi(2)
-            });
-            if farthest.sum::<f64>() <= (within * size).powi(2) {
-                continue;
-            }
-            let neighbours = pattern.neighbours(cell).iter();
-            let squares = neighbours.map(|other| {
-                let [own, other] = [cell, *other as usize].map(|cell| layers * cell);
-                let apart = (0..layers).map(|layer| moved(own + layer) - moved(other + layer));
-                apart.map(|apart| apart.powi(2)).sum::<f64>()
-            });
-            largest = largest.max(squares.fold(0.0, f64::max).sqrt() / size);
-        }
-        largest
     }
 
     /// Updates the stable step from a state; returns false if it is left unchanged.

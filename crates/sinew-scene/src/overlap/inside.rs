@@ -3,7 +3,7 @@
 use sinew_mesh::TetMesh;
 use sinew_tools::vector::{Vector, cross, dot, sub};
 
-use super::grid::{Bounds, Grid, bounds, longest};
+use super::grid::{Bounds, Grid, bounds, include, longest, meet};
 
 /// Tolerance for points on a face, as a share of the tetrahedron's volume: within it a point counts as inside.
 const ON_FACE: f64 = 1e-9;
@@ -86,6 +86,10 @@ impl<'a> Placed<'a> {
         let boxes: Vec<Bounds> = points.iter().map(|point| [point.at; 2]).collect();
         let mut grid = Grid::default();
         grid.fill(&boxes, self.size);
+        let all = boxes.iter().fold(bounds(&[], 0.0), |mut all, [point, _]| {
+            include(&mut all, point);
+            all
+        });
         let (mut found, mut compared) = (Vec::new(), 0);
         for tet in &self.tets {
             if compared > COMPARISONS * self.tets.len() {
@@ -93,7 +97,11 @@ impl<'a> Placed<'a> {
             }
             let nodes = self.mesh.tets[*tet as usize];
             let corners = nodes.map(|node| self.places[node as usize]);
-            compared += grid.visit(&bounds(&corners, 0.0), &boxes, |number| {
+            let around = bounds(&corners, 0.0);
+            if !meet(&around, &all) {
+                continue;
+            }
+            compared += grid.visit(&around, &boxes, |number| {
                 let point = &points[number as usize];
                 let is_own = part_of(nodes[0]) == part_of(point.between[0]);
                 let is_crushed = || {

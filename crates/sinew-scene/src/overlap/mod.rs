@@ -1,9 +1,10 @@
 //! Bodies that pass through each other: parts of a mesh, or surfaces of one part, that overlap.
 //!
 //! No contact keeps them apart, so a run reports such overlaps. First edges of the surface are compared with its
-//! triangles, with a grid: in a state without overlaps, no edge is near a triangle other than those at its ends. Only
-//! if one does, or if the box of a part is within that of another, nodes of the surface are located in the tetrahedra
-//! of the parts concerned, and the distance to the surface is measured for those found inside.
+//! triangles, with a grid: in a state without overlaps, no edge is near a triangle other than those at its ends. Nodes
+//! of the surface are located in tetrahedra only from such places on, neighbour by neighbour as long as they are
+//! inside, and in parts whose box is within that of another. The distance to the surface is measured for those found
+//! inside.
 
 mod depth;
 mod grid;

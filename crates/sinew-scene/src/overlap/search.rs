@@ -40,6 +40,11 @@ pub(super) struct OverlapSearch {
     faces: Vec<[u32; 3]>,
     edges: Vec<[u32; 2]>,
     nodes: Vec<u32>,
+    /// The nodes that edges join to each node of the surface, one after the other, and where those of a node begin.
+    joined: Vec<u32>,
+    joined_from: Vec<u32>,
+    /// The node of which each node is a copy, or itself; empty for a body without cuts.
+    origins: Vec<u32>,
     /// The part of each node, and their number.
     part_of: Vec<u32>,
     parts: usize,
@@ -62,8 +67,13 @@ pub(super) struct Lips {
 }
 
 impl OverlapSearch {
-    /// A search in a mesh with this surface.
-    pub(super) fn new(mesh: Arc<TetMesh>, triangles: Vec<[u32; 3]>, lips: Option<Lips>) -> Self {
+    /// A search in a mesh with this surface, whose nodes are copies of these.
+    pub(super) fn new(
+        mesh: Arc<TetMesh>,
+        triangles: Vec<[u32; 3]>,
+        origins: Vec<u32>,
+        lips: Option<Lips>,
+    ) -> Self {
         let sides = |[a, b, c]: &[u32; 3]| [[*a, *b], [*b, *c], [*c, *a]];
         let mut edges: Vec<[u32; 2]> = triangles.iter().flat_map(sides).collect();
         for edge in &mut edges {
@@ -78,7 +88,11 @@ impl OverlapSearch {
         nodes.sort_unstable();
         nodes.dedup();
         let (part_of, parts) = mesh.part_of_nodes();
+        let (joined, joined_from) = joined(&edges, mesh.points.len());
         Self {
+            joined,
+            joined_from,
+            origins,
             size: longest(&bounds(&mesh.points, 0.0)),
             mesh,
             triangles,
@@ -120,26 +134,62 @@ impl OverlapSearch {
         }
         let touching = TOUCHES * self.size.max(moved);
         let near = self.near(places, touching)?;
-        let is_concerned = self.concerned(places, &near);
+        let nested = self.nested(places);
+        let mut is_concerned = nested.clone();
+        for node in self.nodes_at(&near) {
+            is_concerned[self.part_of[node as usize] as usize] = true;
+        }
         if !is_concerned.contains(&true) {
             return None;
         }
-        let concerned = |node: u32| is_concerned[self.part_of[node as usize] as usize];
-        let tets = (0..).zip(&self.mesh.tets);
-        let tets = tets.filter(|(_, nodes)| concerned(nodes[0]));
-        let placed = Placed::new(&self.mesh, places, tets.map(|(tet, _)| tet).collect());
-        let at_nodes = self.nodes.iter().filter(|node| concerned(**node));
-        let at_nodes: Vec<SurfacePoint> = at_nodes
-            .map(|node| SurfacePoint::node(*node, places[*node as usize]))
-            .collect();
-        let between_nodes = self.between_nodes(places, &near, touching, concerned);
         let part_of = |node: u32| self.part_of[node as usize];
-        let found = [at_nodes, between_nodes].map(|points| {
+        let tets = (0..).zip(&self.mesh.tets);
+        let tets = tets.filter(|(_, nodes)| is_concerned[part_of(nodes[0]) as usize]);
+        let mesh = Arc::clone(&self.mesh);
+        let placed = Placed::new(&mesh, places, tets.map(|(tet, _)| tet).collect());
+        // What is inside begins where surfaces meet, or is all of a part: from there on neighbours are looked at.
+        let within = self.nodes.iter().copied();
+        let within = within.filter(|node| nested[part_of(*node) as usize]);
+        let mut front: Vec<u32> = self.nodes_at(&near).chain(within).collect();
+        let mut is_seen = vec![false; places.len()];
+        let (mut at_nodes, mut in_tets) = (Vec::new(), Vec::new());
+        while !front.is_empty() {
+            front.retain(|node| !std::mem::replace(&mut is_seen[*node as usize], true));
+            let points = front
+                .iter()
+                .map(|node| SurfacePoint::node(*node, places[*node as usize]));
+            let points: Vec<SurfacePoint> = points.collect();
             let found = placed.find(&points, part_of);
-            (points, found)
-        });
-        let mut found = found.into_iter();
-        found.find_map(|(points, found)| self.deepest_of(places, &points, found, touching))
+            front.clear();
+            for (number, tet) in found {
+                let point = points[number as usize];
+                in_tets.push((at_nodes.len() as u32, tet));
+                at_nodes.push(point);
+                front.extend(self.joined_to(point.between[0]));
+            }
+        }
+        let deepest = self.deepest_of(places, &at_nodes, in_tets, touching);
+        if deepest.is_some() {
+            return deepest;
+        }
+        let part_of = |node: u32| self.part_of[node as usize];
+        let between = self.between_nodes(places, &near, touching, |node| is_seen[node as usize]);
+        let found = placed.find(&between, part_of);
+        self.deepest_of(places, &between, found, touching)
+    }
+
+    /// The nodes of edges and triangles that are near each other.
+    fn nodes_at<'a>(&'a self, near: &'a [[u32; 2]]) -> impl Iterator<Item = u32> + 'a {
+        near.iter().flat_map(|[edge, triangle]| {
+            let edge = self.edges[*edge as usize].into_iter();
+            edge.chain(self.triangles[*triangle as usize])
+        })
+    }
+
+    /// The nodes that edges of the surface join to one of its nodes.
+    fn joined_to(&self, node: u32) -> &[u32] {
+        let from = &self.joined_from[node as usize..];
+        &self.joined[from[0] as usize..from[1] as usize]
     }
 
     /// A tetrahedron at the node of a point inside, and the one that contains the point, each with its part.
@@ -159,14 +209,20 @@ impl OverlapSearch {
         self.faces.binary_search(&face).is_ok()
     }
 
-    /// Edges and triangles of the surface that are no farther apart than `touching` (m), and have no node in common;
-    /// `None` for a state that needs too many comparisons.
+    /// Edges and triangles of the surface that are no farther apart than `touching` (m), and have no node in common, nor
+    /// copies of one node at the same place, as cut faces that lie on each other have; `None` for a state that needs too many comparisons.
     fn near(&mut self, places: &[Vector], touching: f64) -> Option<Vec<[u32; 2]>> {
         let at = |node: u32| places[node as usize];
         self.boxes.clear();
         let boxes = self.triangles.iter();
         self.boxes
             .extend(boxes.map(|nodes| bounds(&nodes.map(at), touching)));
+        let are_one = |one: u32, other: u32| {
+            let origin = |node: u32| self.origins.get(node as usize);
+            let is_copy = || origin(one).is_some() && origin(one) == origin(other);
+            let are_together = || length(sub(at(one), at(other))) <= touching;
+            one == other || is_copy() && are_together()
+        };
         let sizes: f64 = self.boxes.iter().map(longest).sum();
         self.grid
             .fill(&self.boxes, sizes / self.boxes.len().max(1) as f64);
@@ -177,7 +233,8 @@ impl OverlapSearch {
                 .grid
                 .visit(&bounds(&segment, 0.0), &self.boxes, |triangle| {
                     let nodes = self.triangles[triangle as usize];
-                    let is_own = edge.iter().any(|node| nodes.contains(node));
+                    let is_end = |node: &u32| edge.iter().any(|end| are_one(*end, *node));
+                    let is_own = nodes.iter().any(is_end);
                     if !is_own && !are_apart(segment, nodes.map(at), touching) {
                         near.push([number, triangle]);
                     }
@@ -189,20 +246,11 @@ impl OverlapSearch {
         Some(near)
     }
 
-    /// One flag per part: true if the part may overlap another one, or itself: its surface is near another one, or the
-    /// box of one of two parts is within the other's.
-    fn concerned(&self, places: &[Vector], near: &[[u32; 2]]) -> Vec<bool> {
-        let mut is_concerned = vec![false; self.parts];
-        for [edge, triangle] in near {
-            for node in [
-                self.edges[*edge as usize][0],
-                self.triangles[*triangle as usize][0],
-            ] {
-                is_concerned[self.part_of[node as usize] as usize] = true;
-            }
-        }
+    /// One flag per part: true if the box of the part is within that of another, or another's within its own.
+    fn nested(&self, places: &[Vector]) -> Vec<bool> {
+        let mut is_nested = vec![false; self.parts];
         if self.parts == 1 {
-            return is_concerned;
+            return is_nested;
         }
         let mut boxes = vec![bounds(&[], 0.0); self.parts];
         for node in &self.nodes {
@@ -217,25 +265,26 @@ impl OverlapSearch {
                 let [a, b] = [&boxes[*one], &boxes[*other]];
                 let is_in = |a: &Bounds, b: &Bounds| meet(&[a[0]; 2], b) && meet(&[a[1]; 2], b);
                 if is_in(a, b) || is_in(b, a) {
-                    is_concerned[*one] = true;
-                    is_concerned[*other] = true;
+                    is_nested[*one] = true;
+                    is_nested[*other] = true;
                 }
             }
         }
-        is_concerned
+        is_nested
     }
 
-    /// Points of triangles and edges that may be inside although no node is: centroids, and midpoints of the part of an
+    /// Points of triangles and edges that may be inside although no node is: centroids at nodes that were looked at, and midpoints of the part of an
     /// edge between two triangles that the edge crosses.
     fn between_nodes(
         &self,
         places: &[Vector],
         near: &[[u32; 2]],
         touching: f64,
-        concerned: impl Fn(u32) -> bool,
+        is_seen: impl Fn(u32) -> bool,
     ) -> Vec<SurfacePoint> {
         let at = |node: u32| places[node as usize];
-        let triangles = self.triangles.iter().filter(|nodes| concerned(nodes[0]));
+        let is_met = |nodes: &&[u32; 3]| nodes.iter().any(|node| is_seen(*node));
+        let triangles = self.triangles.iter().filter(is_met);
         let mut points: Vec<SurfacePoint> = triangles
             .map(|nodes| SurfacePoint {
                 at: [0, 1, 2]
@@ -322,6 +371,16 @@ impl Lips {
         let is_copied = |node: &u32| self.is_copied[*node as usize];
         point.between.iter().any(is_copied) && tet.iter().any(is_copied)
     }
+}
+
+/// The nodes that edges join to each of `nodes` nodes, one after the other, and where those of a node begin.
+fn joined(edges: &[[u32; 2]], nodes: usize) -> (Vec<u32>, Vec<u32>) {
+    let both = edges.iter().flat_map(|[a, b]| [[*a, *b], [*b, *a]]);
+    let mut both: Vec<[u32; 2]> = both.collect();
+    both.sort_unstable();
+    let from = |node: usize| both.partition_point(|[own, _]| (*own as usize) < node) as u32;
+    let starts = (0..=nodes).map(from).collect();
+    (both.into_iter().map(|[_, other]| other).collect(), starts)
 }
 
 /// The largest extent (m) of a tetrahedron at rest along the axes.

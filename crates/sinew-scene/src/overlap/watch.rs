@@ -118,7 +118,9 @@ impl OverlapWatch {
         let mesh = &body.mesh;
         let search = self.search.get_or_insert_with(|| {
             let triangles = body.surface_triangles().collect();
-            OverlapSearch::new(Arc::clone(mesh), triangles, lips(body))
+            let cut = body.cut.as_ref();
+            let origins = cut.map_or_else(Vec::new, |from| from.cut.origins.clone());
+            OverlapSearch::new(Arc::clone(mesh), triangles, origins, lips(body))
         });
         self.places.clear();
         let moved = mesh.points.iter().zip(displacements);
