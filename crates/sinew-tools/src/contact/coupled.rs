@@ -8,10 +8,11 @@ use super::meet::way_of;
 use super::node::Compliance;
 use super::record::{OF_HELD, OF_PAIR, OF_VELOCITY, Record, swing};
 use super::room::Room;
-use super::tool::{Corner, Tool};
+use super::tool::Corner;
 use super::tool_step::{ToolStep, Way, holder, is_near};
 use super::tools::Tools;
 use crate::shape::TriangleTouch;
+use crate::swept_box::around;
 use crate::vector::{Vector, add, between, scaled, sub};
 
 /// Largest number of rounds of finding contacts and solving for their forces: tissue pushed back by one surface may
@@ -261,26 +262,42 @@ impl Search<'_> {
 
     /// Adds the contacts of triangles, or only those at the beginning of the pass; returns true if it skipped others.
     fn of_triangles(&self, room: &mut Room, at_beginning: bool) -> bool {
-        let Room { steps, links, .. } = room;
-        let thin = |tool: &&Tool| !tool.triangles.is_empty();
-        if !self.tools.tools.iter().any(|tool| thin(&tool)) {
+        let Room {
+            steps,
+            links,
+            sides,
+            ..
+        } = room;
+        if sides.ways.is_empty() {
             return false;
         }
-        let mut is_left = false;
-        for place in 0..self.tools.cells.len() {
-            links.ways[place] = self.ways.pass(place, links);
+        // Only contact moves them within a pass.
+        match at_beginning {
+            true => sides.take_all(|place| self.ways.pass(place, links)),
+            false => sides.take(&links.places, |place| self.ways.pass(place, links)),
         }
+        let mut is_left = false;
         for (number, tool) in self.tools.tools.iter().enumerate() {
+            if tool.triangles.is_empty() {
+                continue;
+            }
             let step = &steps[number];
+            let bounds = around(step.bounds());
+            match at_beginning || step.body.is_some() {
+                true => sides.look_all(number, bounds.as_ref()),
+                false => sides.look(number, bounds.as_ref(), &links.places),
+            }
+            let of_tool = sides.of_tool(number);
             for triangle in &tool.triangles {
-                let corners = &self.tools.triangles[*triangle as usize].corners;
-                let ways = corners.map(|corner| match corner {
-                    Corner::Cell(place) => links.ways[place as usize],
-                    Corner::Held(at) => (at, at),
-                });
+                let corners = self.tools.corners.of[*triangle as usize].map(|place| place as usize);
+                let [a, b, c] = corners.map(|place| of_tool[place]);
+                if a & b & c != 0 {
+                    continue;
+                }
+                let ways = corners.map(|place| sides.ways[place]);
                 let (from, end) = (ways.map(|way| way.0), ways.map(|way| way.1));
                 // What contacts of rounds before have moved may be in the tool elsewhere.
-                if !links.all.is_empty() {
+                if links.is_on(*triangle) {
                     for (part, touch, below) in step.triangle_overlaps(&from, &end) {
                         let known = links.of_triangle(*triangle, (number, part));
                         if (1..MOST_ON_TRIANGLE).contains(&known) {

@@ -3,7 +3,7 @@
 use super::body_step::BodyStep;
 use super::lips::{LipLink, Lips};
 use super::node::{CONVERGED, Compliance, Constraint, MOST_SWEEPS, Stiffness};
-use super::tool_step::{ToolStep, Way};
+use super::tool_step::ToolStep;
 use super::twist::Twist;
 use crate::vector::{Vector, add, dot, length, scaled, sub};
 
@@ -73,8 +73,6 @@ pub(super) struct Links {
     pub(super) moved: Vec<Vector>,
     /// Displacement (m) due to contact of each touched cell before the pass.
     pub(super) before: Vec<Vector>,
-    /// Start and current position (m) of each touched cell, during the search for triangles.
-    pub(super) ways: Vec<Way>,
     /// The last contact of each touched cell; `last_on` is that of each triangle.
     last: Vec<Option<u32>>,
     last_on: Vec<Option<u32>>,
@@ -97,7 +95,6 @@ impl Links {
             places: Vec::with_capacity(cells),
             moved: vec![[0.0; 3]; cells],
             before: vec![[0.0; 3]; cells],
-            ways: vec![([0.0; 3], [0.0; 3]); cells],
             last: vec![None; cells],
             last_on: vec![None; triangles],
             is_linked: vec![false; cells],
@@ -182,6 +179,11 @@ impl Links {
             let own = nodes.find(|(node, _)| node.weight != 0.0 && node.place == place);
             own?.1.and_then(at)
         })
+    }
+
+    /// True if a triangle has any contact in the pass.
+    pub(super) fn is_on(&self, triangle: u32) -> bool {
+        self.last_on[triangle as usize].is_some()
     }
 
     /// Number of contacts of a triangle with a part of a tool.

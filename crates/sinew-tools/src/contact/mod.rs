@@ -24,6 +24,7 @@ mod node;
 mod record;
 mod report;
 mod room;
+mod sides;
 mod tool;
 mod tool_body;
 mod tool_step;

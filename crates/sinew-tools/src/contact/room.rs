@@ -6,6 +6,7 @@ use super::links::Links;
 use super::lips::Lips;
 use super::met::Met;
 use super::record::{NEEDED_PASSES, OF_HELD, OF_TOOL, PASSES, Record};
+use super::sides::{Corners, Sides};
 use super::tool::{Tool, TouchedCell};
 use super::tool_step::ToolStep;
 use crate::swept_box::around;
@@ -34,6 +35,8 @@ pub(super) struct Room {
     pub(super) met: Met,
     /// Contacts that act on each other.
     pub(super) links: Links,
+    /// The triangles that tools may meet.
+    pub(super) sides: Sides,
     /// The share of the step at which the pass ends.
     share: f64,
 }
@@ -45,7 +48,7 @@ impl Room {
         tools: &[Tool],
         linked: [usize; 2],
         cells: &[TouchedCell],
-        lips: &Lips,
+        (corners, lips): (&Corners, &Lips),
     ) -> Self {
         let (tissue, cells) = (size(cells), cells.len());
         let step = |tool: &Tool| ToolStep::of(tool, tissue);
@@ -58,6 +61,7 @@ impl Room {
             holds: false,
             met: Met::none(),
             links: Links::of(linked, lips),
+            sides: Sides::new(corners, cells, tools.len()),
             share: 1.0,
         }
     }

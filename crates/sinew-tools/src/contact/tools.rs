@@ -5,6 +5,7 @@ use std::sync::Mutex;
 use super::lips::{CutFace, Lips};
 use super::record::{Counts, OF_HELD};
 use super::room::Room;
+use super::sides::Corners;
 use super::tool::{Corner, Grasp, Tool, ToolsError, TouchedCell, TouchedTriangle};
 use super::tool_body::ToolBody;
 use crate::motion::Motion;
@@ -19,6 +20,7 @@ pub struct Tools {
     pub(super) tools: Vec<Tool>,
     pub(super) cells: Vec<TouchedCell>,
     pub(super) triangles: Vec<TouchedTriangle>,
+    pub(super) corners: Corners,
     /// The numbers of `cells`, and their positions (m) at rest.
     pub(super) numbers: Vec<u32>,
     pub(super) rest: Vec<[f64; 3]>,
@@ -147,6 +149,7 @@ impl Tools {
                 is_lip[place as usize] = true;
             }
         }
+        let corners = Corners::of(&triangles, cells.len());
         let has_links = linking != 0 || !lips.pairs.is_empty();
         Self {
             numbers: cells.iter().map(|cell| cell.cell).collect(),
@@ -168,11 +171,12 @@ impl Tools {
                     [0; 2]
                 },
                 &cells,
-                &lips,
+                (&corners, &lips),
             )),
             tools,
             cells,
             triangles,
+            corners,
             tools_at,
             lips,
             is_lip,

@@ -1,0 +1,111 @@
+//! The triangles that a tool may meet in a pass.
+
+use super::tool::{Corner, TouchedTriangle};
+use super::tool_step::Way;
+use crate::vector::Vector;
+
+/// The corners of all triangles: cells by their indices, then fixed corners.
+#[derive(Debug, Default)]
+pub(super) struct Corners {
+    /// The three corners of each triangle.
+    pub(super) of: Vec<[u32; 3]>,
+    /// The positions (m) of fixed corners, each once.
+    held: Vec<Vector>,
+}
+
+impl Corners {
+    /// The corners of triangles between `cells` cells.
+    pub(super) fn of(triangles: &[TouchedTriangle], cells: usize) -> Self {
+        let mut known = std::collections::HashMap::new();
+        let mut held = Vec::new();
+        let mut number = |corner: Corner| match corner {
+            Corner::Cell(place) => place,
+            Corner::Held(at) => *known.entry(at.map(f64::to_bits)).or_insert_with(|| {
+                held.push(at);
+                (cells + held.len() - 1) as u32
+            }),
+        };
+        let of = triangles.iter();
+        let of = of.map(|triangle| triangle.corners.map(&mut number));
+        Self {
+            of: of.collect(),
+            held,
+        }
+    }
+}
+
+/// The sides of each tool's box on which the paths of corners stay: a triangle whose three paths are all on one side does
+/// not meet the box. So almost all triangles are passed over by a comparison of three numbers.
+#[derive(Debug, Default)]
+pub(super) struct Sides {
+    /// The path (m) of each corner in the pass.
+    pub(super) ways: Vec<Way>,
+    cells: usize,
+    /// Six bits for each corner, one for each side of the box, tool after tool.
+    sides: Vec<u8>,
+}
+
+impl Sides {
+    /// Space for the corners of triangles between `cells` cells, and for `tools` tools.
+    pub(super) fn new(corners: &Corners, cells: usize, tools: usize) -> Self {
+        if corners.of.is_empty() {
+            return Self::default();
+        }
+        let mut ways = vec![([0.0; 3], [0.0; 3]); cells];
+        ways.extend(corners.held.iter().map(|at| (*at, *at)));
+        Self {
+            sides: vec![0; ways.len() * tools],
+            ways,
+            cells,
+        }
+    }
+
+    /// Takes the paths (m) of all cells.
+    pub(super) fn take_all(&mut self, way: impl Fn(usize) -> Way) {
+        for (place, own) in self.ways[..self.cells].iter_mut().enumerate() {
+            *own = way(place);
+        }
+    }
+
+    /// Takes the paths (m) of some cells.
+    pub(super) fn take(&mut self, places: &[u32], way: impl Fn(usize) -> Way) {
+        for place in places {
+            self.ways[*place as usize] = way(*place as usize);
+        }
+    }
+
+    /// Compares all paths with the box (m) of a tool; `None` for a tool without one, which may meet all.
+    pub(super) fn look_all(&mut self, tool: usize, bounds: Option<&[Vector; 2]>) {
+        let Self { ways, sides, .. } = self;
+        let sides = &mut sides[tool * ways.len()..][..ways.len()];
+        for (way, sides) in ways.iter().zip(sides) {
+            *sides = bounds.map_or(0, |bounds| sides_of(way, bounds));
+        }
+    }
+
+    /// Compares the paths of some cells with it.
+    pub(super) fn look(&mut self, tool: usize, bounds: Option<&[Vector; 2]>, places: &[u32]) {
+        let Self { ways, sides, .. } = self;
+        let sides = &mut sides[tool * ways.len()..][..ways.len()];
+        for place in places {
+            let place = *place as usize;
+            sides[place] = bounds.map_or(0, |bounds| sides_of(&ways[place], bounds));
+        }
+    }
+
+    /// The sides of all corners for a tool.
+    pub(super) fn of_tool(&self, tool: usize) -> &[u8] {
+        &self.sides[tool * self.ways.len()..][..self.ways.len()]
+    }
+}
+
+/// The sides of a box (m) beyond which a path (m) stays, one bit each.
+#[inline]
+fn sides_of((from, to): &Way, [low, high]: &[Vector; 2]) -> u8 {
+    let mut sides = 0;
+    for axis in 0..3 {
+        sides |= u8::from(from[axis] < low[axis] && to[axis] < low[axis]) << axis;
+        sides |= u8::from(from[axis] > high[axis] && to[axis] > high[axis]) << (3 + axis);
+    }
+    sides
+}
