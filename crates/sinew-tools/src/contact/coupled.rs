@@ -79,15 +79,15 @@ impl Tools {
 
     /// Finds the contacts of a pass and solves for their forces.
     fn rounds(&self, room: &mut Room, search: &Search<'_>) {
-        let least = if self.counts.bodies > 0 {
-            ROUNDS_OF_BODIES
-        } else {
-            1
-        };
+        let has_bodies = self.counts.bodies > 0;
+        let least = if has_bodies { ROUNDS_OF_BODIES } else { 1 };
         let ways = search.ways;
         let Ways { meeting, state, .. } = ways;
         for round in 0..MOST_ROUNDS {
-            room.look(&self.cells, state, meeting);
+            // Contact turns and moves bodies alone.
+            if round == 0 || has_bodies {
+                room.look(&self.cells, state, meeting);
+            }
             let is_new = search.all(room, round == 0);
             if !is_new && (room.links.is_empty() || round >= least) {
                 break;
@@ -273,7 +273,7 @@ impl Search<'_> {
         }
         // Only contact moves them within a pass.
         match at_beginning {
-            true => sides.take_all(|place| self.ways.pass(place, links)),
+            true => sides.begin(|place| self.ways.pass(place, links)),
             false => sides.take(&links.places, |place| self.ways.pass(place, links)),
         }
         let mut is_left = false;
@@ -287,11 +287,19 @@ impl Search<'_> {
                 true => sides.look_all(number, bounds.as_ref()),
                 false => sides.look(number, bounds.as_ref(), &links.places),
             }
-            let of_tool = sides.of_tool(number);
             for triangle in &tool.triangles {
                 let corners = self.tools.corners.of[*triangle as usize].map(|place| place as usize);
-                let [a, b, c] = corners.map(|place| of_tool[place]);
+                let [a, b, c] = corners.map(|place| sides.of_tool(number)[place]);
                 if a & b & c != 0 {
+                    continue;
+                }
+                // Nothing but contact makes a round differ from the first.
+                let is_moved = || {
+                    let mut corners = corners.iter();
+                    corners.any(|place| links.is_linked(*place))
+                };
+                let is_anew = at_beginning || step.body.is_some();
+                if !is_anew && !sides.is_left[*triangle as usize] && !is_moved() {
                     continue;
                 }
                 let ways = corners.map(|place| sides.ways[place]);
@@ -313,6 +321,7 @@ impl Search<'_> {
                 for (part, touch, below) in step.triangle_touches(&from, &end) {
                     if at_beginning && touch.share > BEGINNING {
                         is_left = true;
+                        sides.is_left[*triangle as usize] = true;
                     } else if links.of_triangle(*triangle, (number, part)) == 0 {
                         self.add_triangle(links, step, (number, part, *triangle), (&touch, below));
                     }

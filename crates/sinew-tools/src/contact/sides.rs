@@ -41,6 +41,8 @@ pub(super) struct Sides {
     /// The path (m) of each corner in the pass.
     pub(super) ways: Vec<Way>,
     cells: usize,
+    /// One flag for each triangle: true if the first round of the pass found it to touch a tool later on.
+    pub(super) is_left: Vec<bool>,
     /// Six bits for each corner, one for each side of the box, tool after tool.
     sides: Vec<u8>,
 }
@@ -55,13 +57,15 @@ impl Sides {
         ways.extend(corners.held.iter().map(|at| (*at, *at)));
         Self {
             sides: vec![0; ways.len() * tools],
+            is_left: vec![false; corners.of.len()],
             ways,
             cells,
         }
     }
 
-    /// Takes the paths (m) of all cells.
-    pub(super) fn take_all(&mut self, way: impl Fn(usize) -> Way) {
+    /// Begins a pass with the paths (m) of all cells.
+    pub(super) fn begin(&mut self, way: impl Fn(usize) -> Way) {
+        self.is_left.fill(false);
         for (place, own) in self.ways[..self.cells].iter_mut().enumerate() {
             *own = way(place);
         }
