@@ -82,6 +82,12 @@ pub trait ElasticLaw: Send + Sync {
         Ok(None)
     }
 
+    /// True if that frequency grows by no more than a power of the stretches, so that it changes little while strains do:
+    /// not for fibres, exponential laws, and laws whose stretches have a limit.
+    fn stiffens_gently(&self) -> bool {
+        false
+    }
+
     /// The element with the fastest plane waves, for messages on a motion that cannot be computed: about two
     /// evaluations of [`ElasticLaw::fastest_wave`]. `None` for a law without this information, or if the law refuses
     /// the trial.

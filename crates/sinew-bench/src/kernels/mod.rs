@@ -8,6 +8,7 @@ mod guards;
 mod laps;
 mod memory;
 mod page;
+mod pairs;
 mod plain_tets;
 mod pulled;
 mod roofs;
@@ -21,6 +22,7 @@ use serde::Serialize;
 
 pub use elements::{ElementMark, ElementRow};
 pub use guards::{Guard, Limit};
+pub use pairs::PairRow;
 pub use pulled::PulledRow;
 pub use roofs::{OperationRate, ReadRate, Roofs};
 pub use row::KernelRow;
@@ -56,6 +58,8 @@ pub struct KernelResults {
     pub elements: Vec<ElementRow>,
     /// Steps of a pulled cube, compared with a plain scalar loop, and automatic steps.
     pub pulled: Vec<PulledRow>,
+    /// Runs of scenes in pairs.
+    pub pairs: Vec<PairRow>,
     /// Marks for some of these ratios.
     pub marks: Vec<ElementMark>,
 }
@@ -73,7 +77,7 @@ impl KernelBench {
     ) -> Result<KernelResults, LabError> {
         let mut rows = Vec::new();
         let bodies = bodies::bodies(&self.meshes, self.generated.as_deref(), self.quick)?;
-        let of = bodies.len() + 4;
+        let of = bodies.len() + 5;
         for (done, body) in bodies.into_iter().enumerate() {
             let what = body.name.clone();
             progress(Progress::Run { done, of, what });
@@ -83,14 +87,17 @@ impl KernelBench {
             let what = what.to_owned();
             progress(Progress::Run { done, of, what });
         };
-        next(of - 4, "forces of hyperelastic elements");
+        next(of - 5, "forces of hyperelastic elements");
         let elements = elements::rows(self.quick)?;
-        next(of - 3, "what the computer can do");
+        next(of - 4, "what the computer can do");
         let roofs = Roofs::measure(self.quick);
-        next(of - 2, "steps of a pulled cube");
+        next(of - 3, "steps of a pulled cube");
         let pulled = pulled::rows(self.quick, &roofs)?;
         let mut marks = elements::marks(&elements);
         marks.extend(pulled::marks(&pulled));
+        next(of - 2, "runs in pairs");
+        let pairs = pairs::rows(self.quick)?;
+        marks.extend(pairs::marks(&pairs));
         next(of - 1, "guards");
         let guards = guards::guards(self.quick)?;
         Ok(KernelResults {
@@ -102,6 +109,7 @@ impl KernelBench {
             marks,
             elements,
             pulled,
+            pairs,
         })
     }
 }

@@ -3,7 +3,8 @@
 use super::KernelResults;
 use super::row::KernelRow;
 use super::table::{
-    HEAD, HEAD_OF_ELEMENTS, HEAD_OF_PULLED, OF_PULLED, cells, cells_of_element, cells_of_pulled,
+    HEAD, HEAD_OF_ELEMENTS, HEAD_OF_PAIRS, HEAD_OF_PULLED, OF_PAIRS, OF_PULLED, cells,
+    cells_of_element, cells_of_pair, cells_of_pulled,
 };
 use crate::plain_table::{groups, rows, table};
 use sinew_draw::page::Table;
@@ -46,6 +47,13 @@ impl KernelResults {
         page.section("pulled", "Steps of a pulled cube");
         page.paragraph(OF_PULLED);
         page.table(&self.pulled_on_page());
+        page.section("pairs", "Runs in pairs");
+        page.paragraph(OF_PAIRS);
+        page.table(&table(
+            &HEAD_OF_PAIRS,
+            3,
+            rows(self.pairs.iter().map(cells_of_pair)),
+        ));
         page.list(self.marks.iter().map(ToString::to_string));
         page.section("guards", "Guards");
         page.list(self.guards.iter().map(|guard| {

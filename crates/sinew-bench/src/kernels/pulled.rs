@@ -226,7 +226,7 @@ fn stable_step(model: &Model) -> Result<f64, LabError> {
 }
 
 /// Relative difference of displacements.
-fn apart(found: &[f64], expected: &[f64]) -> f64 {
+pub(super) fn apart(found: &[f64], expected: &[f64]) -> f64 {
     let pairs = found.iter().zip(expected);
     let squares: f64 = pairs.map(|(a, b)| (a - b).powi(2)).sum();
     let size: f64 = expected.iter().map(|u| u * u).sum();

@@ -4,6 +4,7 @@ use std::fmt;
 
 use super::KernelResults;
 use super::elements::{ElementMark, ElementRow};
+use super::pairs::PairRow;
 use super::pulled::PulledRow;
 use super::roofs::{OperationRate, Roofs};
 use super::row::KernelRow;
@@ -82,11 +83,13 @@ impl KernelResults {
             5,
         );
         let pulled = ruled::table(HEAD_OF_PULLED, self.pulled.iter().map(cells_of_pulled), 3);
+        let pairs = ruled::table(HEAD_OF_PAIRS, self.pairs.iter().map(cells_of_pair), 3);
         let marks: Vec<String> = self.marks.iter().map(ToString::to_string).collect();
         format!(
-            "Forces of hyperelastic elements on one thread, CPU time, medians of laps in turn\n\n{}\n\n{OF_PULLED}\n\n{}\n\n{}\n",
+            "Forces of hyperelastic elements on one thread, CPU time, medians of laps in turn\n\n{}\n\n{OF_PULLED}\n\n{}\n\n{OF_PAIRS}\n\n{}\n\n{}\n",
             ruled::lines(table, 2),
             ruled::lines(pulled, 2),
+            ruled::lines(pairs, 2),
             marks.join("\n")
         )
     }
@@ -154,6 +157,30 @@ pub(super) fn cells_of_pulled(row: &PulledRow) -> [String; 12] {
         format!("{:.1e}", row.error),
         format!("{:.1e}", row.error_of_automatic),
         three(row.over_fixed),
+    ]
+}
+
+/// Meaning of [`HEAD_OF_PAIRS`].
+pub(super) const OF_PAIRS: &str = "Runs of scenes beside others that differ by one thing, in turn: steps alone, without outputs, CPU time on one thread, medians. off: relative difference \
+                                   of displacements at the end, where both compute the same motion.";
+
+pub(super) const HEAD_OF_PAIRS: [&str; 6] = [
+    "body",
+    "run",
+    "beside",
+    "CPU s a second",
+    "time over the other",
+    "off [relative]",
+];
+
+pub(super) fn cells_of_pair(row: &PairRow) -> [String; 6] {
+    [
+        row.mesh.clone(),
+        row.run.to_owned(),
+        row.beside.to_owned(),
+        three(row.cpu_s_per_s),
+        three(row.ratio),
+        row.off.map_or_else(String::new, |off| format!("{off:.1e}")),
     ]
 }
 

@@ -85,6 +85,7 @@ impl HyperelasticLaw for Corotational {
     const PARAMETERS: &'static [LawParameter] = LawParameter::MODULI;
     const OWN_DILATION: bool = true;
     const DEFINED_WHEN_INVERTED: bool = true;
+    const STIFFENS_GENTLY: bool = true;
 
     type Own<N: Number> = Rotated<N>;
 

@@ -49,6 +49,9 @@ pub trait HyperelasticLaw: Copy + Debug + Send + Sync {
     /// True to compile forces once more, for regions without any additions to the law: a few per cent faster, but with
     /// a long compile time, which is worth it only for laws that most scenes have.
     const IS_COMMON: bool = false;
+    /// True if the tangent grows by no more than a low power of the stretches: then explicit methods look less often at how
+    /// stiff the body is.
+    const STIFFENS_GENTLY: bool = false;
     /// True if the material has axes: a region then states them, and loops give the law those of each tetrahedron
     /// ([`Self::own_in`]).
     const HAS_AXES: bool = false;

@@ -54,6 +54,7 @@ impl HyperelasticLaw for MooneyRivlin {
         &[LawParameter::YOUNGS_MODULUS, ratio, bulk, C1_OVER_C2]
     };
     const DEFINED_WHEN_INVERTED: bool = false;
+    const STIFFENS_GENTLY: bool = true;
     const HAS_ISOCHORIC_PART: bool = true;
 
     type Own<N: Number> = Isochoric<N>;

@@ -25,6 +25,7 @@ impl HyperelasticLaw for NeoHookean {
     const MEANING: &'static str = "is the one to begin with";
     const PARAMETERS: &'static [LawParameter] = LawParameter::MODULI;
     const DEFINED_WHEN_INVERTED: bool = false;
+    const STIFFENS_GENTLY: bool = true;
     const IS_COMMON: bool = true;
     const NODE_BLOCK: NodeBlock = NodeBlock::Exact;
 

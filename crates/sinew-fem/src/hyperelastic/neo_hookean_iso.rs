@@ -27,6 +27,7 @@ impl HyperelasticLaw for NeoHookeanIso {
         &[LawParameter::YOUNGS_MODULUS, ratio, bulk]
     };
     const DEFINED_WHEN_INVERTED: bool = false;
+    const STIFFENS_GENTLY: bool = true;
     const IS_COMMON: bool = true;
     const HAS_ISOCHORIC_PART: bool = true;
     const NODE_BLOCK: NodeBlock = NodeBlock::Exact;

@@ -23,6 +23,7 @@ impl HyperelasticLaw for NeoHookeanLog {
     const PARAMETERS: &'static [LawParameter] = LawParameter::MODULI;
     const OWN_DILATION: bool = true;
     const DEFINED_WHEN_INVERTED: bool = false;
+    const STIFFENS_GENTLY: bool = true;
 
     /// 1/J.
     type Own<N: Number> = N;

@@ -28,6 +28,7 @@ impl HyperelasticLaw for StableNeoHookean {
     const MEANING: &'static str = "also has a meaning where tetrahedra turn inside out";
     const PARAMETERS: &'static [LawParameter] = LawParameter::MODULI;
     const DEFINED_WHEN_INVERTED: bool = true;
+    const STIFFENS_GENTLY: bool = true;
     const IS_COMMON: bool = true;
     const NODE_BLOCK: NodeBlock = NodeBlock::Exact;
 

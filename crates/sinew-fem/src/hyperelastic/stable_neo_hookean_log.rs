@@ -41,6 +41,7 @@ impl HyperelasticLaw for StableNeoHookeanLog {
     const MEANING: &'static str = "is there for comparison with other programs";
     const PARAMETERS: &'static [LawParameter] = LawParameter::MODULI;
     const DEFINED_WHEN_INVERTED: bool = true;
+    const STIFFENS_GENTLY: bool = true;
     const NODE_BLOCK: NodeBlock = NodeBlock::Exact;
 
     /// `1/(I1 + 1)`.

@@ -28,6 +28,7 @@ impl HyperelasticLaw for Stvk {
     ]);
     const OWN_DILATION: bool = true;
     const DEFINED_WHEN_INVERTED: bool = true;
+    const STIFFENS_GENTLY: bool = true;
 
     /// `2E`.
     type Own<N: Number> = Tensor<N>;

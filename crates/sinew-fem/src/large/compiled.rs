@@ -30,6 +30,8 @@ pub(crate) trait Compiled: Asked + Debug + Send + Sync {
 
     fn has_axes(&self) -> bool;
 
+    fn stiffens_gently(&self) -> bool;
+
     /// The least and the largest shear modulus (Pa) at small strain.
     fn shear_moduli(&self) -> [f64; 2];
 
@@ -121,6 +123,10 @@ impl<T: WithType> Compiled for T {
 
     fn has_axes(&self) -> bool {
         <T::Law<'_> as HyperelasticLaw>::HAS_AXES
+    }
+
+    fn stiffens_gently(&self) -> bool {
+        <T::Law<'_> as HyperelasticLaw>::STIFFENS_GENTLY
     }
 
     fn shear_moduli(&self) -> [f64; 2] {

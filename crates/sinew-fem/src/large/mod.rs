@@ -315,18 +315,34 @@ impl LargeDeformation {
     ) -> Result<f64, EvaluationError> {
         let mut fastest = 0.0;
         for (region, law) in self.with_laws() {
-            let mut waves = Waves {
-                region,
-                scratch,
-                relaxing: Wanted::Stiffest.relaxing(region, past),
-                set: self.set,
-                fastest,
-                tet: None,
-            };
+            let mut waves = self.waves(region, (scratch, past), fastest);
             law.waves(&mut waves)?;
             fastest = waves.fastest;
         }
         Ok(fastest)
+    }
+
+    /// A search for the fastest wave of a region that is faster than `fastest`.
+    fn waves<'a>(
+        &self,
+        region: &'a HyperelasticRegion,
+        (scratch, past): (&'a Scratch, Past<'a>),
+        fastest: f64,
+    ) -> Waves<'a> {
+        Waves {
+            region,
+            scratch,
+            relaxing: Wanted::Stiffest.relaxing(region, past),
+            set: self.set,
+            fastest,
+            tet: None,
+        }
+    }
+
+    /// True if that frequency changes little while strains do.
+    pub(crate) fn stiffens_gently(&self) -> bool {
+        let mut regions = self.with_laws();
+        regions.all(|(region, law)| law.stiffens_gently() && region.fibres.is_empty())
     }
 
     /// The tetrahedron with that frequency: its square, the tag, and the gradient of the displacement.
@@ -337,14 +353,7 @@ impl LargeDeformation {
     ) -> Result<Option<(f64, u64, Tensor<f64>)>, EvaluationError> {
         let (mut fastest, mut found) = (0.0, None);
         for (region, law) in self.with_laws() {
-            let mut waves = Waves {
-                region,
-                scratch,
-                relaxing: Wanted::Stiffest.relaxing(region, past),
-                set: self.set,
-                fastest,
-                tet: None,
-            };
+            let mut waves = self.waves(region, (scratch, past), fastest);
             waves.with_numbers(law)?;
             fastest = waves.fastest;
             if let Some(tet) = waves.tet {

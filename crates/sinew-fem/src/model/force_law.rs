@@ -372,6 +372,11 @@ impl ElasticLaw for Model {
         })
     }
 
+    fn stiffens_gently(&self) -> bool {
+        let large = self.large.as_ref();
+        large.is_some_and(|large| large.stiffens_gently())
+    }
+
     fn stiffest_element(&self, trial: &Trial<'_>) -> Option<StiffestElement> {
         let large = self.large.as_ref()?;
         let found = self.at_trial((trial.load, trial.u), |large, scratch| {

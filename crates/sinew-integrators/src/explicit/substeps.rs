@@ -115,7 +115,7 @@ const PARTS_BETWEEN_LOOKS: u32 = 40;
 /// Largest number of substeps between two checks, by the fastest motion, of a shrinking stable step.
 const PARTS_BETWEEN_GLANCES: u32 = 4;
 
-/// The same while the step stays stable although the wave's square grows by [`SPARE`].
+/// The same for a law that stiffens gently, while the step stays stable although the wave's square grows by [`SPARE`].
 const PARTS_BETWEEN_GLANCES_WITH_SPARE: u32 = 8;
 
 /// Growth of the fastest wave's square, as a factor, that leaves time until the next check.
@@ -402,6 +402,8 @@ impl Substepped {
     ) -> Result<u32, StepError> {
         let parts = cut.parts;
         let stretch = parts.div_ceil(parts.div_ceil(PARTS_BETWEEN_GLANCES));
+        let law = followed(batch.system());
+        let is_gentle = law.is_some_and(ElasticLaw::stiffens_gently);
         while batch.goes_on() {
             let left = batch.parts_left() as u32 / self.finer;
             let stretch = stretch.min(left);
@@ -410,7 +412,7 @@ impl Substepped {
                 return Ok(u32::MAX);
             }
             cut.taken = cut.taken.saturating_add(stretch);
-            if !self.is_glance_due(&cut, stretch, batch.dt()) {
+            if is_gentle && !self.is_glance_due(&cut, stretch, batch.dt()) {
                 continue;
             }
             let needed = self.parts_needed(&mut cut, parts, (batch, state))?;
@@ -435,8 +437,8 @@ impl Substepped {
         Ok(parts)
     }
 
-    /// True if the fastest wave is to be looked at after `stretch` substeps of this length (s), over what they are divided
-    /// into: seldom while it may grow a good deal before it matters.
+    /// True if the fastest wave of a law that stiffens gently is to be looked at after `stretch` substeps, each of which the
+    /// method takes in parts of this length (s): seldom while it may grow a good deal before it matters.
     fn is_glance_due(&self, cut: &StepCut, stretch: u32, part: f64) -> bool {
         let interval = |taken: u32| taken / PARTS_BETWEEN_GLANCES_WITH_SPARE;
         let part = part * f64::from(self.finer);

@@ -34,7 +34,7 @@ pub struct OwnedFolder {
     /// Folders in it whose names may not yet be on the disk.
     pub(super) unnamed: Mutex<BTreeSet<PathBuf>>,
     /// Holds the lock.
-    _lock: File,
+    _lock: Lock,
 }
 
 /// Content of a folder before a result is written into it.
@@ -55,6 +55,17 @@ pub enum Replaced {
     Whole,
     /// The earlier result is still in this folder.
     KeptIn(PathBuf),
+}
+
+/// A lock, which is released even if a program that another thread is just starting has a copy of the open file.
+#[derive(Debug)]
+struct Lock(File);
+
+impl Drop for Lock {
+    fn drop(&mut self) {
+        // Closing the file releases it too, later.
+        let _ = self.0.unlock();
+    }
 }
 
 impl OwnedFolder {
@@ -321,7 +332,7 @@ impl OwnedFolder {
             inputs: Input::all(inputs),
             identity: Identity::of_open(&lock, path),
             unnamed: Mutex::default(),
-            _lock: lock,
+            _lock: Lock(lock),
         })
     }
 

@@ -74,6 +74,11 @@ impl<'a> Placed<'a> {
         }
     }
 
+    /// True if any tetrahedron is inverted.
+    pub(super) fn has_crushed(&self) -> bool {
+        self.is_crushed.contains(&true)
+    }
+
     /// The points, by index, that lie in tetrahedra to which they do not belong, with these tetrahedra.
     ///
     /// Points at inverted tetrahedra count in other parts only: in their own part the cause is crushing, which is

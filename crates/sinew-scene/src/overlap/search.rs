@@ -147,9 +147,14 @@ impl OverlapSearch {
         let tets = tets.filter(|(_, nodes)| is_concerned[part_of(nodes[0]) as usize]);
         let mesh = Arc::clone(&self.mesh);
         let placed = Placed::new(&mesh, places, tets.map(|(tet, _)| tet).collect());
-        // What is inside begins where surfaces meet, or is all of a part: from there on neighbours are looked at.
+        // What is inside begins where surfaces meet, or is all of a part: from there on neighbours are looked at. Through
+        // crushed tissue no way leads.
+        let is_all = |node: u32| match placed.has_crushed() {
+            true => is_concerned[part_of(node) as usize],
+            false => nested[part_of(node) as usize],
+        };
         let within = self.nodes.iter().copied();
-        let within = within.filter(|node| nested[part_of(*node) as usize]);
+        let within = within.filter(|node| is_all(*node));
         let mut front: Vec<u32> = self.nodes_at(&near).chain(within).collect();
         let mut is_seen = vec![false; places.len()];
         let (mut at_nodes, mut in_tets) = (Vec::new(), Vec::new());

@@ -11,6 +11,13 @@ const MOST: usize = 128;
 /// Growth of the residual, as a factor over the least so far, beyond which earlier sweeps say nothing about the next.
 const MOST_GROWTH: f64 = 2.0;
 
+/// Number of times that this may happen until the iteration is left to itself: contacts that come and go from sweep to
+/// sweep have no next forces that could be foreseen.
+const MOST_FAILURES: u32 = 4;
+
+/// Largest number of sweeps that are accelerated.
+const MOST_SWEEPS: u32 = 100;
+
 /// Share of the largest entry of a matrix below which a pivot counts as 0.
 const PIVOT: f64 = 1e-14;
 
@@ -30,6 +37,8 @@ pub(super) struct Acceleration {
     /// True if `last` holds a sweep.
     has_last: bool,
     least: f64,
+    failures: u32,
+    sweeps: u32,
 }
 
 impl Acceleration {
@@ -53,6 +62,12 @@ impl Acceleration {
     /// Begins an iteration.
     pub(super) fn begin(&mut self) {
         (self.known, self.has_last, self.least) = (0, false, f64::INFINITY);
+        (self.failures, self.sweeps) = (0, 0);
+    }
+
+    /// True while it helps.
+    pub(super) fn goes_on(&self) -> bool {
+        self.failures < MOST_FAILURES && self.sweeps < MOST_SWEEPS
     }
 
     /// Takes the forces before a sweep.
@@ -72,8 +87,10 @@ impl Acceleration {
         let both = forces.clone().zip(&self.before);
         self.change
             .extend(both.map(|(after, before)| less(after, *before)));
+        self.sweeps += 1;
         if residual > MOST_GROWTH * self.least {
             (self.known, self.has_last) = (0, false);
+            self.failures += 1;
         }
         self.least = self.least.min(residual);
         if self.has_last {

@@ -272,7 +272,8 @@ impl Links {
         let is_accelerated = self.acceleration.takes(self.all.len()) && self.lips.is_empty();
         self.acceleration.begin();
         for sweep in 0..MOST_SWEEPS {
-            let is_accelerated = is_accelerated && sweep >= QUICK_SWEEPS;
+            let is_accelerated =
+                is_accelerated && sweep >= QUICK_SWEEPS && self.acceleration.goes_on();
             if is_accelerated {
                 self.acceleration
                     .before(self.all.iter().map(|link| link.force));
