@@ -58,7 +58,13 @@ fn every_machine_takes_the_same_steps_and_allocates_nothing() {
         let ratios = [row.times_plain, row.over_fixed, row.share_of_roof];
         assert!(ratios.iter().all(|ratio| *ratio > 0.0), "{row:?}");
     }
-    assert_eq!(results.marks.len(), 16);
+    // Steps without a factor, tools on two machines, blades through two laws.
+    assert_eq!(results.pairs.len(), 5);
+    assert!(results.pairs[0].off.is_some_and(|off| off < 1e-4));
+    for row in &results.pairs {
+        assert!(row.ratio > 0.0 && row.cpu_s_per_s > 0.0, "{row:?}");
+    }
+    assert_eq!(results.marks.len(), 21);
     assert!(results.guards.len() > 4);
     assert!(results.guards.iter().all(|guard| guard.ratio > 0.0));
     let page = results.html();

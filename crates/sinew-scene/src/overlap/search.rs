@@ -111,6 +111,11 @@ impl OverlapSearch {
     /// The deepest point for nodes at these positions (m); `None` if no surface is in a part, and for a state that is
     /// not finite.
     pub(super) fn deepest(&mut self, places: &[Vector]) -> Option<Inside> {
+        self.deepest_of_nodes(places, false)
+    }
+
+    /// Same as [`OverlapSearch::deepest`]; `all` is true to look at all nodes of a part that is near anything.
+    fn deepest_of_nodes(&mut self, places: &[Vector], all: bool) -> Option<Inside> {
         let points = self.mesh.points.iter();
         let moved = points.zip(places).map(|(rest, place)| {
             let way = sub(*place, *rest).map(f64::abs);
@@ -149,7 +154,7 @@ impl OverlapSearch {
         let placed = Placed::new(&mesh, places, tets.map(|(tet, _)| tet).collect());
         // What is inside begins where surfaces meet, or is all of a part: from there on neighbours are looked at. Through
         // crushed tissue no way leads.
-        let is_all = |node: u32| match placed.has_crushed() {
+        let is_all = |node: u32| match all || placed.has_crushed() {
             true => is_concerned[part_of(node) as usize],
             false => nested[part_of(node) as usize],
         };
@@ -392,4 +397,56 @@ fn joined(edges: &[[u32; 2]], nodes: usize) -> (Vec<u32>, Vec<u32>) {
 fn mesh_edge(mesh: &TetMesh, tet: u32) -> f64 {
     let nodes = mesh.tets[tet as usize];
     longest(&bounds(&nodes.map(|node| mesh.points[node as usize]), 0.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use sinew_mesh::structured::{Split, block};
+
+    use super::*;
+
+    /// Bars that are wound up, folded and pinched at random: what is found from where surfaces meet is as deep as what a look at
+    /// all nodes finds.
+    #[test]
+    fn a_search_from_where_surfaces_meet_misses_nothing() {
+        let mesh = Arc::new(block([4, 4, 24], [0.02, 0.02, 0.12], Split::Kuhn).unwrap());
+        let surface = mesh.boundary_surface();
+        let node = |point: u32| surface.nodes[point as usize];
+        let triangles = surface.triangles.iter().map(|points| points.map(node));
+        let triangles = triangles.collect();
+        let mut seed = 3_u64;
+        let mut random = || {
+            seed = seed
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            (seed >> 11) as f64 / (1_u64 << 53) as f64
+        };
+        let mut search = OverlapSearch::new(Arc::clone(&mesh), triangles, Vec::new(), None);
+        let mut found = 0;
+        for case in 0..150 {
+            let radius = 0.011 + 0.03 * random();
+            let (pitch, wave) = (0.03 * random(), 300.0 * random());
+            let height = [0.0, 0.002, 0.008][case % 3] * random();
+            let wound = |[x, y, z]: Vector| {
+                let angle = z / radius;
+                let out = radius + x - 0.01;
+                [
+                    out * angle.cos() + height * (wave * z).sin(),
+                    y + pitch * angle,
+                    out * angle.sin() + height * (wave * y).cos(),
+                ]
+            };
+            let places: Vec<Vector> = mesh.points.iter().map(|point| wound(*point)).collect();
+            let [of_some, of_all] = [false, true].map(|all| {
+                let deepest = search.deepest_of_nodes(&places, all);
+                deepest.map_or(0.0, |deepest| deepest.depth)
+            });
+            found += usize::from(of_all > 0.0);
+            assert!(
+                (of_some - of_all).abs() < 1e-15,
+                "{case}: {of_some}, {of_all} m"
+            );
+        }
+        assert!((20..130).contains(&found), "{found}");
+    }
 }
