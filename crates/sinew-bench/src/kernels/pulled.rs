@@ -32,8 +32,8 @@ pub struct PulledRow {
     pub times_plain: f64,
     /// Floating-point operations of a step according to the formulas.
     pub operations: f64,
-    /// Bytes that a step has to read from memory once: nodes and shapes of tetrahedra, and the places where their
-    /// forces are added.
+    /// Bytes that a step has to read from memory once: the nodes of tetrahedra, and the places where their forces are
+    /// added; their shapes are those of a lattice.
     pub bytes: f64,
     /// Rate of operations over the lower of the limits by instructions and by memory.
     pub share_of_roof: f64,
@@ -194,7 +194,7 @@ fn on_cube(cells: usize, quick: bool, roofs: &Roofs) -> Result<Vec<PulledRow>, L
         };
         let step_s = in_laps(&|lap| fixed.times[lap] / fixed.steps as f64);
         let operations = tets as f64 * operations_of(name);
-        let bytes = tets as f64 * bytes_of(precision);
+        let bytes = tets as f64 * BYTES;
         let roof = roof(roofs, precision, operations / bytes, bytes);
         PulledRow {
             mesh: format!("cube {}^3", cells + 1),
@@ -246,11 +246,8 @@ fn operations_of(element: &str) -> f64 {
     }
 }
 
-/// Bytes of a step for a tetrahedron: four nodes, ten numbers of its shape, and the places of four corners.
-fn bytes_of(precision: &str) -> f64 {
-    let number = if precision == "f64" { 8.0 } else { 4.0 };
-    16.0 + 10.0 * number + 16.0
-}
+/// Bytes of a step for a tetrahedron of a lattice: four nodes, and the places of four corners. Its shape is shared.
+const BYTES: f64 = 16.0 + 16.0;
 
 /// Operations per second that instructions and memory allow.
 fn roof(roofs: &Roofs, precision: &str, intensity: f64, bytes: f64) -> f64 {

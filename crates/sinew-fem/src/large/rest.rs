@@ -2,6 +2,8 @@
 
 #![allow(unsafe_code, reason = "a kernel; ARCHITECTURE.md names it")]
 
+use std::collections::HashMap;
+use std::hash::{DefaultHasher, Hasher};
 use std::sync::Arc;
 
 use sinew_mesh::TetMesh;
@@ -17,6 +19,8 @@ use crate::tetra;
 pub(crate) struct Rest<T = f64> {
     nodes: Arc<Nodes>,
     shapes: Aligned<Shapes<T>>,
+    /// The place of each block's shapes in `shapes`: on lattices blocks share them, and loops read a tenth of the memory.
+    shape_of: Arc<[u32]>,
     /// Tags in the mesh, for messages.
     tags: Arc<Vec<u64>>,
 }
@@ -42,9 +46,9 @@ impl Rest {
     pub(super) fn of(mesh: &TetMesh, slots: &[Slot]) -> Self {
         let count = slots.len() / LANES;
         let mut nodes = Aligned::filled([[0; LANES]; 4], count);
-        let mut shapes = Aligned::filled([[0.0; LANES]; 10], count);
-        let blocks = slots.chunks_exact(LANES);
-        for ((slots, nodes), shapes) in blocks.zip(nodes.iter_mut()).zip(shapes.iter_mut()) {
+        let mut all = AllShapes::default();
+        for (slots, nodes) in slots.chunks_exact(LANES).zip(nodes.iter_mut()) {
+            let mut shapes = [[0.0; LANES]; 10];
             for (lane, slot) in slots.iter().enumerate() {
                 let tet = slot.tet as usize;
                 let of_tet = mesh.tets[tet];
@@ -60,6 +64,7 @@ impl Rest {
                     shapes[VOLUMES][lane] = mesh.volume(tet);
                 }
             }
+            all.add(shapes);
         }
         let tags = slots.iter().map(|slot| mesh.tet_tags[slot.tet as usize]);
         Self {
@@ -67,7 +72,8 @@ impl Rest {
                 blocks: nodes,
                 count: mesh.points.len(),
             }),
-            shapes,
+            shapes: Aligned::from(&all.shapes[..]),
+            shape_of: all.of.into(),
             tags: Arc::new(tags.collect()),
         }
     }
@@ -79,6 +85,7 @@ impl Rest {
         Rest {
             nodes: Arc::clone(&self.nodes),
             shapes: Aligned::from(&shapes[..]),
+            shape_of: Arc::clone(&self.shape_of),
             tags: Arc::clone(&self.tags),
         }
     }
@@ -129,19 +136,25 @@ impl<T: Real> Rest<T> {
 
     /// The volume (m^3); 0 for padding.
     pub(super) fn volume(&self, tet: usize) -> T {
-        self.shapes[tet / LANES][VOLUMES][tet % LANES]
+        self.shapes_at(tet)[VOLUMES][tet % LANES]
+    }
+
+    /// The shapes of the block of a tetrahedron.
+    #[inline(always)]
+    fn shapes_at(&self, tet: usize) -> &Shapes<T> {
+        &self.shapes[self.shape_of[tet / LANES] as usize]
     }
 
     /// The volumes (m^3) of tetrahedra side by side.
     #[inline(always)]
     pub(super) fn volumes<N: Number<Real = T>>(&self, first: usize) -> N {
-        N::load(&self.shapes[first / LANES][VOLUMES][first % LANES..])
+        N::load(&self.shapes_at(first)[VOLUMES][first % LANES..])
     }
 
     /// The gradients (1/m) of the shape functions of the last three vertices, of tetrahedra side by side.
     #[inline(always)]
     fn gradients<N: Number<Real = T>>(&self, first: usize) -> [[N; 3]; 3] {
-        let (block, lane) = (&self.shapes[first / LANES], first % LANES);
+        let (block, lane) = (self.shapes_at(first), first % LANES);
         [
             gradient(block, 0, lane),
             gradient(block, 3, lane),
@@ -209,6 +222,60 @@ impl<T: Real> Rest<T> {
     }
 }
 
+/// Difference of shapes, as a share of the largest number of their kind, up to which they are the same: positions of a
+/// lattice are rounded.
+const ALIKE: f64 = 1e-12;
+
+/// The different shapes of blocks.
+#[derive(Default)]
+struct AllShapes {
+    shapes: Vec<Shapes<f64>>,
+    /// Those of each block.
+    of: Vec<u32>,
+    /// Places of shapes by their rounded numbers.
+    known: HashMap<u64, u32>,
+}
+
+impl AllShapes {
+    /// Adds the shapes of the next block.
+    fn add(&mut self, shapes: Shapes<f64>) {
+        let (gradients, volumes) = shapes.split_at(VOLUMES);
+        let scales = [gradients, volumes].map(|rows| {
+            let numbers = rows.as_flattened().iter();
+            numbers.fold(0.0, |most: f64, number| most.max(number.abs()))
+        });
+        let scale = |row: usize| ALIKE * scales[usize::from(row == VOLUMES)];
+        let mut hasher = DefaultHasher::new();
+        for (row, numbers) in shapes.iter().enumerate() {
+            for number in numbers {
+                let rounded = (number / scale(row)).round();
+                // Not -0, and not what a block without a volume has.
+                hasher.write_i64(if rounded.is_finite() {
+                    rounded as i64
+                } else {
+                    0
+                });
+            }
+        }
+        let next = self.shapes.len() as u32;
+        let known = *self.known.entry(hasher.finish()).or_insert(next);
+        let are_alike = |other: &Shapes<f64>| {
+            let mut rows = shapes.iter().zip(other).enumerate();
+            rows.all(|(row, (own, other))| {
+                let mut pairs = own.iter().zip(other);
+                pairs.all(|(own, other)| (own - other).abs() <= 2.0 * scale(row))
+            })
+        };
+        match self.shapes.get(known as usize) {
+            Some(other) if are_alike(other) => self.of.push(known),
+            _ => {
+                self.of.push(next);
+                self.shapes.push(shapes);
+            }
+        }
+    }
+}
+
 // Functions, since a closure is not always inlined where vectors need it.
 
 /// A gradient whose components begin at an entry of a block.
@@ -224,4 +291,54 @@ fn gradient<N: Number>(block: &Shapes<N::Real>, entry: usize, lane: usize) -> [N
 #[inline(always)]
 fn difference<N: Number>(a: [N; 3], b: [N; 3]) -> [N; 3] {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+#[cfg(test)]
+mod tests {
+    use sinew_mesh::structured::{Split, cube};
+
+    use super::super::chunks::chunks;
+    use super::*;
+
+    /// The tetrahedra of a mesh, and the number of blocks.
+    fn at_rest(mesh: &TetMesh) -> (Rest, usize) {
+        let all: Vec<u32> = (0..mesh.tets.len() as u32).collect();
+        let (slots, _) = chunks(&all, |_| None);
+        (Rest::of(mesh, &slots), slots.len() / LANES)
+    }
+
+    #[test]
+    fn blocks_of_a_lattice_share_their_shapes_and_those_of_other_meshes_have_their_own() {
+        for edge in [1e-3, 0.1, 70.0] {
+            let mut mesh = cube(12, edge, Split::Kuhn).unwrap();
+            mesh.points
+                .iter_mut()
+                .for_each(|point| point[1] += 0.3 * edge);
+            let (rest, blocks) = at_rest(&mesh);
+            assert!(
+                rest.shapes.len() < 10 && blocks > 600,
+                "{}",
+                rest.shapes.len()
+            );
+            for (tet, nodes) in mesh.tets.iter().enumerate() {
+                let exact = tetra::gradients(&tetra::vertices(&mesh.points, *nodes)).unwrap();
+                let kept = rest.all_gradients::<f64>(tet);
+                for (kept, exact) in kept.as_flattened().iter().zip(exact.as_flattened()) {
+                    assert!((kept - exact).abs() < 1e-10 / edge, "{kept} {exact}");
+                }
+                assert!((rest.volume(tet) / mesh.volume(tet) - 1.0).abs() < 1e-10);
+            }
+            // A node that is moved a little changes the shapes around it alone.
+            mesh.points[700][2] += 1e-6 * edge;
+            let (moved, _) = at_rest(&mesh);
+            assert!(moved.shapes.len() > rest.shapes.len());
+            assert!(moved.shapes.len() < rest.shapes.len() + 24);
+            let shift = |node: usize| 1e-3 * edge * (12.9 * node as f64).sin();
+            for (node, point) in mesh.points.iter_mut().enumerate() {
+                point[0] += shift(node);
+            }
+            let (irregular, blocks) = at_rest(&mesh);
+            assert_eq!(irregular.shapes.len(), blocks);
+        }
+    }
 }
