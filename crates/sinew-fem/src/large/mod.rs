@@ -57,6 +57,7 @@ use node_blocks::Blocks;
 use product::Products;
 use region::{FirstPlaces, Numbers};
 use regions::{Regions, evaluate_alone};
+use rest::FirstAlike;
 use stress::{Cauchy, SharedStress};
 use waves::Waves;
 
@@ -96,6 +97,9 @@ impl LargeDeformation {
         let (mut made, mut laws, mut count) = (Vec::new(), Vec::new(), 0);
         let mut kept = FirstPlaces::default();
         let mut place_of_tet = vec![NO_PLACE; mesh.tets.len()];
+        let mut regions = regions.peekable();
+        regions.peek()?;
+        let alike = FirstAlike::of(mesh);
         for (law, stated, members) in regions {
             let (slots, chunks) = chunks(members, |tet| smoothing.patch_of(tet as usize));
             for (place, slot) in (count as u32..).zip(&slots) {
@@ -104,14 +108,17 @@ impl LargeDeformation {
                 }
             }
             let places = (count, kept);
-            let region = HyperelasticRegion::new(mesh, smoothing, stated, (&slots, chunks), places);
+            let region = HyperelasticRegion::new(
+                (mesh, &alike),
+                smoothing,
+                stated,
+                (&slots, chunks),
+                places,
+            );
             laws.push(law);
             kept = region.next_places();
             made.push(region);
             count += slots.len();
-        }
-        if made.is_empty() {
-            return None;
         }
         let nodes = made.iter().flat_map(|region| {
             let rest = &region.rest;

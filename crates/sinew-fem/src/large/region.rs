@@ -9,7 +9,7 @@ use super::axes::RegionAxes;
 use super::chunks::{Chunk, LANES, Slot};
 use super::fibres::{Directions, RegionFibres};
 use super::memory::RegionMemory;
-use super::rest::Rest;
+use super::rest::{FirstAlike, Rest};
 use super::stiffness::Stiffness;
 use crate::frame::{Axes, UnitVectors};
 use crate::hyperelastic::{SingularValues, Tensor};
@@ -76,7 +76,7 @@ pub(crate) struct HyperelasticRegion {
 impl HyperelasticRegion {
     /// The region of the tetrahedra at these places, with its sets from those of the body.
     pub(super) fn new(
-        mesh: &TetMesh,
+        (mesh, alike): (&TetMesh, &FirstAlike),
         smoothing: &Smoothing,
         RegionLaw {
             mu,
@@ -108,7 +108,7 @@ impl HyperelasticRegion {
         let of_patch = taken.filter_map(|tet| Some((*patch_of.get(tet as usize)?, tet)));
         let edges = Sets::from_pairs(edges, of_edge);
         let patches = Sets::from_pairs(patches, of_patch);
-        let rest = Rest::of(mesh, slots);
+        let rest = Rest::of(mesh, alike, slots);
         let volumes = |sets: &Sets| -> Vec<f64> {
             let volume = |set| sets.of(set).iter().map(|tet| rest.volume(*tet as usize));
             (0..sets.count()).map(|set| volume(set).sum()).collect()

@@ -3,7 +3,6 @@
 #![allow(unsafe_code, reason = "a kernel; ARCHITECTURE.md names it")]
 
 use std::collections::HashMap;
-use std::hash::{DefaultHasher, Hasher};
 use std::sync::Arc;
 
 use sinew_mesh::TetMesh;
@@ -43,25 +42,22 @@ const VOLUMES: usize = 9;
 
 impl Rest {
     /// The tetrahedra of a mesh at these places, none of which is flat: places for whole blocks.
-    pub(super) fn of(mesh: &TetMesh, slots: &[Slot]) -> Self {
+    pub(super) fn of(mesh: &TetMesh, alike: &FirstAlike, slots: &[Slot]) -> Self {
         let count = slots.len() / LANES;
         let mut nodes = Aligned::filled([[0; LANES]; 4], count);
         let mut all = AllShapes::default();
         for (slots, nodes) in slots.chunks_exact(LANES).zip(nodes.iter_mut()) {
             let mut shapes = [[0.0; LANES]; 10];
             for (lane, slot) in slots.iter().enumerate() {
-                let tet = slot.tet as usize;
-                let of_tet = mesh.tets[tet];
-                for (nodes, node) in nodes.iter_mut().zip(of_tet) {
+                for (nodes, node) in nodes.iter_mut().zip(mesh.tets[slot.tet as usize]) {
                     nodes[lane] = 4 * node;
                 }
-                let vertices = tetra::vertices(&mesh.points, of_tet);
-                let [_, others @ ..] = tetra::gradients(&vertices).unwrap_or_default();
-                for (entries, entry) in shapes.iter_mut().zip(others.as_flattened()) {
-                    entries[lane] = *entry;
+                let own = shape(mesh, alike.0[slot.tet as usize]);
+                for (entries, entry) in shapes.iter_mut().zip(own) {
+                    entries[lane] = entry;
                 }
-                if !slot.is_padding {
-                    shapes[VOLUMES][lane] = mesh.volume(tet);
+                if slot.is_padding {
+                    shapes[VOLUMES][lane] = 0.0;
                 }
             }
             all.add(shapes);
@@ -222,9 +218,68 @@ impl<T: Real> Rest<T> {
     }
 }
 
+/// Gradients (1/m) of the shape functions of the last three vertices of a tetrahedron, and its volume (m^3).
+fn shape(mesh: &TetMesh, tet: u32) -> [f64; 10] {
+    let tet = tet as usize;
+    let vertices = tetra::vertices(&mesh.points, mesh.tets[tet]);
+    let [_, others @ ..] = tetra::gradients(&vertices).unwrap_or_default();
+    let mut shape = [0.0; 10];
+    for (entry, own) in shape.iter_mut().zip(others.as_flattened()) {
+        *entry = *own;
+    }
+    shape[VOLUMES] = mesh.volume(tet);
+    shape
+}
+
 /// Difference of shapes, as a share of the largest number of their kind, up to which they are the same: positions of a
 /// lattice are rounded.
 const ALIKE: f64 = 1e-12;
+
+/// Least number of tetrahedra whose shapes are shared: those of smaller bodies stay in the second-level cache, and a cut
+/// finds them anew.
+const LEAST_SHARED: usize = 16_384;
+
+/// The first tetrahedron of the mesh that has the shape of each one: so equal ones have the same bits, in any region.
+#[derive(Debug)]
+pub(super) struct FirstAlike(Vec<u32>);
+
+impl FirstAlike {
+    /// Finds them.
+    pub(super) fn of(mesh: &TetMesh) -> Self {
+        let all = 0..mesh.tets.len() as u32;
+        if mesh.tets.len() < LEAST_SHARED {
+            return Self(all.collect());
+        }
+        let mut known: HashMap<u64, u32> = HashMap::new();
+        let first = |tet: u32| {
+            let own = shape(mesh, tet);
+            let gradients = own[..VOLUMES].iter();
+            let scale = gradients.fold(0.0, |most: f64, entry| most.max(entry.abs()));
+            let size = (1e6 * scale.log2()).round() as i64;
+            let rounded = own[..VOLUMES].iter();
+            let rounded = rounded.map(|entry| (entry / (ALIKE * scale)).round() as i64);
+            let first = *known.entry(mixed(size, rounded)).or_insert(tet);
+            if first == tet {
+                return tet;
+            }
+            let other = shape(mesh, first);
+            let mut pairs = own.iter().zip(&other).enumerate();
+            let are_alike = pairs.all(|(entry, (own, other))| {
+                let scale = if entry == VOLUMES { *own } else { scale };
+                (own - other).abs() <= 4.0 * ALIKE * scale.abs()
+            });
+            if are_alike { first } else { tet }
+        };
+        Self(all.map(first).collect())
+    }
+}
+
+/// A number that differs for most different numbers.
+fn mixed(first: i64, others: impl Iterator<Item = i64>) -> u64 {
+    others.fold(first as u64, |mixed, next| {
+        (mixed.rotate_left(5) ^ next as u64).wrapping_mul(0x517c_c1b7_2722_0a95)
+    })
+}
 
 /// The different shapes of blocks.
 #[derive(Default)]
@@ -232,46 +287,22 @@ struct AllShapes {
     shapes: Vec<Shapes<f64>>,
     /// Those of each block.
     of: Vec<u32>,
-    /// Places of shapes by their rounded numbers.
+    /// Places of shapes by their bits.
     known: HashMap<u64, u32>,
 }
 
 impl AllShapes {
     /// Adds the shapes of the next block.
     fn add(&mut self, shapes: Shapes<f64>) {
-        let (gradients, volumes) = shapes.split_at(VOLUMES);
-        let scales = [gradients, volumes].map(|rows| {
-            let numbers = rows.as_flattened().iter();
-            numbers.fold(0.0, |most: f64, number| most.max(number.abs()))
-        });
-        let scale = |row: usize| ALIKE * scales[usize::from(row == VOLUMES)];
-        let mut hasher = DefaultHasher::new();
-        for (row, numbers) in shapes.iter().enumerate() {
-            for number in numbers {
-                let rounded = (number / scale(row)).round();
-                // Not -0, and not what a block without a volume has.
-                hasher.write_i64(if rounded.is_finite() {
-                    rounded as i64
-                } else {
-                    0
-                });
-            }
-        }
+        let bits = shapes.as_flattened().iter();
+        let mixed = mixed(0, bits.map(|entry| entry.to_bits() as i64));
         let next = self.shapes.len() as u32;
-        let known = *self.known.entry(hasher.finish()).or_insert(next);
-        let are_alike = |other: &Shapes<f64>| {
-            let mut rows = shapes.iter().zip(other).enumerate();
-            rows.all(|(row, (own, other))| {
-                let mut pairs = own.iter().zip(other);
-                pairs.all(|(own, other)| (own - other).abs() <= 2.0 * scale(row))
-            })
-        };
-        match self.shapes.get(known as usize) {
-            Some(other) if are_alike(other) => self.of.push(known),
-            _ => {
-                self.of.push(next);
-                self.shapes.push(shapes);
-            }
+        let known = *self.known.entry(mixed).or_insert(next);
+        if self.shapes.get(known as usize) == Some(&shapes) {
+            self.of.push(known);
+        } else {
+            self.of.push(next);
+            self.shapes.push(shapes);
         }
     }
 }
@@ -304,19 +335,20 @@ mod tests {
     fn at_rest(mesh: &TetMesh) -> (Rest, usize) {
         let all: Vec<u32> = (0..mesh.tets.len() as u32).collect();
         let (slots, _) = chunks(&all, |_| None);
-        (Rest::of(mesh, &slots), slots.len() / LANES)
+        let rest = Rest::of(mesh, &FirstAlike::of(mesh), &slots);
+        (rest, slots.len() / LANES)
     }
 
     #[test]
     fn blocks_of_a_lattice_share_their_shapes_and_those_of_other_meshes_have_their_own() {
         for edge in [1e-3, 0.1, 70.0] {
-            let mut mesh = cube(12, edge, Split::Kuhn).unwrap();
+            let mut mesh = cube(15, edge, Split::Kuhn).unwrap();
             mesh.points
                 .iter_mut()
                 .for_each(|point| point[1] += 0.3 * edge);
             let (rest, blocks) = at_rest(&mesh);
             assert!(
-                rest.shapes.len() < 10 && blocks > 600,
+                rest.shapes.len() < 10 && blocks > 1200,
                 "{}",
                 rest.shapes.len()
             );

@@ -257,7 +257,7 @@ impl Substepped {
 
 /// Number of substeps by the current stiffness of a law, for a step that takes two at rest. It is a function of the
 /// state alone, in which it is stored. After each step, and after four substeps of a longer one, the fastest wave shows
-/// whether the stable step may have shrunk ([`ElasticLaw::fastest_wave`]). If so, or for laws without this information,
+/// whether the stable step may have shrunk ([`ElasticLaw::fastest_wave`]); more seldom for a law that stiffens gently. If so, or for laws without this information,
 /// products of the tangent update the estimate of the fastest motion ([`follow_largest_eigenvalue`]), about two forces
 /// each. A step that is too long for the stiffness at its end, or that the law refuses, is taken again in shorter
 /// substeps from the state before it: contact, history variables and its effects on the energy are undone.

@@ -1,6 +1,5 @@
 //! Contacts that act on each other within a step, since they share a tool that is a dynamic body, or a node.
 
-use super::acceleration::Acceleration;
 use super::body_step::BodyStep;
 use super::lips::{LipLink, Lips};
 use super::node::{CONVERGED, Compliance, Constraint, MOST_SWEEPS, Stiffness};
@@ -11,9 +10,6 @@ use crate::vector::{Vector, add, dot, length, scaled, sub};
 /// Difference of unit normals, and of positions as a share of their distance from the tool's origin, below which
 /// contacts are the same.
 const ALIKE: f64 = 1e-7;
-
-/// Sweeps before the iteration is accelerated: most end by then.
-const QUICK_SWEEPS: usize = 3;
 
 /// Largest number of nodes of a contact.
 const NODES: usize = 3;
@@ -89,7 +85,6 @@ pub(super) struct Links {
     meets: Vec<bool>,
     /// Residual of the iteration for pairs of cut-face nodes.
     pub(super) lip_residual: f64,
-    acceleration: Acceleration,
 }
 
 impl Links {
@@ -107,7 +102,6 @@ impl Links {
             normals: Vec::with_capacity(lips.faces()),
             meets: vec![false; lips.pairs.len()],
             lip_residual: 0.0,
-            acceleration: Acceleration::new(cells),
         }
     }
 
@@ -261,7 +255,7 @@ impl Links {
     }
 
     /// Solves for all forces by projected Gauss and Seidel's iteration (Jourdan, Alart and Jean 1998): each contact in
-    /// turn is solved exactly for the forces of the others; slow ones are accelerated. Each tool gets the residual of its contacts, and so do all
+    /// turn is solved exactly for the forces of the others. Each tool gets the residual of its contacts, and so do all
     /// cut faces together: the largest change of a displacement in the last sweep, as a share of the largest
     /// displacement due to a contact.
     pub(super) fn solve(&mut self, tools: &mut [ToolStep]) {
@@ -269,15 +263,7 @@ impl Links {
         if self.is_empty() {
             return;
         }
-        let is_accelerated = self.acceleration.takes(self.all.len()) && self.lips.is_empty();
-        self.acceleration.begin();
-        for sweep in 0..MOST_SWEEPS {
-            let is_accelerated =
-                is_accelerated && sweep >= QUICK_SWEEPS && self.acceleration.goes_on();
-            if is_accelerated {
-                self.acceleration
-                    .before(self.all.iter().map(|link| link.force));
-            }
+        for _ in 0..MOST_SWEEPS {
             tools.iter_mut().for_each(|tool| tool.residual = 0.0);
             self.lip_residual = 0.0;
             let mut largest: f64 = 0.0;
@@ -295,7 +281,15 @@ impl Links {
                 }
                 let left = length(link.response.displacement(change));
                 tool.residual = tool.residual.max(left);
-                link.push(change, &mut self.moved, tool.body.as_mut());
+                for node in link.nodes() {
+                    let by = node.compliance.displacement(scaled(change, node.weight));
+                    let moved = &mut self.moved[node.place as usize];
+                    *moved = add(*moved, by);
+                }
+                if let Some(body) = &mut tool.body {
+                    let by = body.response(link.arm, change);
+                    body.pushed = body.pushed.minus(by);
+                }
             }
             if self.lip_residual > 0.0 {
                 self.lip_residual /= largest;
@@ -307,15 +301,6 @@ impl Links {
             }
             if left <= CONVERGED {
                 break;
-            }
-            if is_accelerated {
-                let forces = self.all.iter().map(|link| link.force);
-                let further = self.acceleration.after(forces, left);
-                for (link, change) in self.all.iter_mut().zip(further.into_iter().flatten()) {
-                    link.force = add(link.force, *change);
-                    let body = tools[link.tool].body.as_mut();
-                    link.push(*change, &mut self.moved, body);
-                }
             }
         }
     }
@@ -443,19 +428,6 @@ impl Link {
         }
         let pushed = body.map_or(Twist::default(), |body| body.pushed);
         sub(sum, pushed.at(self.arm))
-    }
-
-    /// Moves its nodes, and its tool, by a change (N) of its force.
-    fn push(&self, change: Vector, moved: &mut [Vector], body: Option<&mut BodyStep>) {
-        for node in self.nodes() {
-            let by = node.compliance.displacement(scaled(change, node.weight));
-            let moved = &mut moved[node.place as usize];
-            *moved = add(*moved, by);
-        }
-        if let Some(body) = body {
-            let by = body.response(self.arm, change);
-            body.pushed = body.pushed.minus(by);
-        }
     }
 
     /// Updates the force of the contact for the given forces of the others; returns its change (N).

@@ -12,7 +12,6 @@
 //! is a dynamic body is one more body with its own P, and couples its contacts. Such contacts are solved by an
 //! iteration, in a fixed order. The same holds for cut faces, of which one node pushes the other.
 
-mod acceleration;
 mod body_step;
 mod carried;
 mod count;
