@@ -14,9 +14,9 @@ use crate::timed::time;
 pub struct PairRow {
     /// The body.
     pub mesh: String,
-    /// What the run does.
+    /// Subject of the run.
     pub run: &'static str,
-    /// What the other one does.
+    /// Subject of the other one.
     pub beside: &'static str,
     /// CPU time (s) of a simulated second of the run, on this computer, on one thread: steps alone, without outputs.
     pub cpu_s_per_s: f64,

@@ -235,8 +235,8 @@ fn shape(mesh: &TetMesh, tet: u32) -> [f64; 10] {
 /// lattice are rounded.
 const ALIKE: f64 = 1e-12;
 
-/// Least number of tetrahedra whose shapes are shared: those of smaller bodies stay in the second-level cache, and a cut
-/// finds them anew.
+/// Least number of tetrahedra whose shapes are shared: those of smaller bodies stay in the second-level cache, and each cut
+/// would find them again.
 const LEAST_SHARED: usize = 16_384;
 
 /// The first tetrahedron of the mesh that has the shape of each one: so equal ones have the same bits, in any region.
@@ -285,7 +285,7 @@ fn mixed(first: i64, others: impl Iterator<Item = i64>) -> u64 {
 #[derive(Default)]
 struct AllShapes {
     shapes: Vec<Shapes<f64>>,
-    /// Those of each block.
+    /// The place of the shapes of each block.
     of: Vec<u32>,
     /// Places of shapes by their bits.
     known: HashMap<u64, u32>,
