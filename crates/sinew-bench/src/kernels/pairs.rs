@@ -40,6 +40,21 @@ struct Pair {
     mark: f64,
 }
 
+impl Pair {
+    /// Runs of a cube that compute different motions.
+    fn of(cells: usize, run: &'static str, scenes: [String; 2], steps: usize) -> Self {
+        Self {
+            mesh: format!("cube {}^3", cells + 1),
+            run,
+            beside: "",
+            scenes,
+            steps,
+            is_same: false,
+            mark: f64::INFINITY,
+        }
+    }
+}
+
 /// Tissue on a fixed base.
 fn tissue(cells: usize, law: &str, more: &str, run: &str) -> String {
     format!(
@@ -60,14 +75,12 @@ fn without_factor(cells: usize, steps: usize, mark: f64) -> Pair {
         );
         tissue(cells, "neo-hookean", pull, &run)
     };
+    let run = "newmark, 2.5 ms, as it chooses";
     Pair {
-        mesh: format!("cube {}^3", cells + 1),
-        run: "newmark, 2.5 ms, as it chooses",
         beside: "the same by a factor",
-        scenes: ["auto", "always"].map(scene),
-        steps,
         is_same: true,
         mark,
+        ..Pair::of(cells, run, ["auto", "always"].map(scene), steps)
     }
 }
 
@@ -93,13 +106,9 @@ fn with_tools(cells: usize, machine: &str, run: &'static str, steps: usize) -> P
         tissue(cells, "linear", &format!("{damping}{tools}"), &run)
     };
     Pair {
-        mesh: format!("cube {}^3", cells + 1),
-        run,
         beside: "the same without tools",
-        scenes: [&tools, ""].map(scene),
-        steps,
-        is_same: false,
         mark: 1.05,
+        ..Pair::of(cells, run, [&tools, ""].map(scene), steps)
     }
 }
 
@@ -114,13 +123,9 @@ fn with_a_blade(cells: usize, law: &str, run: &'static str, steps: usize) -> Pai
     );
     let scene = |blade: &str| tissue(cells, law, blade, &format!("{EXPLICIT}dt = 0.001\n"));
     Pair {
-        mesh: format!("cube {}^3", cells + 1),
-        run,
         beside: "the same without a blade",
-        scenes: [&blade, ""].map(scene),
-        steps,
-        is_same: false,
         mark: 1.25,
+        ..Pair::of(cells, run, [&blade, ""].map(scene), steps)
     }
 }
 

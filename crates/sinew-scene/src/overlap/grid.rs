@@ -157,17 +157,12 @@ fn hash([x, y, z]: Cell, buckets: usize) -> usize {
 
 #[cfg(test)]
 mod tests {
+    use super::super::random;
     use super::*;
 
     #[test]
     fn boxes_that_meet_are_visited_whatever_their_sizes_and_places() {
-        let mut seed = 1_u64;
-        let mut random = || {
-            seed = seed
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1_442_695_040_888_963_407);
-            (seed >> 11) as f64 / (1_u64 << 53) as f64
-        };
+        let mut random = random(1);
         for scale in [1e-4, 1.0, 1e3] {
             let mut boxes: Vec<Bounds> = Vec::new();
             for number in 0..300 {

@@ -15,3 +15,14 @@ mod segment;
 mod watch;
 
 pub use watch::{Overlap, OverlapWatch};
+
+/// Numbers from 0 to 1 of a simple generator.
+#[cfg(test)]
+fn random(mut seed: u64) -> impl FnMut() -> f64 {
+    move || {
+        seed = seed
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (seed >> 11) as f64 / (1_u64 << 53) as f64
+    }
+}

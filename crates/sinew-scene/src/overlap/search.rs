@@ -220,7 +220,8 @@ impl OverlapSearch {
     }
 
     /// Edges and triangles of the surface that are no farther apart than `touching` (m), and have no node in common, nor
-    /// copies of one node at the same place, as cut faces that lie on each other have; `None` for a state that needs too many comparisons.
+    /// copies of one node at the same place, as cut faces that lie on each other have; `None` for a state that needs too
+    /// many comparisons.
     fn near(&mut self, places: &[Vector], touching: f64) -> Option<Vec<[u32; 2]>> {
         let at = |node: u32| places[node as usize];
         self.boxes.clear();
@@ -283,8 +284,8 @@ impl OverlapSearch {
         is_nested
     }
 
-    /// Points of triangles and edges that may be inside although no node is: centroids at nodes that were looked at, and midpoints of the part of an
-    /// edge between two triangles that the edge crosses.
+    /// Points of triangles and edges that may be inside although no node is: centroids at nodes that were looked at, and
+    /// midpoints of the part of an edge between two triangles that the edge crosses.
     fn between_nodes(
         &self,
         places: &[Vector],
@@ -403,10 +404,11 @@ fn mesh_edge(mesh: &TetMesh, tet: u32) -> f64 {
 mod tests {
     use sinew_mesh::structured::{Split, block};
 
+    use super::super::random;
     use super::*;
 
-    /// Bars that are wound up, folded and pinched at random: what is found from where surfaces meet is as deep as what a look at
-    /// all nodes finds.
+    /// Bars that are wound up, folded and pinched at random: what is found from where surfaces meet is as deep as what a
+    /// look at all nodes finds.
     #[test]
     fn a_search_from_where_surfaces_meet_misses_nothing() {
         let mesh = Arc::new(block([4, 4, 24], [0.02, 0.02, 0.12], Split::Kuhn).unwrap());
@@ -414,13 +416,7 @@ mod tests {
         let node = |point: u32| surface.nodes[point as usize];
         let triangles = surface.triangles.iter().map(|points| points.map(node));
         let triangles = triangles.collect();
-        let mut seed = 3_u64;
-        let mut random = || {
-            seed = seed
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1_442_695_040_888_963_407);
-            (seed >> 11) as f64 / (1_u64 << 53) as f64
-        };
+        let mut random = random(3);
         let mut search = OverlapSearch::new(Arc::clone(&mesh), triangles, Vec::new(), None);
         let mut found = 0;
         for case in 0..150 {

@@ -268,13 +268,13 @@ impl Search<'_> {
             sides,
             ..
         } = room;
-        if sides.ways.is_empty() {
+        if sides.corners() == 0 {
             return false;
         }
         // Only contact moves them within a pass.
         match at_beginning {
             true => sides.begin(|place| self.ways.pass(place, links)),
-            false => sides.take(&links.places, |place| self.ways.pass(place, links)),
+            false => sides.take(links.linked(), |place| self.ways.pass(place, links)),
         }
         let mut is_left = false;
         for (number, tool) in self.tools.tools.iter().enumerate() {
@@ -283,9 +283,11 @@ impl Search<'_> {
             }
             let step = &steps[number];
             let bounds = around(step.bounds());
-            match at_beginning || step.body.is_some() {
-                true => sides.look_all(number, bounds.as_ref()),
-                false => sides.look(number, bounds.as_ref(), &links.places),
+            // Nothing but contact makes a round differ from the first, except that bodies move.
+            let is_anew = at_beginning || step.body.is_some();
+            match is_anew {
+                true => sides.look(number, bounds.as_ref(), 0..sides.corners()),
+                false => sides.look(number, bounds.as_ref(), links.linked()),
             }
             for triangle in &tool.triangles {
                 let corners = self.tools.corners.of[*triangle as usize].map(|place| place as usize);
@@ -293,12 +295,10 @@ impl Search<'_> {
                 if a & b & c != 0 {
                     continue;
                 }
-                // Nothing but contact makes a round differ from the first.
                 let is_moved = || {
                     let mut corners = corners.iter();
                     corners.any(|place| links.is_linked(*place))
                 };
-                let is_anew = at_beginning || step.body.is_some();
                 if !is_anew && !sides.is_left[*triangle as usize] && !is_moved() {
                     continue;
                 }

@@ -157,6 +157,11 @@ impl Links {
         }
     }
 
+    /// Indices of the cells that are part of any contact.
+    pub(super) fn linked(&self) -> impl Iterator<Item = usize> {
+        self.places.iter().map(|place| *place as usize)
+    }
+
     /// True if the cell with an index is part of any contact.
     pub(super) fn is_linked(&self, place: usize) -> bool {
         self.is_linked

@@ -61,7 +61,7 @@ impl Room {
             holds: false,
             met: Met::none(),
             links: Links::of(linked, lips),
-            sides: Sides::new(corners, cells, tools.len()),
+            sides: Sides::new(corners, cells, tools),
             share: 1.0,
         }
     }

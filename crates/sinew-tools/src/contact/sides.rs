@@ -1,6 +1,6 @@
 //! The triangles that a tool may meet in a pass.
 
-use super::tool::{Corner, TouchedTriangle};
+use super::tool::{Corner, Tool, TouchedTriangle};
 use super::tool_step::Way;
 use crate::vector::Vector;
 
@@ -48,15 +48,15 @@ pub(super) struct Sides {
 }
 
 impl Sides {
-    /// Space for the corners of triangles between `cells` cells, and for `tools` tools.
-    pub(super) fn new(corners: &Corners, cells: usize, tools: usize) -> Self {
-        if corners.of.is_empty() {
+    /// Space for the corners of triangles between `cells` cells; none if no tool meets triangles.
+    pub(super) fn new(corners: &Corners, cells: usize, tools: &[Tool]) -> Self {
+        if tools.iter().all(|tool| tool.triangles.is_empty()) {
             return Self::default();
         }
         let mut ways = vec![([0.0; 3], [0.0; 3]); cells];
         ways.extend(corners.held.iter().map(|at| (*at, *at)));
         Self {
-            sides: vec![0; ways.len() * tools],
+            sides: vec![0; ways.len() * tools.len()],
             is_left: vec![false; corners.of.len()],
             ways,
             cells,
@@ -66,34 +66,32 @@ impl Sides {
     /// Begins a pass with the paths (m) of all cells.
     pub(super) fn begin(&mut self, way: impl Fn(usize) -> Way) {
         self.is_left.fill(false);
-        for (place, own) in self.ways[..self.cells].iter_mut().enumerate() {
-            *own = way(place);
-        }
+        self.take(0..self.cells, way);
     }
 
     /// Takes the paths (m) of some cells.
-    pub(super) fn take(&mut self, places: &[u32], way: impl Fn(usize) -> Way) {
+    pub(super) fn take(&mut self, places: impl Iterator<Item = usize>, way: impl Fn(usize) -> Way) {
         for place in places {
-            self.ways[*place as usize] = way(*place as usize);
+            self.ways[place] = way(place);
         }
     }
 
-    /// Compares all paths with the box (m) of a tool; `None` for a tool without one, which may meet all.
-    pub(super) fn look_all(&mut self, tool: usize, bounds: Option<&[Vector; 2]>) {
-        let Self { ways, sides, .. } = self;
-        let sides = &mut sides[tool * ways.len()..][..ways.len()];
-        for (way, sides) in ways.iter().zip(sides) {
-            *sides = bounds.map_or(0, |bounds| sides_of(way, bounds));
-        }
+    /// Number of corners.
+    pub(super) fn corners(&self) -> usize {
+        self.ways.len()
     }
 
-    /// Compares the paths of some cells with it.
-    pub(super) fn look(&mut self, tool: usize, bounds: Option<&[Vector; 2]>, places: &[u32]) {
-        let Self { ways, sides, .. } = self;
-        let sides = &mut sides[tool * ways.len()..][..ways.len()];
+    /// Compares the paths of some corners with the box (m) of a tool; `None` for a tool without one, which may meet all.
+    pub(super) fn look(
+        &mut self,
+        tool: usize,
+        bounds: Option<&[Vector; 2]>,
+        places: impl Iterator<Item = usize>,
+    ) {
+        let first = tool * self.corners();
         for place in places {
-            let place = *place as usize;
-            sides[place] = bounds.map_or(0, |bounds| sides_of(&ways[place], bounds));
+            let sides = bounds.map_or(0, |bounds| sides_of(&self.ways[place], bounds));
+            self.sides[first + place] = sides;
         }
     }
 
