@@ -95,15 +95,19 @@ fn coupled(
     smoothing: &Smoothing,
     counts: impl Fn(u32) -> bool,
 ) -> Result<Pattern, FemError> {
-    let sets = smoothing.sets();
-    let sets = sets.filter(|tets| tets.first().is_some_and(|tet| counts(*tet)));
-    let sets = sets.map(|tets| {
-        let mut nodes = Vec::new();
-        nodes_of(mesh, tets, &mut nodes);
-        nodes
-    });
     let tets = (0..).zip(&mesh.tets).filter(|(tet, _)| counts(*tet));
-    let elements = tets.map(|(_, nodes)| nodes.to_vec()).chain(sets);
-    Pattern::from_elements(mesh.points.len(), elements)
-        .map_err(|error| FemError::new(Item::Mesh, Cause::Operators(error.into())))
+    let pattern = if smoothing.is_empty() {
+        Pattern::from_elements(mesh.points.len(), tets.map(|(_, nodes)| nodes))
+    } else {
+        let sets = smoothing.sets();
+        let sets = sets.filter(|tets| tets.first().is_some_and(|tet| counts(*tet)));
+        let sets = sets.map(|tets| {
+            let mut nodes = Vec::new();
+            nodes_of(mesh, tets, &mut nodes);
+            nodes
+        });
+        let elements = tets.map(|(_, nodes)| nodes.to_vec()).chain(sets);
+        Pattern::from_elements(mesh.points.len(), elements)
+    };
+    pattern.map_err(|error| FemError::new(Item::Mesh, Cause::Operators(error.into())))
 }

@@ -8,10 +8,10 @@ use sinew_cutting::{
     CutError, CuttableBody, FREQUENCY_GROWTH, Removal, SavedBody, SavedBodyError, Sheet, Stroke,
     TetProperties, Uncut, spare_nodes,
 };
-use sinew_mesh::{CutMesh, MovedNode, TetMesh};
+use sinew_mesh::{CutMesh, MovedNode, SplitFollower, TetMesh};
 
 use crate::error::{Cause, FemError};
-use crate::in_place::InPlace;
+use crate::in_place::{InPlace, after_split};
 use crate::model::{CutStateError, FieldError, NodesCarried, TetFrequencies};
 use crate::motion::Field;
 use crate::{Fixed, Model, On, Problem};
@@ -168,6 +168,8 @@ pub struct CutModel {
     densities: Arc<[f64]>,
     /// Displacement (m) of the nodes of the body that are frozen.
     frozen: BTreeMap<u32, [f64; 3]>,
+    /// Data for following splits by the mesh; `None` once tetrahedra were removed.
+    follower: Option<Arc<SplitFollower>>,
     /// State for following splits in place; `None` if the model is rebuilt instead.
     in_place: Option<Box<InPlace>>,
     /// Buffer for the positions of the nodes of the body.
@@ -232,6 +234,7 @@ impl CutModel {
             layouts: 0,
             densities,
             frozen: BTreeMap::new(),
+            follower: None,
             in_place: None,
             positions: Vec::with_capacity(nodes),
         };
@@ -362,7 +365,8 @@ impl CutModel {
         if report.is_empty() {
             return Ok(report);
         }
-        self.go_on_anew(nodes, &[], &copied, report, state, inputs)
+        let mesh = self.mesh_without_removed();
+        self.go_on_anew((nodes, &[], &copied), mesh, report, state, inputs)
     }
 
     /// Removes the unsupported components of the body, with their mass: those without a node that the problem fixes
@@ -384,7 +388,8 @@ impl CutModel {
         let is_gone = |tet: u32| is_loose[tet as usize];
         let removal = self.body.remove_tets(is_gone, &mut self.positions)?;
         let report = CutReport::of_removal(removal);
-        self.go_on_anew(nodes, &[], &[], report, state, inputs)
+        let mesh = self.mesh_without_removed();
+        self.go_on_anew((nodes, &[], &[]), mesh, report, state, inputs)
     }
 
     /// Freezes the components that [`CutModel::remove_loose`] would remove: they keep mass, place and shape, and
@@ -407,7 +412,8 @@ impl CutModel {
         let frozen: Vec<u32> = self.frozen.keys().copied().collect();
         // A frozen node is not moved onto a sheet: its displacement is fixed.
         self.body.keep(&frozen);
-        self.go_on_anew(self.body.nodes(), &[], &[], report, state, inputs)
+        let mesh = self.mesh_without_removed();
+        self.go_on_anew((self.body.nodes(), &[], &[]), mesh, report, state, inputs)
     }
 
     /// Freezes the nodes of some tetrahedra of the body at their current places.
@@ -521,10 +527,13 @@ impl CutModel {
 
     /// Prepares the model for updates in place after splits, if it supports them.
     fn follow_from_here(&mut self) {
-        let is_whole = self.frozen.is_empty() && !self.body.is_removed().contains(&true);
-        let can = is_whole && self.model.can_follow_splits();
-        let in_place =
-            can.then(|| InPlace::new(&self.problem, &self.uncut, &self.mesh, &self.densities));
+        let is_whole = !self.body.is_removed().contains(&true);
+        self.follower = is_whole.then(|| Arc::new(SplitFollower::new(&self.uncut)));
+        let can = self.frozen.is_empty() && self.model.can_follow_splits();
+        let in_place = self.follower.as_ref().filter(|_| can).map(|follower| {
+            let meshes = (&*self.uncut, &self.mesh);
+            InPlace::new(&self.problem, meshes, &self.densities, follower)
+        });
         self.in_place = in_place.flatten().map(Box::new);
         if self.in_place.is_some() {
             self.mesh.reserve(spare_nodes(self.mesh.nodes.len()));
@@ -570,18 +579,27 @@ impl CutModel {
             }
             None => {
                 let (moved, copied) = (stroke.moved.clone(), stroke.copied.clone());
-                self.go_on_anew(nodes, &moved, &copied, report, state, inputs)
+                let mesh = match &self.follower {
+                    Some(follower) => after_split(&self.mesh, &self.body, follower),
+                    None => self.body.mesh(&self.uncut),
+                };
+                self.go_on_anew((nodes, &moved, &copied), mesh, report, state, inputs)
             }
         }
     }
 
-    /// Rebuilds the model after a change of the body, which had `nodes` nodes before: the nodes `moved` have another
-    /// rest position now, and the nodes added are copies of the nodes `copied`.
+    /// The mesh of the body, some of whose tetrahedra may be gone.
+    fn mesh_without_removed(&mut self) -> CutMesh {
+        self.follower = None;
+        self.body.mesh(&self.uncut)
+    }
+
+    /// Rebuilds the model on a mesh after a change of the body, which had `nodes` nodes before: the nodes `moved` have
+    /// another rest position now, and the nodes added are copies of the nodes `copied`.
     fn go_on_anew(
         &mut self,
-        nodes: usize,
-        moved: &[MovedNode],
-        copied: &[u32],
+        (nodes, moved, copied): (usize, &[MovedNode], &[u32]),
+        mesh: CutMesh,
         mut report: CutReport,
         state: &mut State,
         inputs: &Inputs,
@@ -589,7 +607,6 @@ impl CutModel {
         // A split can be followed no longer: nodes of the model and of the body have different numbers from now on, or some of them are frozen.
         self.in_place = None;
         self.freeze_copies(nodes, copied);
-        let mesh = self.body.mesh(&self.uncut);
         let carried = NodesCarried {
             nodes,
             before: &self.mesh.nodes,

@@ -124,7 +124,7 @@ pub use from_mesh::{DataError, FromMesh};
 pub use law::{Law, SpringRule};
 pub use model::{
     CutStateError, DeformedTet, FieldError, Model, ModelLoads, NodalForces, NodesCarried,
-    SupportMotion, WithMemory,
+    SupportMotion, TetDeformation, WithMemory,
 };
 pub use on::On;
 pub use problem::{LoadKind, LoadSpec, Problem, Rayleigh, Region};

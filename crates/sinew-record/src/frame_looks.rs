@@ -90,12 +90,14 @@ impl FrameLooks {
             .body
             .model
             .displacements_at(t, &state.u, &mut watch.u)?;
-        let body = watch.body.model.with_memory(&state.internal);
-        let tags = &watch.body.mesh.tet_tags;
+        let (model, tags) = (&watch.body.model, &watch.body.mesh.tet_tags);
         let mut inverted = 0;
-        for (number, tet) in body.deformed_tets(&watch.u)?.enumerate() {
-            seen.see_tet(t, &tet, || tags[number]);
-            inverted += usize::from(tet.is_inverted);
+        for (number, tet) in model.tet_deformations(&watch.u)?.enumerate() {
+            // Warnings tell nothing else of tissue that may deform as it likes.
+            inverted += usize::from(tet.is_inverted());
+            if !tet.is_hyperelastic {
+                seen.see_linear_tet(t, (&tet.strain(), tet.rotation()), || tags[number]);
+            }
         }
         seen.inverted = seen.inverted.max(inverted);
         watch.overlaps.look(t, &watch.u);

@@ -112,19 +112,22 @@ pub(crate) struct SeenOverlap {
 impl Seen {
     /// Records the deformation of a tetrahedron at the time `t` (s), apart from inversion.
     pub(crate) fn see_tet(&mut self, t: f64, tet: &DeformedTet, tag: impl Fn() -> u64 + Copy) {
-        let [xx, yy, zz, xy, yz, zx] = tet.strain;
-        // No principal strain is larger than this norm.
-        let norm = xx * xx + yy * yy + zz * zz + 2.0 * (xy * xy + yz * yz + zx * zx);
-        let see = |strain: &mut Largest, rotation: &mut Largest| {
-            if norm > strain.value.powi(2) {
-                strain.see(stress::largest_principal(&tet.strain), t, tag);
-            }
-            rotation.see(tet.rotation, t, tag);
-        };
-        see(&mut self.strain, &mut self.rotation);
+        see_strain(&mut self.strain, t, &tet.strain, tag);
+        self.rotation.see(tet.rotation, t, tag);
         if !tet.is_hyperelastic {
-            see(&mut self.linear_strain, &mut self.linear_rotation);
+            self.see_linear_tet(t, (&tet.strain, tet.rotation), tag);
         }
+    }
+
+    /// Updates the extremes of linear regions by the strain and the rotation (rad) of a tetrahedron.
+    pub(crate) fn see_linear_tet(
+        &mut self,
+        t: f64,
+        (strain, rotation): (&[f64; 6], f64),
+        tag: impl Fn() -> u64 + Copy,
+    ) {
+        see_strain(&mut self.linear_strain, t, strain, tag);
+        self.linear_rotation.see(rotation, t, tag);
     }
 
     /// Stores an overlap if it is deeper than the deepest so far.
@@ -164,6 +167,16 @@ impl Seen {
             node,
             parts,
         })
+    }
+}
+
+/// Updates a largest principal strain by that of a tetrahedron.
+fn see_strain(largest: &mut Largest, t: f64, strain: &[f64; 6], tag: impl Fn() -> u64) {
+    let [xx, yy, zz, xy, yz, zx] = *strain;
+    // No principal strain is larger than this norm.
+    let norm = xx * xx + yy * yy + zz * zz + 2.0 * (xy * xy + yz * yz + zx * zx);
+    if norm > largest.value.powi(2) {
+        largest.see(stress::largest_principal(strain), t, tag);
     }
 }
 

@@ -31,7 +31,7 @@ use touched::Touched;
 /// Nodes and tetrahedra have the same numbers in the body and in the model, so nothing may have been removed.
 #[derive(Debug)]
 pub(crate) struct InPlace {
-    follower: SplitFollower,
+    follower: Arc<SplitFollower>,
     densities: Arc<[f64]>,
     touched: Touched,
     gathering: Gathering,
@@ -58,15 +58,15 @@ impl InPlace {
     /// these densities (kg/m^3); `None` if some load cannot be updated.
     pub(crate) fn new(
         problem: &Problem,
-        uncut: &TetMesh,
-        cut: &CutMesh,
+        (uncut, cut): (&TetMesh, &CutMesh),
         densities: &Arc<[f64]>,
+        follower: &Arc<SplitFollower>,
     ) -> Option<Self> {
         let (nodes, tets) = (cut.mesh.points.len(), cut.mesh.tets.len());
         let spare = spare_nodes(nodes);
         let no_pattern = Pattern::from_elements::<[u32; 0]>(0, []).ok()?;
         Some(Self {
-            follower: SplitFollower::new(uncut),
+            follower: Arc::clone(follower),
             densities: Arc::clone(densities),
             touched: Touched::with_room(nodes + spare),
             gathering: Gathering::with_room(spare, tets),
@@ -166,6 +166,17 @@ impl InPlace {
         report.count(mesh, of_model);
         Ok(laid_out)
     }
+}
+
+/// A mesh after the last stroke of its body, of which nothing was removed.
+pub(crate) fn after_split(
+    before: &CutMesh,
+    body: &CuttableBody,
+    follower: &SplitFollower,
+) -> CutMesh {
+    let mut mesh = before.clone();
+    mesh.follow_split(&split_of(body), follower);
+    mesh
 }
 
 fn split_of(body: &CuttableBody) -> Split<'_> {

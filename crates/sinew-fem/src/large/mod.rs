@@ -99,7 +99,7 @@ impl LargeDeformation {
         let mut place_of_tet = vec![NO_PLACE; mesh.tets.len()];
         let mut regions = regions.peekable();
         regions.peek()?;
-        let alike = FirstAlike::of(mesh);
+        let alike = FirstAlike::new(mesh);
         for (law, stated, members) in regions {
             let (slots, chunks) = chunks(members, |tet| smoothing.patch_of(tet as usize));
             for (place, slot) in (count as u32..).zip(&slots) {

@@ -45,14 +45,14 @@ impl Rest {
     pub(super) fn of(mesh: &TetMesh, alike: &FirstAlike, slots: &[Slot]) -> Self {
         let count = slots.len() / LANES;
         let mut nodes = Aligned::filled([[0; LANES]; 4], count);
-        let mut all = AllShapes::default();
+        let mut all = AllShapes::new(!alike.0.is_empty(), count);
         for (slots, nodes) in slots.chunks_exact(LANES).zip(nodes.iter_mut()) {
             let mut shapes = [[0.0; LANES]; 10];
             for (lane, slot) in slots.iter().enumerate() {
                 for (nodes, node) in nodes.iter_mut().zip(mesh.tets[slot.tet as usize]) {
                     nodes[lane] = 4 * node;
                 }
-                let own = shape(mesh, alike.0[slot.tet as usize]);
+                let own = shape(mesh, alike.of(slot.tet));
                 for (entries, entry) in shapes.iter_mut().zip(own) {
                     entries[lane] = entry;
                 }
@@ -240,15 +240,16 @@ const ALIKE: f64 = 1e-12;
 const LEAST_SHARED: usize = 16_384;
 
 /// The first tetrahedron of the mesh that has the shape of each one: so equal ones have the same bits, in any region.
+/// Empty for a mesh whose shapes are not shared.
 #[derive(Debug)]
 pub(super) struct FirstAlike(Vec<u32>);
 
 impl FirstAlike {
     /// Finds them.
-    pub(super) fn of(mesh: &TetMesh) -> Self {
+    pub(super) fn new(mesh: &TetMesh) -> Self {
         let all = 0..mesh.tets.len() as u32;
         if mesh.tets.len() < LEAST_SHARED {
-            return Self(all.collect());
+            return Self(Vec::new());
         }
         let mut known: HashMap<u64, u32> = HashMap::new();
         let first = |tet: u32| {
@@ -272,6 +273,11 @@ impl FirstAlike {
         };
         Self(all.map(first).collect())
     }
+
+    /// The first tetrahedron with the shape of this one.
+    fn of(&self, tet: u32) -> u32 {
+        self.0.get(tet as usize).copied().unwrap_or(tet)
+    }
 }
 
 /// A number that differs for most different numbers.
@@ -282,22 +288,32 @@ fn mixed(first: i64, others: impl Iterator<Item = i64>) -> u64 {
 }
 
 /// The different shapes of blocks.
-#[derive(Default)]
 struct AllShapes {
     shapes: Vec<Shapes<f64>>,
     /// The place of the shapes of each block.
     of: Vec<u32>,
-    /// Places of shapes by their bits.
-    known: HashMap<u64, u32>,
+    /// Places of shapes by their bits; `None` if each block has its own.
+    known: Option<HashMap<u64, u32>>,
 }
 
 impl AllShapes {
+    /// No shapes yet of so many blocks, which may share them.
+    fn new(shared: bool, blocks: usize) -> Self {
+        Self {
+            shapes: Vec::with_capacity(if shared { 0 } else { blocks }),
+            of: Vec::with_capacity(blocks),
+            known: shared.then(HashMap::new),
+        }
+    }
+
     /// Adds the shapes of the next block.
     fn add(&mut self, shapes: Shapes<f64>) {
-        let bits = shapes.as_flattened().iter();
-        let mixed = mixed(0, bits.map(|entry| entry.to_bits() as i64));
         let next = self.shapes.len() as u32;
-        let known = *self.known.entry(mixed).or_insert(next);
+        let known = self.known.as_mut().map_or(next, |known| {
+            let bits = shapes.as_flattened().iter();
+            let mixed = mixed(0, bits.map(|entry| entry.to_bits() as i64));
+            *known.entry(mixed).or_insert(next)
+        });
         if self.shapes.get(known as usize) == Some(&shapes) {
             self.of.push(known);
         } else {
@@ -335,7 +351,7 @@ mod tests {
     fn at_rest(mesh: &TetMesh) -> (Rest, usize) {
         let all: Vec<u32> = (0..mesh.tets.len() as u32).collect();
         let (slots, _) = chunks(&all, |_| None);
-        let rest = Rest::of(mesh, &FirstAlike::of(mesh), &slots);
+        let rest = Rest::of(mesh, &FirstAlike::new(mesh), &slots);
         (rest, slots.len() / LANES)
     }
 

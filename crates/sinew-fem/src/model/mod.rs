@@ -22,7 +22,7 @@ mod system;
 mod with_memory;
 
 pub use after_cut::{CutStateError, NodesCarried};
-pub use deformed::DeformedTet;
+pub use deformed::{DeformedTet, TetDeformation};
 pub(crate) use element_bounds::TetFrequencies;
 pub use field_error::FieldError;
 pub use forces::NodalForces;
@@ -289,6 +289,12 @@ impl Model {
     /// The mesh.
     #[must_use]
     pub fn mesh(&self) -> &TetMesh {
+        &self.mesh
+    }
+
+    /// The mesh, to share it.
+    #[must_use]
+    pub fn shared_mesh(&self) -> &Arc<TetMesh> {
         &self.mesh
     }
 

@@ -6,7 +6,10 @@ use crate::common::{at_most, body, linear};
 use sinew_core::spectrum::largest_eigenvalue;
 use sinew_core::{Inputs, LinearSystem, State, System};
 use sinew_cutting::Sheet;
-use sinew_fem::{CutModel, CutModelError, Element, Fixed, LoadKind, LoadSpec, Model, On, Problem};
+use sinew_fem::hyperelastic::Hyperelastic;
+use sinew_fem::{
+    CutModel, CutModelError, Element, Fixed, Law, LoadKind, LoadSpec, Model, On, Problem,
+};
 use sinew_mesh::TetMesh;
 use sinew_mesh::structured::{self, Split};
 
@@ -257,4 +260,35 @@ fn locking_free_elements_are_cut_without_bounds_by_tetrahedra() {
         gained.elastic != 0.0,
         "averages over what is cut are others"
     );
+}
+
+#[test]
+fn a_body_of_large_deformation_has_the_mesh_that_its_strokes_and_removals_leave() {
+    let mesh = cube(5);
+    let parameters = Hyperelastic::parameters("neo-hookean", 3500.0, 0.4).unwrap();
+    let law = Law::hyperelastic("neo-hookean", parameters);
+    let mut cut = CutModel::new(Arc::clone(&mesh), held(body(law)), 0.25).unwrap();
+    let mut state = some_state(cut.model());
+    let none = Inputs::none();
+    let is_that_of_the_body = |cut: &CutModel| {
+        let (found, expected) = (cut.mesh(), cut.body().mesh(&mesh));
+        assert_eq!(found.mesh, expected.mesh);
+        assert_eq!(found.nodes, expected.nodes);
+        assert_eq!(found.origins, expected.origins);
+        assert_eq!(found.tets, expected.tets);
+        assert_eq!(*cut.model().mesh(), expected.mesh);
+    };
+    let mut moved = 0;
+    for (x, height) in [(0.052, 0.06), (0.052, 0.03), (0.023, 0.05)] {
+        let report = cut.stroke(&sheet(x, height), &mut state, none).unwrap();
+        assert!(report.new_nodes > 0);
+        moved += report.moved_nodes;
+        is_that_of_the_body(&cut);
+    }
+    assert!(moved > 0);
+    let is_gone = |[x, y, z]: [f64; 3]| x < 0.03 && y < 0.03 && z > 0.07;
+    assert!(cut.remove(is_gone, &mut state, none).unwrap().removed_tets > 3);
+    is_that_of_the_body(&cut);
+    cut.stroke(&sheet(0.076, 0.03), &mut state, none).unwrap();
+    is_that_of_the_body(&cut);
 }

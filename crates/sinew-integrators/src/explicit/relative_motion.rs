@@ -14,7 +14,7 @@ pub(super) struct RelativeMotion {
 
 impl RelativeMotion {
     /// The largest motion of a cell relative to a neighbour from the displacement `before` (m) to `now` (m), over its
-    /// size; 0 if it is surely `within` that limit, and for a system whose cells have no size.
+    /// size; 0 if it is `within` that limit, and for a system whose cells have no size.
     pub(super) fn over_size(
         &mut self,
         system: &dyn System,
@@ -64,8 +64,8 @@ impl<'a, N: Fn(usize) -> &'a [u32]> Search<'a, N> {
             return 0.0;
         }
         let (cells, _) = self.moved.as_chunks::<L>();
-        let mut largest = 0.0_f64;
-        for ((cell, own), size) in cells.iter().enumerate().zip(self.sizes) {
+        let mut largest = self.within;
+        for ((cell, own), own_size) in cells.iter().enumerate().zip(self.sizes) {
             // No neighbour is farther away than the farthest corner of the box around all motions.
             let farthest: f64 = (0..L)
                 .map(|layer| {
@@ -73,18 +73,31 @@ impl<'a, N: Fn(usize) -> &'a [u32]> Search<'a, N> {
                     (own - least[layer]).max(most[layer] - own).powi(2)
                 })
                 .sum();
-            if farthest <= (self.within * size).powi(2) {
+            if farthest <= (self.within * smallest).powi(2) {
                 continue;
             }
-            let mut square = 0.0_f64;
-            for other in (self.neighbours)(cell) {
-                let other = &cells[*other as usize];
-                let apart = own.iter().zip(other).map(|(own, other)| own - other);
-                square = square.max(apart.map(|apart| apart * apart).sum());
+            let others = (self.neighbours)(cell).iter();
+            // Each pair once: neighbours are in increasing order.
+            let others = others.rev().map(|other| *other as usize);
+            for other in others.take_while(|other| *other > cell) {
+                let apart = own
+                    .iter()
+                    .zip(&cells[other])
+                    .map(|(own, other)| own - other);
+                let square: f64 = apart.map(|apart| apart * apart).sum();
+                let size = match self.sizes[other] < *own_size {
+                    true => self.sizes[other],
+                    false => *own_size,
+                };
+                if square > (largest * size).powi(2) {
+                    largest = square.sqrt() / size;
+                }
             }
-            largest = largest.max(square.sqrt() / size);
         }
-        largest
+        match largest > self.within {
+            true => largest,
+            false => 0.0,
+        }
     }
 }
 

@@ -115,7 +115,8 @@ const PARTS_BETWEEN_LOOKS: u32 = 40;
 /// Largest number of substeps between two checks, by the fastest motion, of a shrinking stable step.
 const PARTS_BETWEEN_GLANCES: u32 = 4;
 
-/// The same for a law that stiffens gently, while the step stays stable although the wave's square grows by [`SPARE`].
+/// The same for a law that stiffens gently, while the step stays stable although the wave's square grows by [`SPARE`];
+/// twice as many if it may grow by that twice.
 const PARTS_BETWEEN_GLANCES_WITH_SPARE: u32 = 8;
 
 /// Growth of the fastest wave's square, as a factor, that leaves time until the next check.
@@ -440,10 +441,14 @@ impl Substepped {
     /// True if the fastest wave of a law that stiffens gently is to be looked at after `stretch` substeps, each of which the
     /// method takes in parts of this length (s): seldom while it may grow a good deal before it matters.
     fn is_glance_due(&self, cut: &StepCut, stretch: u32, part: f64) -> bool {
-        let interval = |taken: u32| taken / PARTS_BETWEEN_GLANCES_WITH_SPARE;
         let part = part * f64::from(self.finer);
-        let may_grow = Known::of(cut).allows(SPARE * cut.seen, part);
-        !may_grow || interval(cut.taken) != interval(cut.taken.saturating_sub(stretch))
+        let may_grow = |by: f64| Known::of(cut).allows(by * cut.seen, part);
+        let interval = match may_grow(SPARE) {
+            false => return true,
+            true if may_grow(SPARE * SPARE) => 2 * PARTS_BETWEEN_GLANCES_WITH_SPARE,
+            true => PARTS_BETWEEN_GLANCES_WITH_SPARE,
+        };
+        cut.taken / interval != cut.taken.saturating_sub(stretch) / interval
     }
 
     /// The fewest substeps of a step, up to `parts` substeps of this length (s), that are stable by current knowledge.

@@ -2,7 +2,7 @@
 
 use sinew_core::{Contact, State};
 use sinew_fem::stress::von_mises;
-use sinew_fem::{FieldError, Law, Model};
+use sinew_fem::{DeformedTet, FieldError, Law, Model, TetDeformation};
 use sinew_tools::{SurfacePressures, Tools};
 
 use super::surface::Surface;
@@ -116,22 +116,34 @@ impl Colours {
         Ok(())
     }
 
-    /// Means over the tetrahedra at each node, by volume.
+    /// A field that tetrahedra have.
     fn of_tets(&mut self, field: Field, seen: &Seen<'_>) -> Result<(), FieldError> {
+        let (model, displacement) = (seen.model, seen.displacement);
+        if field == Field::Strain {
+            let tets = model.tet_deformations(displacement)?;
+            let strain = |tet: &TetDeformation| 2.0 / 3.0 * von_mises(&tet.strain());
+            self.mean(model, tets.map(|tet| (tet.is_inverted(), strain(&tet))));
+            return Ok(());
+        }
+        let value = |tet: &DeformedTet| match (tet.stress, field) {
+            (None, _) => 0.0,
+            (Some(stress), Field::EnergyDensity) => 0.5 * contracted(&stress, &tet.strain),
+            (Some(stress), _) => von_mises(&stress),
+        };
+        let tets = model.deformed_tets(displacement)?;
+        self.mean(model, tets.map(|tet| (tet.is_inverted, value(&tet))));
+        Ok(())
+    }
+
+    /// Means over the tetrahedra at each node, by volume; each tetrahedron tells if it is inverted, and its value.
+    fn mean(&mut self, model: &Model, tets: impl Iterator<Item = (bool, f64)>) {
         self.sums.fill(0.0);
         self.weights.fill(0.0);
         self.inverted = 0;
-        let tets = seen.model.deformed_tets(seen.displacement)?;
-        for ((tet, nodes), volume) in tets.zip(&seen.model.mesh().tets).zip(&self.volumes) {
-            self.inverted += u32::from(tet.is_inverted);
-            let value = match field {
-                Field::Strain => 2.0 / 3.0 * von_mises(&tet.strain),
-                Field::EnergyDensity => tet
-                    .stress
-                    .map_or(0.0, |stress| 0.5 * contracted(&stress, &tet.strain)),
-                _ => tet.stress.map_or(0.0, |stress| von_mises(&stress)),
-            };
-            let value = if tet.is_inverted { f64::NAN } else { value };
+        let tets = tets.zip(&model.mesh().tets).zip(&self.volumes);
+        for (((is_inverted, value), nodes), volume) in tets {
+            self.inverted += u32::from(is_inverted);
+            let value = if is_inverted { f64::NAN } else { value };
             for node in nodes {
                 self.sums[*node as usize] += volume * value;
                 self.weights[*node as usize] += volume;
@@ -141,14 +153,13 @@ impl Colours {
         for (value, (sum, weight)) in self.at_nodes.iter_mut().zip(means) {
             *value = (sum / weight) as f32;
         }
-        Ok(())
     }
 
     fn mark_inverted(&mut self, seen: &Seen<'_>) -> Result<(), FieldError> {
         self.inverted = 0;
-        let tets = seen.model.deformed_tets(seen.displacement)?;
+        let tets = seen.model.tet_deformations(seen.displacement)?;
         for (tet, nodes) in tets.zip(&seen.model.mesh().tets) {
-            if tet.is_inverted {
+            if tet.is_inverted() {
                 self.inverted += 1;
                 for node in nodes {
                     self.at_nodes[*node as usize] = INSIDE_OUT;

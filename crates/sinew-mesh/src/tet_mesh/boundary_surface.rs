@@ -1,6 +1,7 @@
 //! The boundary with its own points.
 
 use super::TetMesh;
+use super::surface::OUTWARD_FACES;
 
 /// The boundary of a body with its own points, for drawing and writing it without inner nodes.
 #[derive(Debug, Clone, PartialEq)]
@@ -17,16 +18,63 @@ impl TetMesh {
     /// The triangles of [`TetMesh::boundary`] of the whole mesh, in its order, with the nodes on them only.
     #[must_use]
     pub fn boundary_surface(&self) -> BoundarySurface {
-        let boundary = self.boundary(None);
-        let mut nodes: Vec<u32> = boundary.iter().flatten().copied().collect();
-        nodes.sort_unstable();
-        nodes.dedup();
-        let place = |node: &u32| nodes.binary_search(node).unwrap_or_default() as u32;
-        let triangles = boundary
-            .iter()
-            .map(|triangle| triangle.each_ref().map(place));
+        self.surface_of(self.boundary(None))
+    }
+
+    /// Same as [`TetMesh::boundary_surface`], for a mesh of tetrahedra with positive volumes whose outer faces are known:
+    /// each by its tetrahedron (0-based) and the vertex (0 to 3) opposite, in increasing order.
+    ///
+    /// ```
+    /// use sinew_mesh::structured::{self, Split};
+    /// let cube = structured::cube(1, 0.1, Split::Kuhn)?;
+    /// let surface = cube.boundary_surface();
+    /// let of_tet = |tet: u32| (0..4).map(move |vertex| (tet, vertex));
+    /// let is_outer = |&(tet, vertex): &(u32, usize)| {
+    ///     let nodes = cube.tets[tet as usize];
+    ///     surface.triangles.iter().any(|triangle| {
+    ///         let node = |point: &u32| surface.nodes[*point as usize];
+    ///         triangle.iter().map(node).all(|node| node != nodes[vertex] && nodes.contains(&node))
+    ///     })
+    /// };
+    /// let faces = (0..6).flat_map(of_tet).filter(is_outer);
+    /// assert_eq!(cube.surface_of_faces(faces), surface);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Panics
+    ///
+    /// If there is no such tetrahedron or vertex.
+    #[must_use]
+    pub fn surface_of_faces(
+        &self,
+        faces: impl IntoIterator<Item = (u32, usize)>,
+    ) -> BoundarySurface {
+        let face = |(tet, vertex): (u32, usize)| {
+            let nodes = self.tets[tet as usize];
+            OUTWARD_FACES[vertex].map(|corner| nodes[corner])
+        };
+        self.surface_of(faces.into_iter().map(face).collect())
+    }
+
+    /// Triangles between nodes, with the nodes on them only.
+    fn surface_of(&self, mut triangles: Vec<[u32; 3]>) -> BoundarySurface {
+        const NONE: u32 = u32::MAX;
+        let mut place = vec![NONE; self.points.len()];
+        for node in triangles.as_flattened() {
+            place[*node as usize] = 0;
+        }
+        let mut nodes = Vec::new();
+        for (node, place) in (0..).zip(&mut place) {
+            if *place != NONE {
+                *place = nodes.len() as u32;
+                nodes.push(node);
+            }
+        }
+        for node in triangles.as_flattened_mut() {
+            *node = place[*node as usize];
+        }
         BoundarySurface {
-            triangles: triangles.collect(),
+            triangles,
             points: nodes
                 .iter()
                 .map(|node| self.points[*node as usize])

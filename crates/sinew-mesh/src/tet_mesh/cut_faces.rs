@@ -1,7 +1,7 @@
 //! The faces that cuts opened.
 
-use std::collections::BTreeMap;
-use std::collections::btree_map::Entry;
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 
 use super::CutMesh;
 use super::surface::OUTWARD_FACES;
@@ -14,7 +14,7 @@ impl CutMesh {
         let copied = self.is_copied();
         let origin = |node: u32| self.origins[node as usize];
         let is_copied = |node: &u32| copied[*node as usize];
-        let mut first_at: BTreeMap<[u32; 3], [u32; 3]> = BTreeMap::new();
+        let mut first_at: HashMap<[u32; 3], [u32; 3]> = HashMap::new();
         let mut cut = Vec::new();
         for nodes in self
             .mesh

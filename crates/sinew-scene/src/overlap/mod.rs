@@ -10,6 +10,7 @@ mod depth;
 mod grid;
 mod inside;
 mod names;
+mod near;
 mod search;
 mod segment;
 mod watch;

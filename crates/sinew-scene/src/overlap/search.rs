@@ -1,22 +1,20 @@
 //! The search for the surface point that is deepest in the body.
 
+use std::cell::OnceCell;
 use std::sync::Arc;
 
 use sinew_mesh::TetMesh;
 use sinew_tools::vector::{Vector, between, length, sub};
 
 use super::depth::{Depths, FACES, distance};
-use super::grid::{Bounds, Grid, bounds, include, longest, meet};
+use super::grid::{Bounds, bounds, include, longest, meet};
 use super::inside::{Placed, SurfacePoint};
-use super::segment::{are_apart, crossing};
+use super::near::{NearPairs, Surface};
+use super::segment::crossing;
 
 /// Share of a body's size, or of its largest displacement if that is more, up to which surfaces count as touching:
 /// single precision rounds positions by less.
 const TOUCHES: f64 = 1e-6;
-
-/// Largest number of comparisons for each edge of the surface; a state that needs more is not checked, since its
-/// surface is near itself everywhere.
-const COMPARISONS: usize = 1000;
 
 /// Largest number of tetrahedra that are checked to measure depths, as a multiple of their number, or of 1000.
 const LOOKS: usize = 20;
@@ -35,16 +33,14 @@ pub(super) struct Inside {
 /// Topology and buffers for the overlap check of a body in one state after another.
 pub(super) struct OverlapSearch {
     mesh: Arc<TetMesh>,
-    triangles: Vec<[u32; 3]>,
-    /// The triangles with their nodes in ascending order, sorted.
-    faces: Vec<[u32; 3]>,
-    edges: Vec<[u32; 2]>,
+    surface: Surface,
+    near: NearPairs,
+    /// The triangles with their nodes in ascending order, sorted; made when a point was first found inside.
+    faces: OnceCell<Vec<[u32; 3]>>,
     nodes: Vec<u32>,
     /// The nodes that edges join to each node of the surface, one after the other, and where those of a node begin.
     joined: Vec<u32>,
     joined_from: Vec<u32>,
-    /// The node of which each node is a copy, or itself; empty for a body without cuts.
-    origins: Vec<u32>,
     /// The part of each node, and their number.
     part_of: Vec<u32>,
     parts: usize,
@@ -54,8 +50,6 @@ pub(super) struct OverlapSearch {
     lips: Option<Lips>,
     /// Data for depths; made when a point was first found inside.
     depths: Option<Depths>,
-    boxes: Vec<Bounds>,
-    grid: Grid,
 }
 
 /// Cut faces between which contact acts, node by node.
@@ -74,37 +68,38 @@ impl OverlapSearch {
         origins: Vec<u32>,
         lips: Option<Lips>,
     ) -> Self {
+        // Both triangles at an edge have it, in opposite directions.
         let sides = |[a, b, c]: &[u32; 3]| [[*a, *b], [*b, *c], [*c, *a]];
-        let mut edges: Vec<[u32; 2]> = triangles.iter().flat_map(sides).collect();
-        for edge in &mut edges {
-            edge.sort_unstable();
-        }
+        let sides = triangles.iter().flat_map(sides);
+        let mut edges: Vec<[u32; 2]> = sides.filter(|[a, b]| a < b).collect();
         edges.sort_unstable();
         edges.dedup();
-        let mut faces = triangles.to_vec();
-        faces.iter_mut().for_each(|face| face.sort_unstable());
-        faces.sort_unstable();
-        let mut nodes: Vec<u32> = triangles.as_flattened().to_vec();
-        nodes.sort_unstable();
-        nodes.dedup();
+        let mut is_outer = vec![false; mesh.points.len()];
+        for node in triangles.as_flattened() {
+            is_outer[*node as usize] = true;
+        }
+        let nodes = (0..).zip(&is_outer);
+        let nodes = nodes.filter(|(_, is_outer)| **is_outer);
+        let nodes = nodes.map(|(node, _)| node).collect();
         let (part_of, parts) = mesh.part_of_nodes();
         let (joined, joined_from) = joined(&edges, mesh.points.len());
         Self {
             joined,
             joined_from,
-            origins,
             size: longest(&bounds(&mesh.points, 0.0)),
             mesh,
-            triangles,
-            faces,
-            edges,
+            surface: Surface {
+                triangles,
+                edges,
+                origins,
+            },
+            near: NearPairs::default(),
+            faces: OnceCell::new(),
             nodes,
             part_of,
             parts,
             lips,
             depths: None,
-            boxes: Vec::new(),
-            grid: Grid::default(),
         }
     }
 
@@ -138,7 +133,7 @@ impl OverlapSearch {
             return None;
         }
         let touching = TOUCHES * self.size.max(moved);
-        let near = self.near(places, touching)?;
+        let near = self.near.find(&self.surface, places, touching)?;
         let nested = self.nested(places);
         let mut is_concerned = nested.clone();
         for node in self.nodes_at(&near) {
@@ -191,8 +186,8 @@ impl OverlapSearch {
     /// The nodes of edges and triangles that are near each other.
     fn nodes_at<'a>(&'a self, near: &'a [[u32; 2]]) -> impl Iterator<Item = u32> + 'a {
         near.iter().flat_map(|[edge, triangle]| {
-            let edge = self.edges[*edge as usize].into_iter();
-            edge.chain(self.triangles[*triangle as usize])
+            let edge = self.surface.edges[*edge as usize].into_iter();
+            edge.chain(self.surface.triangles[*triangle as usize])
         })
     }
 
@@ -216,45 +211,13 @@ impl OverlapSearch {
     fn is_outer(&self, face: [u32; 3]) -> bool {
         let mut face = face;
         face.sort_unstable();
-        self.faces.binary_search(&face).is_ok()
-    }
-
-    /// Edges and triangles of the surface that are no farther apart than `touching` (m), and have no node in common, nor
-    /// copies of one node at the same place, as cut faces that lie on each other have; `None` for a state that needs too
-    /// many comparisons.
-    fn near(&mut self, places: &[Vector], touching: f64) -> Option<Vec<[u32; 2]>> {
-        let at = |node: u32| places[node as usize];
-        self.boxes.clear();
-        let boxes = self.triangles.iter();
-        self.boxes
-            .extend(boxes.map(|nodes| bounds(&nodes.map(at), touching)));
-        let are_one = |one: u32, other: u32| {
-            let origin = |node: u32| self.origins.get(node as usize);
-            let is_copy = || origin(one).is_some() && origin(one) == origin(other);
-            let are_together = || length(sub(at(one), at(other))) <= touching;
-            one == other || is_copy() && are_together()
-        };
-        let sizes: f64 = self.boxes.iter().map(longest).sum();
-        self.grid
-            .fill(&self.boxes, sizes / self.boxes.len().max(1) as f64);
-        let (mut near, mut compared) = (Vec::new(), 0);
-        for (number, edge) in (0..).zip(&self.edges) {
-            let segment = edge.map(at);
-            compared += self
-                .grid
-                .visit(&bounds(&segment, 0.0), &self.boxes, |triangle| {
-                    let nodes = self.triangles[triangle as usize];
-                    let is_end = |node: &u32| edge.iter().any(|end| are_one(*end, *node));
-                    let is_own = nodes.iter().any(is_end);
-                    if !is_own && !are_apart(segment, nodes.map(at), touching) {
-                        near.push([number, triangle]);
-                    }
-                });
-            if compared > COMPARISONS * self.edges.len() {
-                return None;
-            }
-        }
-        Some(near)
+        let faces = self.faces.get_or_init(|| {
+            let mut faces = self.surface.triangles.clone();
+            faces.iter_mut().for_each(|face| face.sort_unstable());
+            faces.sort_unstable();
+            faces
+        });
+        faces.binary_search(&face).is_ok()
     }
 
     /// One flag per part: true if the box of the part is within that of another, or another's within its own.
@@ -295,7 +258,7 @@ impl OverlapSearch {
     ) -> Vec<SurfacePoint> {
         let at = |node: u32| places[node as usize];
         let is_met = |nodes: &&[u32; 3]| nodes.iter().any(|node| is_seen(*node));
-        let triangles = self.triangles.iter().filter(is_met);
+        let triangles = self.surface.triangles.iter().filter(is_met);
         let mut points: Vec<SurfacePoint> = triangles
             .map(|nodes| SurfacePoint {
                 at: [0, 1, 2]
@@ -307,10 +270,10 @@ impl OverlapSearch {
             let [Some([edge, _]), ..] = [of_edge.first()] else {
                 continue;
             };
-            let [from, to] = self.edges[*edge as usize];
+            let [from, to] = self.surface.edges[*edge as usize];
             let segment = [at(from), at(to)];
             let shares = of_edge.iter().filter_map(|[_, triangle]| {
-                crossing(segment, self.triangles[*triangle as usize].map(at))
+                crossing(segment, self.surface.triangles[*triangle as usize].map(at))
             });
             let mut shares: Vec<f64> = shares.collect();
             shares.sort_by(f64::total_cmp);
@@ -386,12 +349,23 @@ impl Lips {
 
 /// The nodes that edges join to each of `nodes` nodes, one after the other, and where those of a node begin.
 fn joined(edges: &[[u32; 2]], nodes: usize) -> (Vec<u32>, Vec<u32>) {
-    let both = edges.iter().flat_map(|[a, b]| [[*a, *b], [*b, *a]]);
-    let mut both: Vec<[u32; 2]> = both.collect();
-    both.sort_unstable();
-    let from = |node: usize| both.partition_point(|[own, _]| (*own as usize) < node) as u32;
-    let starts = (0..=nodes).map(from).collect();
-    (both.into_iter().map(|[_, other]| other).collect(), starts)
+    let mut starts = vec![0; nodes + 1];
+    for node in edges.as_flattened() {
+        starts[*node as usize + 1] += 1;
+    }
+    for node in 0..nodes {
+        starts[node + 1] += starts[node];
+    }
+    let mut next = starts.clone();
+    let mut joined = vec![0; 2 * edges.len()];
+    for [a, b] in edges {
+        for [own, other] in [[a, b], [b, a]] {
+            let place = &mut next[*own as usize];
+            joined[*place as usize] = *other;
+            *place += 1;
+        }
+    }
+    (joined, starts)
 }
 
 /// The largest extent (m) of a tetrahedron at rest along the axes.

@@ -10,17 +10,17 @@ pub(super) fn are_apart([p, q]: [Vector; 2], triangle: [Vector; 3], distance: f6
     let sides = [sub(b, a), sub(c, b), sub(a, c)];
     let parts = |axis: Vector| {
         let end = dot(way, axis);
-        let corners = [a, b, c].map(|corner| dot(corner, axis));
-        let low = corners.into_iter().fold(f64::INFINITY, f64::min);
-        let high = corners.into_iter().fold(f64::NEG_INFINITY, f64::max);
+        let [a, b, c] = [a, b, c].map(|corner| dot(corner, axis));
+        let (low, high) = (a.min(b).min(c), a.max(b).max(c));
         let gap = (end.min(0.0) - high).max(low - end.max(0.0));
         gap > 0.0 && gap * gap > distance * distance * dot(axis, axis)
     };
+    // Most pairs lie side by side on a surface: first the axes along it.
     let normal = cross(sides[0], sides[1]);
-    parts(normal)
-        || sides.iter().any(|side| parts(cross(way, *side)))
-        || sides.iter().any(|side| parts(cross(normal, *side)))
+    sides.iter().any(|side| parts(cross(normal, *side)))
         || parts(cross(normal, way))
+        || parts(normal)
+        || sides.iter().any(|side| parts(cross(way, *side)))
 }
 
 /// The parameter of a segment at which it crosses a triangle.

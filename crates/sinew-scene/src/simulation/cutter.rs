@@ -514,8 +514,15 @@ impl Cutter {
                 .map_err(CutModelError::from)?,
         };
         let theirs = before.model.body();
+        let mesh = Arc::clone(model.shared_mesh());
+        let outer_faces = (0..).zip(&cut.tets).flat_map(|(number, tet)| {
+            let is_outer = |vertex: &usize| self.cut.body().neighbour(*tet, *vertex).is_none();
+            let vertices = (0..4).filter(is_outer);
+            vertices.map(move |vertex| (number, vertex))
+        });
+        let surface = OnceLock::from(Arc::new(mesh.surface_of_faces(outer_faces)));
         let mut body = BodyModel {
-            mesh: Arc::new(cut.mesh.clone()),
+            mesh,
             mesh_warnings: Vec::new(),
             selected: theirs.map_or_else(Vec::new, |body| body.selected.clone()),
             problem: self
@@ -525,7 +532,7 @@ impl Cutter {
             model: model.clone(),
             tools: None,
             cut: Some(Arc::new(from)),
-            surface: OnceLock::new(),
+            surface,
         };
         if let Subject::Body(scene) = before.scene.subject() {
             let tools = before.model.tools().map(Arc::as_ref);

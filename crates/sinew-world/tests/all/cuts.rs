@@ -57,6 +57,9 @@ fn run_in_parts(simulation: Simulation, steps: usize) -> Ended {
         left -= part;
     }
     let cutter = run.cutter().unwrap();
+    // The cuts that made the body know its surface; here it is found in the mesh.
+    let body = run.body().model().body().unwrap();
+    assert_eq!(**body.surface(), body.mesh.boundary_surface());
     Ended {
         body: Arc::clone(run.body()),
         state: run.state().clone(),

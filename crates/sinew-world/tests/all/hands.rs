@@ -223,6 +223,52 @@ fn a_tool_takes_with_it_what_it_holds_and_lets_go_of_it() {
     assert!(lifted(&world) < 1e-3);
 }
 
+/// Forces on the nodes that a grasp holds are not determined by the motion alone: parts of them that cancel must not grow.
+/// The moment of the others is at most their sum times the radius.
+#[test]
+fn a_thin_ball_that_grasps_has_the_torque_of_its_size() {
+    let text = r#"
+[mesh]
+block = { cells = [10, 10, 10], size = [0.1, 0.1, 0.1] }
+[[region]]
+density = 1000.0
+model = "neo-hookean"
+youngs_modulus = 5000.0
+poissons_ratio = 0.4
+[[fixed]]
+group = "bottom"
+[[tool]]
+name = "ball"
+shape = { sphere = { radius = 0.012 } }
+start = [0.0431, 0.0527, 0.1125]
+[run]
+duration = 1.0
+integrator = "central-difference"
+dt = 4e-4
+"#;
+    let mut world = session(text);
+    let ball = world.tool("ball").unwrap();
+    let (mut force, mut torque) = (0.0_f64, 0.0_f64);
+    let norm = |v: [f64; 3]| v.iter().map(|v| v * v).sum::<f64>().sqrt();
+    for step in 0..80 {
+        // Down by 10 mm, and up again by half of it.
+        let down = 4e-4 * f64::from(step.min(26)) - 1e-4 * f64::from((step - 26).max(0));
+        let at = [0.0431, 0.0527, 0.1125 - down];
+        world.steer(ball, at, [0.0; 3]).unwrap();
+        if step == 14 {
+            let tool = "ball".into();
+            world.command(Command::Grasp { tool }).unwrap();
+        }
+        world.step().unwrap();
+        let report = world.tool_report(ball).unwrap();
+        force = force.max(norm(report.force));
+        torque = torque.max(norm(report.torque));
+    }
+    assert!(world.tool_report(ball).unwrap().contacts > 3);
+    assert!(force > 0.05, "{force} N");
+    assert!(torque < 0.012 * force, "{torque} N m at {force} N");
+}
+
 #[test]
 fn a_time_ends_with_its_last_step_and_all_its_steps_have_one_length() {
     for method in ["central-difference", "newmark", "cnn-symplectic"] {
