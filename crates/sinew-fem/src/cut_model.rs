@@ -278,7 +278,7 @@ impl CutModel {
     }
 
     /// Cuts by a sheet in the configuration of the state, which is transferred. The model gets a new revision only if
-    /// it changed.
+    /// it changed. A sheet at another place comes after [`CutModel::lift`]: until then it belongs to the same stroke.
     ///
     /// # Errors
     /// [`CutModelError`]; the body may then be partly changed and must be discarded.

@@ -34,6 +34,7 @@ mod contact;
 mod motion;
 mod pose;
 mod rotation;
+mod segments;
 mod shape;
 mod steering;
 mod stroke;
@@ -49,6 +50,7 @@ pub use contact::{
 };
 pub use motion::Motion;
 pub use pose::Pose;
+pub use segments::nearest_of_segments;
 pub use shape::{Convex, Nearest, Part, Shape, ShapeError, Touch};
 pub use steering::Steering;
 pub use stroke::Stroke;

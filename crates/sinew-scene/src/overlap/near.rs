@@ -3,7 +3,7 @@
 use sinew_tools::vector::{Vector, length, sub};
 
 use super::grid::{Bounds, Grid, bounds, longest};
-use super::segment::are_apart;
+use super::segment::{are_apart, gap};
 
 /// Share of the mean size of a triangle up to which edges and triangles are followed: they need not be found again
 /// until a node has moved by half of it.
@@ -60,10 +60,11 @@ impl Surface {
         !self.origins.is_empty() && self.edges[edge as usize].iter().any(is_corner)
     }
 
-    fn are_apart(&self, [edge, triangle]: [u32; 2], places: &[Vector], distance: f64) -> bool {
+    /// The ends of an edge, and the corners of a triangle.
+    fn at(&self, [edge, triangle]: [u32; 2], places: &[Vector]) -> ([Vector; 2], [Vector; 3]) {
         let at = |node: u32| places[node as usize];
-        let corners = self.triangles[triangle as usize].map(at);
-        are_apart(self.edges[edge as usize].map(at), corners, distance)
+        let corners = self.triangles[triangle as usize];
+        (self.edges[edge as usize].map(at), corners.map(at))
     }
 }
 
@@ -85,8 +86,10 @@ impl NearPairs {
         }
         let pairs = self.pairs.iter().copied();
         let is_near = |pair: &[u32; 2]| {
-            !surface.are_joined(*pair, places, touching)
-                && !surface.are_apart(*pair, places, touching)
+            let (edge, triangle) = surface.at(*pair, places);
+            !are_apart(edge, triangle, touching)
+                && !surface.are_joined(*pair, places, touching)
+                && gap(edge, triangle) <= touching
         };
         Some(pairs.filter(is_near).collect())
     }
@@ -119,7 +122,11 @@ impl NearPairs {
             let box_of_edge = bounds(&edge.map(|node| places[node as usize]), 0.0);
             compared += self.grid.visit(&box_of_edge, &self.boxes, |triangle| {
                 let pair = [number, triangle];
-                if !surface.have_common_node(pair) && !surface.are_apart(pair, places, margin) {
+                if surface.have_common_node(pair) {
+                    return;
+                }
+                let (edge, triangle) = surface.at(pair, places);
+                if !are_apart(edge, triangle, margin) {
                     self.pairs.push(pair);
                 }
             });

@@ -1,7 +1,6 @@
 //! The search for the surface point that is deepest in the body.
 
-use std::cell::OnceCell;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use sinew_mesh::TetMesh;
 use sinew_tools::vector::{Vector, between, length, sub};
@@ -36,7 +35,7 @@ pub(super) struct OverlapSearch {
     surface: Surface,
     near: NearPairs,
     /// The triangles with their nodes in ascending order, sorted; made when a point was first found inside.
-    faces: OnceCell<Vec<[u32; 3]>>,
+    faces: OnceLock<Vec<[u32; 3]>>,
     nodes: Vec<u32>,
     /// The nodes that edges join to each node of the surface, one after the other, and where those of a node begin.
     joined: Vec<u32>,
@@ -94,7 +93,7 @@ impl OverlapSearch {
                 origins,
             },
             near: NearPairs::default(),
-            faces: OnceCell::new(),
+            faces: OnceLock::new(),
             nodes,
             part_of,
             parts,

@@ -1,6 +1,9 @@
 //! Segments and triangles.
 
-use sinew_tools::vector::{Vector, cross, dot, sub};
+use sinew_tools::nearest_of_segments;
+use sinew_tools::vector::{Vector, between, cross, dot, length, sub};
+
+use super::depth::distance;
 
 /// True if a segment and a triangle are certain to be farther apart than a distance (m): an axis separates them
 /// (Gottschalk, Lin and Manocha 1996).
@@ -21,6 +24,22 @@ pub(super) fn are_apart([p, q]: [Vector; 2], triangle: [Vector; 3], distance: f6
         || parts(cross(normal, way))
         || parts(normal)
         || sides.iter().any(|side| parts(cross(way, *side)))
+}
+
+/// The distance (m) between a segment and a triangle.
+pub(super) fn gap(segment: [Vector; 2], triangle: [Vector; 3]) -> f64 {
+    if crossing(segment, triangle).is_some() {
+        return 0.0;
+    }
+    let [a, b, c] = triangle;
+    let from_sides = [[a, b], [b, c], [c, a]].map(|side| {
+        let (along, across) = nearest_of_segments(segment, side);
+        let point = |[from, to]: [Vector; 2], share| between(from, to, share);
+        length(sub(point(segment, along), point(side, across)))
+    });
+    let from_ends = segment.map(|end| distance(end, triangle));
+    let all = from_sides.into_iter().chain(from_ends);
+    all.fold(f64::INFINITY, f64::min)
 }
 
 /// The parameter of a segment at which it crosses a triangle.
@@ -65,6 +84,7 @@ mod tests {
             let scaled = |point: Vector| point.map(|along| scale * along);
             for (segment, distance, share) in cases {
                 let (segment, triangle) = (segment.map(scaled), TRIANGLE.map(scaled));
+                assert!((gap(segment, triangle) - scale * distance).abs() < 1e-12 * scale);
                 assert!(
                     !are_apart(segment, triangle, scale * (distance + 1e-9)),
                     "{segment:?}"

@@ -1,6 +1,7 @@
 //! Shapes as the set of points within a radius of a point, a rod or a box, and their distances from triangles.
 
 use super::convex::Convex;
+use crate::segments::nearest_of_segments;
 use crate::triangle::nearest_of_triangle;
 use crate::vector::{Vector, add, between, cross, dot, length, scaled, sub};
 
@@ -199,37 +200,6 @@ pub(crate) fn weighted(triangle: &Triangle, weights: Vector) -> Vector {
 pub(crate) fn doubled_area(triangle: &Triangle) -> Vector {
     let [a, b, c] = *triangle;
     cross(sub(b, a), sub(c, a))
-}
-
-/// The shares of two segments at which they are nearest to each other (Ericson 2005, 5.1.9).
-fn nearest_of_segments([a, b]: [Vector; 2], [c, d]: [Vector; 2]) -> (f64, f64) {
-    let (one, two, between) = (sub(b, a), sub(d, c), sub(a, c));
-    let (long, wide, apart) = (dot(one, one), dot(two, two), dot(two, between));
-    if long == 0.0 && wide == 0.0 {
-        return (0.0, 0.0);
-    }
-    if long == 0.0 {
-        return (0.0, (apart / wide).clamp(0.0, 1.0));
-    }
-    let back = dot(one, between);
-    if wide == 0.0 {
-        return ((-back / long).clamp(0.0, 1.0), 0.0);
-    }
-    let both = dot(one, two);
-    let determinant = long * wide - both * both;
-    let first = if determinant > 0.0 {
-        ((both * apart - back * wide) / determinant).clamp(0.0, 1.0)
-    } else {
-        0.0
-    };
-    let second = (both * first + apart) / wide;
-    if second < 0.0 {
-        ((-back / long).clamp(0.0, 1.0), 0.0)
-    } else if second > 1.0 {
-        (((both - back) / long).clamp(0.0, 1.0), 1.0)
-    } else {
-        (first, second)
-    }
 }
 
 /// Intersection of a segment with a triangle.

@@ -241,6 +241,7 @@ group = "bottom"
 name = "ball"
 shape = { sphere = { radius = 0.012 } }
 start = [0.0431, 0.0527, 0.1125]
+hold = true
 [run]
 duration = 1.0
 integrator = "central-difference"
