@@ -95,7 +95,7 @@ impl NearPairs {
     }
 
     /// Finds the pairs to follow, of a surface whose nodes `moved` by so much (m) since this was done last. Returns
-    /// false, with nothing to follow, if that takes too many comparisons.
+    /// false if that takes too many comparisons.
     fn find_anew(
         &mut self,
         surface: &Surface,
@@ -107,20 +107,34 @@ impl NearPairs {
         let sizes: f64 = sizes.map(|of| longest(&bounds(&corners(of), 0.0))).sum();
         let size = sizes / surface.triangles.len().max(1) as f64;
         let pace = moved / f64::from(self.states);
-        let margin = match 2.0 * STATES * pace <= MARGIN * size {
-            true => touching + MARGIN * size,
-            false => touching,
-        };
-        let boxes = surface.triangles.iter();
+        let is_worth_it = 2.0 * STATES * pace <= MARGIN * size;
+        let wider = is_worth_it.then_some(touching + MARGIN * size);
+        let mut margins = wider.into_iter().chain([touching]);
+        let found = margins.find(|margin| self.search(surface, places, (*margin, size)));
+        self.margin = found.unwrap_or(0.0);
+        self.at.clear();
+        self.at.extend_from_slice(places);
+        self.states = 0;
+        found.is_some()
+    }
+
+    /// Finds pairs that are no farther apart than a margin (m) by a grid for triangles of this size (m). Returns false if
+    /// that takes too many comparisons.
+    fn search(&mut self, surface: &Surface, places: &[Vector], (margin, size): (f64, f64)) -> bool {
+        let at = |node: &u32| places[*node as usize];
+        let triangles = surface
+            .triangles
+            .iter()
+            .map(|nodes| nodes.each_ref().map(at));
         self.boxes.clear();
         self.boxes
-            .extend(boxes.map(|of| bounds(&corners(of), margin)));
+            .extend(triangles.map(|corners| bounds(&corners, margin)));
         self.grid.fill(&self.boxes, size + 2.0 * margin);
         self.pairs.clear();
         let mut compared = 0;
         for (number, edge) in (0..).zip(&surface.edges) {
-            let box_of_edge = bounds(&edge.map(|node| places[node as usize]), 0.0);
-            compared += self.grid.visit(&box_of_edge, &self.boxes, |triangle| {
+            let edge = bounds(&edge.each_ref().map(at), 0.0);
+            compared += self.grid.visit(&edge, &self.boxes, |triangle| {
                 let pair = [number, triangle];
                 if surface.have_common_node(pair) {
                     return;
@@ -131,14 +145,9 @@ impl NearPairs {
                 }
             });
             if compared > COMPARISONS * surface.edges.len() {
-                self.pairs.clear();
-                self.margin = 0.0;
                 return false;
             }
         }
-        self.at.clear();
-        self.at.extend_from_slice(places);
-        (self.margin, self.states) = (margin, 0);
         true
     }
 }
@@ -197,7 +206,10 @@ mod tests {
             assert!(most > 10, "{most} pairs");
             // Motions of some hundredths of a triangle are followed, larger ones are searched each time.
             let expected = if motion < 1e-4 { 10..60 } else { 50..61 };
-            assert!(expected.contains(&searches), "{searches} searches of {states}");
+            assert!(
+                expected.contains(&searches),
+                "{searches} searches of {states}"
+            );
         }
     }
 }
