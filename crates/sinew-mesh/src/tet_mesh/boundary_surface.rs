@@ -22,7 +22,8 @@ impl TetMesh {
     }
 
     /// Same as [`TetMesh::boundary_surface`], for a mesh of tetrahedra with positive volumes whose outer faces are known:
-    /// each by its tetrahedron (0-based) and the vertex (0 to 3) opposite, in increasing order.
+    /// each by its tetrahedron (0-based) and the vertex (0 to 3) opposite, in increasing order. A face that is given on
+    /// both sides with the same nodes is inside, and left out.
     ///
     /// ```
     /// use sinew_mesh::structured::{self, Split};
@@ -53,7 +54,20 @@ impl TetMesh {
             let nodes = self.tets[tet as usize];
             OUTWARD_FACES[vertex].map(|corner| nodes[corner])
         };
-        self.surface_of(faces.into_iter().map(face).collect())
+        let mut faces: Vec<[u32; 3]> = faces.into_iter().map(face).collect();
+        let key = |face: &[u32; 3]| {
+            let mut key = *face;
+            key.sort_unstable();
+            key
+        };
+        let mut keys: Vec<[u32; 3]> = faces.iter().map(key).collect();
+        keys.sort_unstable();
+        let twice = keys.windows(2).filter(|pair| pair[0] == pair[1]);
+        let twice: Vec<[u32; 3]> = twice.map(|pair| pair[0]).collect();
+        if !twice.is_empty() {
+            faces.retain(|face| twice.binary_search(&key(face)).is_err());
+        }
+        self.surface_of(faces)
     }
 
     /// Triangles between nodes, with the nodes on them only.
@@ -81,5 +95,21 @@ impl TetMesh {
                 .collect(),
             nodes,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::structured::{Split, block};
+
+    #[test]
+    fn a_face_that_is_parted_without_an_edge_of_its_own_is_inside() {
+        let mesh = block([2, 1, 1], [0.2, 0.1, 0.1], Split::Kuhn).expect("valid");
+        let surface = mesh.boundary_surface();
+        // All faces: those inside are there twice.
+        let all =
+            (0..mesh.tets.len() as u32).flat_map(|tet| (0..4).map(move |vertex| (tet, vertex)));
+        assert_eq!(mesh.surface_of_faces(all), surface);
     }
 }

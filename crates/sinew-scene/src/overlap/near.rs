@@ -5,8 +5,8 @@ use sinew_tools::vector::{Vector, length, sub};
 use super::grid::{Bounds, Grid, bounds, longest};
 use super::segment::{are_apart, gap};
 
-/// Share of the mean size of a triangle up to which edges and triangles are followed: they need not be found again
-/// until a node has moved by half of it.
+/// Share of the smallest size of a triangle up to which edges and triangles are followed: they need not be found again
+/// until a node has moved by half of it. Among much larger ones it must not reach over many triangles.
 const MARGIN: f64 = 0.1;
 
 /// Number of states for which that should last, at the pace of the last ones: finding more pairs costs time too.
@@ -104,11 +104,14 @@ impl NearPairs {
     ) -> bool {
         let corners = |nodes: &[u32; 3]| nodes.map(|node| places[node as usize]);
         let sizes = surface.triangles.iter();
-        let sizes: f64 = sizes.map(|of| longest(&bounds(&corners(of), 0.0))).sum();
-        let size = sizes / surface.triangles.len().max(1) as f64;
+        let sizes = sizes.map(|of| longest(&bounds(&corners(of), 0.0)));
+        let (sum, least) = sizes.fold((0.0, f64::INFINITY), |(sum, least): (f64, f64), size| {
+            (sum + size, least.min(size))
+        });
+        let size = sum / surface.triangles.len().max(1) as f64;
         let pace = moved / f64::from(self.states);
-        let is_worth_it = 2.0 * STATES * pace <= MARGIN * size;
-        let wider = is_worth_it.then_some(touching + MARGIN * size);
+        let is_worth_it = 2.0 * STATES * pace <= MARGIN * least;
+        let wider = is_worth_it.then_some(touching + MARGIN * least);
         let mut margins = wider.into_iter().chain([touching]);
         let found = margins.find(|margin| self.search(surface, places, (*margin, size)));
         self.margin = found.unwrap_or(0.0);

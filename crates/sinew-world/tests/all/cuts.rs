@@ -394,6 +394,26 @@ fn the_share_of_a_force_on_each_node_stays_as_pieces_come_off() {
     }
 }
 
+/// Strokes that cross each other part a face whose nodes stay joined around it.
+#[test]
+fn a_face_that_is_parted_alone_is_no_surface() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = "[mesh]\nblock = { cells = [6, 4, 3], size = [0.06, 0.03, 0.02], split = \"kuhn\" }\n[[region]]\ndensity = 1000.0\n\
+                model = \"linear\"\nyoungs_modulus = 8000.0\npoissons_ratio = 0.3\n[[fixed]]\ngroup = \"bottom\"\n[cutting]\n\
+                table = \"strokes.csv\"\nsnap = 0.4\n[run]\nduration = 0.016\nintegrator = \"central-difference\"\ndt = 2e-4\n";
+    let strokes = format!(
+        "{STROKES}1,0.001,0.0247855,-0.003,-0.003,0.0247855,-0.003,0.012\n\
+         1,0.006,0.0215589,0.0177391,-0.003,0.0215589,0.0177391,0.024\n\
+         2,0.00725,-0.003,-0.003,0.00422693,-0.003,0.034,0.00422693\n\
+         2,0.01225,0.0545852,-0.003,0.00422693,0.0545852,0.034,0.00422693\n\
+         3,0.0135,-0.003,-0.003,0.00550155,-0.003,0.034,0.00550155\n\
+         3,0.015375,0.0329556,-0.003,0.00550155,0.0329556,0.034,0.00550155\n"
+    );
+    let ended = run(load(folder.path(), text, &strokes));
+    let body = ended.body.model().body().unwrap();
+    assert_eq!(body.surface().nodes.len(), 168);
+}
+
 #[test]
 fn toughness_is_the_work_of_the_blade_and_leaves_the_motion_alone() {
     let folder = tempfile::tempdir().unwrap();
