@@ -376,7 +376,6 @@ fn mesh_edge(mesh: &TetMesh, tet: u32) -> f64 {
 #[cfg(test)]
 mod tests {
     use sinew_mesh::structured::{Split, block};
-    use sinew_tools::vector::add;
 
     use super::super::random;
     use super::*;
@@ -418,33 +417,5 @@ mod tests {
             );
         }
         assert!((20..130).contains(&found), "{found}");
-    }
-
-    /// A surface with triangles that are far smaller than the others: margins that suit these would reach over all of those.
-    #[test]
-    fn a_fine_part_is_found_in_a_coarse_one() {
-        let coarse = block([4; 3], [0.1; 3], Split::Kuhn).unwrap();
-        for edge in [1e-4, 1e-3, 1e-2] {
-            let fine = block([14; 3], [edge; 3], Split::Kuhn).unwrap();
-            let from = [0.0503, 0.0512, 0.1 - 0.6 * edge];
-            let moved = fine.points.iter().map(|point| add(*point, from));
-            let points: Vec<Vector> = coarse.points.iter().copied().chain(moved).collect();
-            let first = coarse.points.len() as u32;
-            let other = fine.tets.iter().map(|tet| tet.map(|node| first + node));
-            let tets = coarse.tets.iter().copied().chain(other).collect();
-            let mesh = Arc::new(TetMesh::new(points, tets).unwrap());
-            let surface = mesh.boundary_surface();
-            let node = |point: u32| surface.nodes[point as usize];
-            let triangles = surface.triangles.iter().map(|points| points.map(node));
-            let triangles = triangles.collect();
-            let mut search = OverlapSearch::new(Arc::clone(&mesh), triangles, Vec::new(), None);
-            let deepest = search.deepest(&mesh.points).unwrap();
-            // The bottom of the fine one is that deep under the top of the coarse one.
-            assert!(
-                (deepest.depth / edge - 0.6).abs() < 1e-6,
-                "{}",
-                deepest.depth
-            );
-        }
     }
 }
