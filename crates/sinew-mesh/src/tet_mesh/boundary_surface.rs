@@ -100,7 +100,6 @@ impl TetMesh {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use crate::structured::{Split, block};
 
     #[test]
