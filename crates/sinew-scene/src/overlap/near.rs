@@ -41,6 +41,21 @@ pub(super) struct NearPairs {
 }
 
 impl Surface {
+    /// A closed surface of these triangles, whose nodes are copies of `origins`.
+    pub(super) fn new(triangles: Vec<[u32; 3]>, origins: Vec<u32>) -> Self {
+        // Both triangles at an edge have it, in opposite directions.
+        let sides = |[a, b, c]: &[u32; 3]| [[*a, *b], [*b, *c], [*c, *a]];
+        let sides = triangles.iter().flat_map(sides);
+        let mut edges: Vec<[u32; 2]> = sides.filter(|[a, b]| a < b).collect();
+        edges.sort_unstable();
+        edges.dedup();
+        Self {
+            triangles,
+            edges,
+            origins,
+        }
+    }
+
     /// True if a node of an edge is one of a triangle.
     fn have_common_node(&self, [edge, triangle]: [u32; 2]) -> bool {
         let corners = self.triangles[triangle as usize];
@@ -179,15 +194,7 @@ mod tests {
         let surface = mesh.boundary_surface();
         let node = |point: u32| surface.nodes[point as usize];
         let triangles = surface.triangles.iter().map(|points| points.map(node));
-        let triangles: Vec<[u32; 3]> = triangles.collect();
-        let sides = triangles.iter();
-        let edges = sides.flat_map(|[a, b, c]| [[*a, *b], [*b, *c], [*c, *a]]);
-        let edges = edges.filter(|[a, b]| a < b).collect();
-        let surface = Surface {
-            triangles,
-            edges,
-            origins: Vec::new(),
-        };
+        let surface = Surface::new(triangles.collect(), Vec::new());
         for (motion, states) in [(5e-6, 220), (3e-4, 60)] {
             let (mut followed, mut searches, mut most) = (NearPairs::default(), 0, 0);
             for state in 0..states {

@@ -67,31 +67,22 @@ impl OverlapSearch {
         origins: Vec<u32>,
         lips: Option<Lips>,
     ) -> Self {
-        // Both triangles at an edge have it, in opposite directions.
-        let sides = |[a, b, c]: &[u32; 3]| [[*a, *b], [*b, *c], [*c, *a]];
-        let sides = triangles.iter().flat_map(sides);
-        let mut edges: Vec<[u32; 2]> = sides.filter(|[a, b]| a < b).collect();
-        edges.sort_unstable();
-        edges.dedup();
+        let surface = Surface::new(triangles, origins);
         let mut is_outer = vec![false; mesh.points.len()];
-        for node in triangles.as_flattened() {
+        for node in surface.triangles.as_flattened() {
             is_outer[*node as usize] = true;
         }
         let nodes = (0..).zip(&is_outer);
         let nodes = nodes.filter(|(_, is_outer)| **is_outer);
         let nodes = nodes.map(|(node, _)| node).collect();
         let (part_of, parts) = mesh.part_of_nodes();
-        let (joined, joined_from) = joined(&edges, mesh.points.len());
+        let (joined, joined_from) = joined(&surface.edges, mesh.points.len());
         Self {
             joined,
             joined_from,
             size: longest(&bounds(&mesh.points, 0.0)),
             mesh,
-            surface: Surface {
-                triangles,
-                edges,
-                origins,
-            },
+            surface,
             near: NearPairs::default(),
             faces: OnceLock::new(),
             nodes,

@@ -36,7 +36,7 @@ proptest! {
     #[test]
     fn rotations_keep_lengths_and_hands(pose in poses(), a in vectors(), b in vectors()) {
         let (u, v) = (pose.turned(a), pose.turned(b));
-        prop_assert!((dot(u, v) - dot(a, b)).abs() < ROUNDING);
+        prop_assert!((dot(u, v) - dot(a, b)).abs() < 4e-15);
         let [[a, b, c], [d, e, f], [g, h, i]] = pose.rotation();
         let determinant = a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g);
         prop_assert!((determinant - 1.0).abs() < 4e-15);
